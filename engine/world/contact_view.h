@@ -1,11 +1,11 @@
-// Contacts as a user sees them: with handles, and numbers of nodes within their bodies.
+// Contacts in the form that users see: with handles, and with node numbers local to their bodies.
 #pragma once
 
 #include "engine/world/world_state.h"
 
 namespace skerry {
 
-/// Fills the view of the last step's contacts, unless it has been.
+/// Fills the view of the last step's contacts, unless it is up to date.
 void view_contacts(WorldState& world);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Which kernels this process runs.
+// The choice of the kernels that this process runs.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace skerry {
 
-/// Of the sets that run here the one called `wanted`, or the last if that is empty. Throws SceneError that lists them.
+/// Returns the set called `wanted`, or the last one if that is empty. Throws SceneError that lists the sets.
 const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view wanted);
 
-/// The one that the environment variable SKERRY_INSTRUCTION_SET names, else the most demanding that runs. Chosen at the
-/// first call. Throws SceneError, at every call, when the variable names none.
+/// Kernels named by the environment variable SKERRY_INSTRUCTION_SET, else the most demanding that run on this CPU.
+/// Chosen at the first call. Throws SceneError, at every call, when the variable names no set.
 const Kernels& kernels();
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Which column lies at a place in a world: only messages ask.
+// The name of the column at an address in a world, used only in messages.
 #include <string>
 
 #include "engine/world/world_state.h"

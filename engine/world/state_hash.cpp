@@ -21,7 +21,7 @@ template <class T>
 void add_row(Hash& hash, const T& row) {
     hash.add(&row, sizeof row);
 }
-/// A struct may have bytes between its members, which are not hashed. Its enums count as numbers of 64 bits.
+/// Hashes members one by one, since a struct may have bytes between them. Enums count as numbers of 64 bits.
 void add_members(Hash& hash, const RowType& type, const std::byte* row) {
     for (const Member& member : type.members()) {
         const std::byte* const place = row + member.offset;
@@ -60,7 +60,7 @@ std::uint32_t slot_of(std::span<const std::uint32_t> slot, Index row) {
     return row == no_index ? nothing : slot[static_cast<std::size_t>(row)];
 }
 
-/// Rows of a table in the order of their slots; of equal slots, in that of the rows.
+/// Rows of a table in the order of their slots; rows with equal slots stay in order.
 std::vector<std::size_t> in_slot_order(std::span<const std::uint32_t> slot) {
     std::vector<std::size_t> order(slot.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -117,12 +117,12 @@ void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe
     if (script.start != 0) add_row(hash, script.start);
 }
 
-/// What nobody has set is not hashed.
+/// A filter that is still the default is not hashed.
 void add_filter(Hash& hash, const CollisionFilter& filter) {
     if (filter != CollisionFilter{}) add_row(hash, filter);
 }
 
-/// Columns with one row per collider or attachment, but for links.
+/// State columns with one row per collider or attachment, without links.
 void add_row_state(Hash& hash, AnyTable table, std::size_t row) {
     for (const ColumnInfo& info : table.columns())
         if (info.role == ColumnRole::state && info.has_row_each) add_rows(hash, table.column(info), row, 1);
@@ -156,8 +156,8 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 
-/// In the order of their keys, which name bodies and colliders by slot. Of pairs that are apart nothing is kept: a
-/// search finds them so again, and which of them are listed only tells when it last looked.
+/// Hashes pairs in the order of their keys, which name bodies and colliders by slot. Pairs that are apart are left out:
+/// a search finds the same pairs again, and their presence only shows when it was last made.
 void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs.state[p] != PairState::overlapping) continue;

@@ -1,4 +1,4 @@
-// One number for all that the next step depends on.
+// One hash of all state that the next step depends on.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace skerry {
 
-/// Of every column that is state or link (ColumnRole), of the clock and of gravity. Bodies are hashed one by one, in
-/// numbers of their own, and joined in the order of their slots, as are materials, colliders and attachments: which
-/// rows of the tables they have, and who had rows before them, does not matter. Of the pairs those that overlap count.
-/// Settings that stay as they were when
-/// the world was made are not part of it: worlds with different numbers of threads are compared by it.
+/// Hash of every state and link column (ColumnRole), of the clock and of gravity. Bodies are hashed one by one, with
+/// local row numbers, and joined in the order of their slots. So are materials, colliders, attachments and joints. The
+/// hash thus does not depend on which rows of the tables they have, or on who had these rows before. Only overlapping
+/// pairs count. Settings that cannot change after the world was made are not part of it: it can compare worlds with
+/// different numbers of threads.
 std::uint64_t state_hash(WorldState& world);
 
-/// Of one body (row) alone, with the nodes and elements it has.
+/// Hash of one body (row) alone, with its nodes and elements.
 std::uint64_t body_hash(Model& model, std::size_t body);
 
 }  // namespace skerry

@@ -78,7 +78,7 @@ private:
         for (Index corner : triangle)
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
-        const auto [a, b, c] = triangle;  // with the same node twice it would be the core of a round body
+        const auto [a, b, c] = triangle;  // a triangle with two equal nodes would be the core of a round body
         if (a == b || b == c || c == a)
             refuse(object, "triangles",
                    "triangle " + std::to_string(number) + " of nodes " + std::to_string(a) + ", " + std::to_string(b) +
@@ -97,7 +97,7 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
-/// What is asked of a surface whatever else touches it.
+/// Checks of a surface that do not depend on its partner in contact.
 void require_surface(const std::optional<Real>& friction, const std::optional<Real>& static_friction,
                      const std::optional<Real>& dynamic_friction, const std::optional<Real>& restitution,
                      const std::string& object) {
@@ -160,7 +160,7 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Each may be any number, the two together not: a step that is no number would only be found when it is taken.
+    // Each value may be any number, but not both together: an invalid step would only be found when it is taken.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
@@ -184,12 +184,12 @@ void validate(const MaterialSettings& material) {
 
 namespace {
 
-/// On each side of a face lies at most one tetrahedron: otherwise they lie in each other, and the face, which more than
-/// one of them has, would be no surface that anything could touch.
+/// Checks that at most one tetrahedron lies on each side of a face. Otherwise tetrahedra overlap, and a face of more
+/// than one of them would be no surface that anything could touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
     for (std::size_t first = 0; first < faces.size();) {
-        std::array<Index, 2> seen{no_index, no_index};  // tetrahedra, by the side they lie on
+        std::array<Index, 2> seen{no_index, no_index};  // tetrahedra by the side that they lie on
         std::size_t i = first;
         for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
             Index& on_side = seen[faces[i].turned ? 1 : 0];
@@ -204,7 +204,7 @@ void require_apart(const Mesh& mesh, const std::string& object) {
     }
 }
 
-/// Where a body is put, and how it starts.
+/// Checks the pose and the initial motion of a body.
 void require_start(const BodySettings& body, const std::string& object) {
     require_finite(object, "position", body.position);
     require_finite(object, "rotation", body.rotation);
@@ -214,7 +214,7 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-/// A mesh that a body may have.
+/// Checks that a body may have this mesh.
 void require_mesh(const Mesh& mesh, const std::string& object) {
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
@@ -283,7 +283,7 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        constexpr Real most = 1e6;  // rad: it is known to a ten billionth then
+        constexpr Real most = 1e6;  // the angle is then known to about 1e-10 [rad]
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a turn of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,

@@ -24,7 +24,7 @@ namespace skerry {
 
 namespace {
 
-/// Rows of the materials of the tetrahedra; empty where none is named by its label.
+/// Material rows of the tetrahedra; empty if no label has a material of its own.
 std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
     if (body.materials.empty()) return {};
     std::map<int, Index> row_of;
@@ -41,7 +41,7 @@ void mark(Index row, std::vector<std::uint8_t>& rows) {
     rows[at] = 1;
 }
 
-/// Of no two worlds of this process the same, and hardly the same as that of a world that another process saved.
+/// Unique among the worlds of this process, and most probably among worlds saved by other processes.
 std::uint32_t next_world_number() {
     static std::atomic<std::uint32_t> next = std::random_device{}();
     const std::uint32_t number = next++;
@@ -84,7 +84,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // of rows that have moved
+        model.clusters.clear();  // their rows have moved
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -167,7 +167,7 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// What a mesh only draws, as in BodyTable; the body is what the mesh fills where it has no core.
+/// Core of a round body, as in BodyTable; its mesh only draws it. Without a core (0 nodes) the body is its mesh.
 struct RoundCore {
     Index nodes = 0;
     Real radius = 0;  // m
@@ -199,7 +199,7 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
     if (body.dynamics == BodyDynamics::automatic) {
-        state.settle();  // what is gone allows no step
+        state.settle();  // removed bodies must not limit the step
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice);
     }
@@ -301,7 +301,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    state_->cache.forget_body(model, b);  // its nodes have stopped
+    state_->cache.forget_body(model, b);  // its held nodes have stopped
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
@@ -382,7 +382,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick = parameters.kick;  // contacts of the last step can still be asked for
+    const Real kick = parameters.kick;  // contacts of the last step can still be queried
     parameters = step_parameters(state_->model.settings);
     parameters.kick = kick;
     state_->record.balance.close();

@@ -40,14 +40,14 @@ std::string short_text(Real value) {
     return text;
 }
 
-/// Counts smoothed elements that are pressed together though no tetrahedron needs to be.
+/// Counts smoothed elements that are compressed although no tetrahedron has to be.
 void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real folded = 0.2;
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
     const auto of_body =
         elements.count.subspan(static_cast<std::size_t>(blocks.begin), static_cast<std::size_t>(blocks.size()));
-    if (std::ranges::all_of(of_body, [](Index count) { return count == 4; })) return;  // tetrahedra
+    if (std::ranges::all_of(of_body, [](Index count) { return count == 4; })) return;  // only tetrahedra
     const VolumeRatios ratios = element_volume_ratios(elements, blocks, model.nodes.position, folded);
     if (ratios.near_inversion == 0) return;
     if (report.folded == 0) {
@@ -58,17 +58,17 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// J, below which energy is rounding: that of the strain which positions with all their digits cannot tell from none,
-/// as if it had added up for ten thousand steps in a row. What rests without weight has no more.
+/// Energy below which all is rounding [J]: that of a strain too small to show in the digits of the positions, added up
+/// over ten thousand steps in a row. Bodies at rest without weight have no more.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         if (model.bodies.blocks[b].size() == 0) continue;
-        Real farthest = 0;  // m
+        Real farthest = 0;  // [m]
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
-        Real stiffness = 0;  // J, by unit of strain squared
+        Real stiffness = 0;  // energy per squared strain [J]
         for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
              block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
             const auto material = static_cast<std::size_t>(model.elements.material[block]);

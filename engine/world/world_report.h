@@ -1,11 +1,11 @@
-// What a world tells about itself.
+// Reports of a world about its own state.
 #pragma once
 
 #include "engine/world/state/model.h"
 
 namespace skerry {
 
-/// `dissipated`: J, over the run.
+/// Energies of the world now. `dissipated`: energy dissipated over the run [J].
 Energy energy_of(const Model& model, Real dissipated);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Everything a world owns. A function of engine/world takes the parts that it may see; only what runs a whole step, or
-// answers for the whole world, takes all of it. Systems get spans of the columns.
+// All state that a world owns. A function of engine/world takes only the parts that it may access. Functions that run a
+// whole step, or answer for the whole world, take all of it. Systems get spans of the columns.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,11 @@
 
 namespace skerry {
 
-/// What has changed since the world was settled.
+/// Changes since the last call of WorldState::settle.
 struct OpenEdits {
-    bool rows = false;      // bodies, colliders or attachments came or went
-    bool elements = false;  // bodies with elements did, or nodes lost or got their freedom
-    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, not 0: gone; rows beyond the end are there
+    bool rows = false;                                      // bodies, colliders or attachments were added or removed
+    bool elements = false;                                  // bodies with elements were, or nodes became held or free
+    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, nonzero: gone; rows beyond the end are present
     ChangedPlaces places;
 };
 
@@ -41,23 +41,24 @@ struct WorldState {
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     OpenEdits edits;
-    bool advancing = false;     // what it calls back must not change what it goes over
-    bool drawn_behind = false;  // nodes that only draw round bodies are behind: within advance alone
+    bool advancing = false;     // true within advance(): its callbacks must not change the world
+    bool drawn_behind = false;  // nodes that only draw round bodies are out of date; only within advance()
 
-    /// Refuses a call from what advance calls back.
+    /// Throws if the call comes from a callback of advance().
     void require_between_steps(const char* call) const;
-    /// Takes out what is gone, derives what is new, wakes what rests beside either. It is left until somebody needs
-    /// it, so that many changes in a row cost it once. Called by whatever goes over all rows, hands out what lies in
-    /// them or asks who rests, functions that only look included; one row is found without. Draws round bodies, too.
+    /// Removes rows that are gone, computes derived columns of new rows, wakes bodies that rest beside either, and
+    /// draws round bodies. It is deferred until it is needed, so that many changes in a row cost it once. Every
+    /// function that walks all rows, returns their contents or asks which bodies rest calls it, const ones too. Finding
+    /// one row does not.
     void settle();
-    /// Puts what only draws round bodies where it belongs; `resting`: some came to rest in the last step.
+    /// Updates the nodes that only draw round bodies. `resting`: some bodies came to rest in the last step.
     void draw(bool resting = false);
 
 private:
     void erase_gone_rows();
 };
 
-/// For what stands beside World: tests, and what reads and writes whole worlds.
+/// Access for code beside World: tests, and functions that read and write whole worlds.
 struct WorldAccess {
     static WorldState& state_of(World& world) {
         world.state_->settle();
@@ -69,7 +70,7 @@ struct WorldAccess {
     }
 };
 
-/// What lies at a place in a WorldState, for messages: "nodes.velocity".
+/// Name of the column or value at an address inside a WorldState, for messages: "nodes.velocity".
 std::string name_of_column(void* world, const void* place);
 
 }  // namespace skerry

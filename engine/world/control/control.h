@@ -1,4 +1,4 @@
-// What changes between steps without rows that come or go.
+// Changes between steps that neither add nor remove rows.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace skerry {
 
 // control_bodies.cpp
-/// Refuses positions of the nodes of a body that turn one of its tetrahedra inside out; those that are inside out now
-/// may stay so.
+/// Refuses node positions of a body that turn one of its tetrahedra inside out. Tetrahedra that are inside out already
+/// may stay so. Throws SceneError.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
                      const char* field);
-/// Puts the nodes of a body there, which is looked at anew for contacts, overlaps and the step that it stands.
+/// Moves the nodes of a body, which is checked anew for contacts, overlaps and its stable step.
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 
 // control_collisions.cpp
-/// Before a slot is used again: no pair of it is switched off.
+/// To be called before a slot is used again: enables all of its pairs.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 

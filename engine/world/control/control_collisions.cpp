@@ -1,4 +1,4 @@
-// Who may touch whom: groups, masks, pairs that are switched off.
+// Which objects may touch: groups, masks and disabled pairs.
 #include <algorithm>
 
 #include "engine/world/control/control.h"
@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// A pair of handles by rows.
+/// A pair given by handles, as rows.
 struct RowPair {
     PairKind kind;
     Index first, second;
@@ -34,7 +34,7 @@ void look_for_overlaps_of_collider(Model& model, Index collider) {
     if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
 }
 
-/// Its pairs are found again, and it and what it touches or will touch do not rest.
+/// Has the pairs of a body found again. Wakes it and all bodies that it touches or may touch.
 void find_pairs_of(WorldState& world, Index body) {
     const auto b = static_cast<std::size_t>(body);
     world.cache.forget_body(world.model, b);

@@ -1,4 +1,4 @@
-// A body goes on as another kind: deformable, rigid or implicit.
+// Conversion of a body to another kind: explicit, implicit or rigid.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
@@ -44,10 +44,10 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
         refuse(model, body, "dynamics", "a change of what has a joint", "one of a body without joints");
 }
 
-/// Of a free body.
+/// Motion of a free body as a whole.
 struct WholeMotion {
-    Vec3 center;                      // m, of mass
-    Vec3 momentum, angular_momentum;  // kg m/s, kg m^2/s about the centre
+    Vec3 center;                      // centre of mass [m]
+    Vec3 momentum, angular_momentum;  // the latter about the centre [kg m/s, kg m^2/s]
 };
 
 Real mass_of_nodes(const Model& model, std::size_t body) {
@@ -73,7 +73,7 @@ WholeMotion motion_of(const Model& model, std::size_t body) {
     return {center, nodes.momentum, nodes.angular_momentum};
 }
 
-/// Moves an explicit body as a whole, so that it has these momenta.
+/// Adds a rigid motion to an explicit body, so that it has these momenta.
 void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
     const Vec3 center = center_of_nodes(model, body);
     const NodeMotion has = motion_of_nodes(model, body, center);
@@ -85,8 +85,8 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Appends the body once more, as what it becomes: in the shape of its mesh, at rest. What gives it no stable step
-/// leaves no row.
+/// Appends the body once more as the new kind, in the shape of its mesh and at rest. If it has no valid stable step the
+/// row is removed again and SceneError is thrown.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;
@@ -127,7 +127,7 @@ void copy_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Nothing is left to relax in the body's present shape, as if it had been held for long.
+/// Sets the viscous strain to that of a body held in its present shape for a long time: nothing is left to relax.
 void relax_fully(Model& model, std::size_t body) {
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
@@ -145,7 +145,7 @@ void relax_fully(Model& model, std::size_t body) {
     }
 }
 
-/// Shape, motion and loads of `before`, of which `after` is all that its kind can have.
+/// Gives `after` the shape, motion and loads of `before`, as far as its kind can have them.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
@@ -155,7 +155,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     model.note_loads(after, false);
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
-        return;  // its new shape may overlap something: looked at as at a start
+        return;  // its new shape may overlap something: it is checked as at a start
     }
     model.body_records[after].settled = model.body_records[before].settled;
     copy_rows(model.nodes.position, from, to);

@@ -1,4 +1,4 @@
-// Joints come and go, and are driven, between steps (docs/methods/joints.md).
+// Adds, removes and drives joints between steps (docs/methods/joints.md).
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -94,7 +94,7 @@ BodyHandle first_of(const Model& model, std::size_t joint) {
     return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(model.joints.first[joint])]);
 }
 
-/// Whether another joint keeps the same bodies from touching.
+/// Whether another joint disables contact between the same bodies.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
         const bool same = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||

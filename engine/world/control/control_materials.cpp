@@ -1,4 +1,4 @@
-// Materials of bodies that are there, and surfaces of single bodies and colliders.
+// Changes of materials in use, and of surfaces of single bodies and colliders.
 #include <algorithm>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// All that a change of material writes of a body, to be put back.
+/// Copy of all data of a body that a change of material overwrites, to restore them.
 class KeptBody {
 public:
     KeptBody(Model& model, std::size_t body) : body_(body) {
@@ -134,7 +134,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
     std::vector<std::size_t> bodies = bodies_of(model, row);
-    // those with frames last: they stand any step, so that what is refused has not come to them
+    // bodies with frames come last: any step is stable for them, so a refusal comes before they change
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {
@@ -152,7 +152,7 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
         for (const std::size_t body : bodies) weigh(model, body);
         model.clusters_open |= !bodies.empty();
         settle_clusters(model, state_->scratch.stiffness_sum);
-        // what does not relax any more leaves both as they are, and the step swaps them
+        // materials that no longer relax leave both columns unchanged, and the step swaps them
         model.elements.viscous_strain_next = model.elements.viscous_strain;
         state_->clock.kick_before = 0;
     }
@@ -179,7 +179,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     const SurfaceProperties next = surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
-    state_->edits.places.add_collider(model, row, time());  // what rests on it
+    state_->edits.places.add_collider(model, row, time());  // wakes bodies that rest on it
 }
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// How colliders and attachments move from now on. Both have a script: constant velocities since a time, or keys.
+// Changes the motion of colliders and attachments. Both have a script: constant velocities since a time, or keyframes.
 #include <vector>
 
 #include "engine/world/control/control.h"
@@ -35,7 +35,7 @@ struct Scripted {
             }
         script().key_begin = script().key_end = static_cast<Index>(table.keyframe.size());
     }
-    /// From a pose on, by constant velocities.
+    /// Starts at a pose with constant velocities.
     void start(const RigidPose& pose, const Vec3& velocity, const Vec3& angular_velocity, Real now) const {
         if (has_keys()) erase_keys();
         script().velocity = velocity;
@@ -60,7 +60,7 @@ struct Scripted {
 template <class Table>
 Scripted(Table&, std::size_t) -> Scripted<Table>;
 
-/// A product of many rotations is one only to rounding, which would add up.
+/// Restores a rotation matrix: products of many rotations are rotations only up to rounding, which would add up.
 RigidPose without_rounding(const RigidPose& pose) {
     return {pose.position, Eigen::Quaternion<Real>(pose.rotation).normalized().toRotationMatrix()};
 }
@@ -70,7 +70,7 @@ bool is_at(const RigidPose& pose, const Pose& target) {
            (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
 }
 
-/// Returns false where that is how it moves already.
+/// Returns false if the velocities are unchanged.
 template <class Table>
 bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
     const MotionScript& script = scripted.script();
@@ -94,7 +94,7 @@ void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, R
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
         return;
     const Vec3 rotation = rotation_vector(from.rotation);
-    // keys turn by their difference where both have one axis
+    // keyframes with a common axis turn by the difference of their angles
     scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
 }
 
@@ -124,15 +124,15 @@ std::string title_of_attachment(const Model& model, std::size_t attachment) {
     return "attachment of body '" + model.body_records[body].name + "'";
 }
 
-/// What moves with a collider, and the collider itself.
+/// Calls `change` for a collider and for the attachment that moves its mesh.
 void for_each_script(Model& model, Index collider, auto&& change) {
     change(Scripted{model.colliders, static_cast<std::size_t>(collider)});
     if (const Index a = attachment_of(model, collider); a != no_index)
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Where the nodes of a body are once an attachment is at a pose. What deforms in the frame of that attachment goes
-/// with it, but for what others hold.
+/// Node positions of a body after its attachment was moved to a pose. Free nodes that deform in the frame of this
+/// attachment move with it; nodes held by other attachments do not.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;
@@ -154,7 +154,8 @@ std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, cons
     return position;
 }
 
-// `object` says what is refused. It is asked only then: a control loop allocates nothing.
+// `object` is a function that names the refused object. It is called only then, so that a control loop allocates
+// nothing.
 
 void require_velocities(auto&& object, const Vec3& velocity, const Vec3& angular_velocity) {
     if (velocity.allFinite() && angular_velocity.allFinite()) return;
@@ -220,7 +221,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
     if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
-    state_->edits.places.add_collider(model, c, time());  // what it was under
+    state_->edits.places.add_collider(model, c, time());  // for bodies that it supported
     const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {
         const auto of_mesh = static_cast<std::size_t>(a);
@@ -231,7 +232,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     model.colliders.motion[c] = {there.position, there.rotation, Vec3::Zero(), Vec3::Zero()};
     model.collider_records[c].settled = model.settled = false;
     state_->cache.forget_collider(model, c);
-    state_->edits.places.add_collider(model, c, time());  // what it is in now
+    state_->edits.places.add_collider(model, c, time());  // for bodies at its new place
 }
 
 void World::set_pose(AttachmentHandle attachment, const Pose& pose) {

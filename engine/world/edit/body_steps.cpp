@@ -1,4 +1,4 @@
-// What a body takes from its materials: masses, how its elements relax, and the step that it stands.
+// Properties that a body derives from its materials: masses, relaxation of elements and the stable step.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,8 +20,8 @@ namespace skerry {
 
 namespace {
 
-/// m/s, of waves along a thin bar, sqrt(E / rho). Of several materials with their mean density and a modulus halfway,
-/// by factors, between the bounds of all mixtures: one beside the other (Voigt) and one behind the other (Reuss).
+/// Speed of waves along a thin bar, sqrt(E / rho) [m/s]. For several materials: mean density and the geometric mean of
+/// the bounds of the modulus of all mixtures, in parallel (Voigt) and in series (Reuss).
 Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
     Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
     for (const MaterialZone& zone : zones) {
@@ -39,7 +39,7 @@ Real bar_speed(const Model& model, const NewBody& body, std::span<const Material
     return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
 }
 
-/// How the elements of a body relax, whose stable step would be `step` (s) if they did not. `speed`: bar_speed.
+/// Sets the relaxation of the elements of a body. `step`: stable step without relaxation [s]. `speed`: bar_speed.
 void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
                     Real step) {
     ElementBlockTable& elements = model.elements;
@@ -55,7 +55,7 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
 
 }  // namespace
 
-/// In the order in which the mesh comes to their materials.
+/// The zones are in the order in which their materials first occur in the mesh.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
     std::vector<MaterialZone> zones;
     for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
@@ -89,7 +89,7 @@ RoundMass round_mass(const Model& model, const NewBody& body) {
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
-    if (body.core_nodes > 0) {  // what draws it is inside it
+    if (body.core_nodes > 0) {  // its drawn mesh is inside it
         const std::span<Real> mass = rows_of(nodes.mass, range);
         const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = round_mass(model, body).sum();
         for (Real& of_node : mass) of_node *= whole / drawn;
@@ -108,13 +108,13 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // in groups, as large bodies are, forms lose some of what they gain
+    // in groups, which large bodies have, mass forms lose some of their gain
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Smoothed elements are near the limit by forms; nearer to it energies of the highest frequencies are off by more.
+    // Smoothed elements are near the limit with mass forms. Nearer to it, energies of the highest frequencies err more.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
-    constexpr Real least_gain = 1.1;  // for which a body is looked at in two ways where it is strained
+    constexpr Real least_gain = 1.1;  // least gain that is worth two evaluations of a strained body
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
     kernels().find_frame_masses(model.all_elements(), blocks, position, model.nodes.mass, products_of_frame, in_frame,
@@ -183,7 +183,7 @@ void remember_elements(Model& model, Index row, const NewBody& body, ElementPlac
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
     if (body.kind != BodyKind::deformable || body.has_frame()) return;
-    constexpr std::size_t most_known = 64;  // a mesh that comes is compared with so many
+    constexpr std::size_t most_known = 64;  // each new mesh is compared with so many
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     KnownElements& known = model.known_elements.emplace_back();
     known.body = row;

@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Of the surface, widened by a length, m.
+/// Box of the surface, widened by a length [m].
 Aabb box_of_body(const Model& model, std::size_t body, Real by) {
     Aabb box = empty_box();
     for (const Index node :

@@ -1,4 +1,4 @@
-// Where something came, went or changed: what rests there may have lost what held it, or have something in it now.
+// Places of additions, removals and changes. Bodies asleep there may have lost their support or may now overlap.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace skerry {
 
-/// Places are those of the moment at which they are added.
+/// Each place is recorded as it is when it is added.
 class ChangedPlaces {
 public:
-    /// The box of a body, or of a mesh collider.
+    /// Adds the box of a body, or of a mesh collider.
     void add_body(const Model& model, std::size_t body);
-    /// That of a collider of any shape; `now`: s.
+    /// Adds the box or plane of a collider of any shape. `now`: present time [s].
     void add_collider(const Model& model, std::size_t collider, Real now);
     bool empty() const { return boxes_.empty() && planes_.empty(); }
-    /// Ends the rest of all bodies that are nearer to a place than a mean edge of theirs and the contact distances:
-    /// whatever touches is. Costs a look at the surfaces of bodies that rest. Forgets the places.
+    /// Wakes all bodies that are nearer to a place than their mean edge plus the contact distances; this includes all
+    /// that touch it. Costs a pass over the surfaces of sleeping bodies. Clears the places.
     void wake_near(Model& model);
 
 private:

@@ -1,4 +1,4 @@
-// Whether a body is better explicit or implicit (docs/methods/implicit_bodies.md 6).
+// Choice between explicit and implicit dynamics for a body (docs/methods/implicit_bodies.md 6).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,21 +10,21 @@ namespace skerry {
 
 namespace {
 
-// What implicit bodies cost, by the number of nodes: power laws through what profile_implicit_factor --steps prints
-// for cubes of 125 to 2,197 nodes that lie on a face.
+// Cost of implicit bodies by number of nodes: power laws fitted to the output of profile_implicit_factor --steps for
+// cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
-constexpr Real step_time = 2.5e6, step_power = 1.75;  // ns
-// Of a step, what contacts take, which is due in every short one, too: half and more of a cube on a face.
+constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
+// Fraction of a step spent on contacts, which every short step needs too: half or more for a cube on a face.
 constexpr Real contact_share = 0.5;
-constexpr Real factor_time = 150e6, factor_power = 2.7;  // ns, and the columns of what it touches
-constexpr Real factors_a_second = 1;                     // of simulated time: other lengths of the step
-/// What it has to cost less by: vibrations are damped, and the figures are rough.
+constexpr Real factor_time = 150e6, factor_power = 2.7;  // factorisation, with the columns of whatever it touches [ns]
+constexpr Real factors_a_second = 1;                     // per second of simulated time: changes of the step length
+/// Least factor that it must save, since vibrations are damped and the estimates are rough.
 constexpr Real least_saving = 2;
-constexpr Real most_strain = 0.02;  // beyond it linear elasticity is no good
-constexpr Real fall = 10;           // times its own size: as far as it may come down, where nobody says
+constexpr Real most_strain = 0.02;  // linear elasticity is invalid beyond it
+constexpr Real fall = 10;           // height that it may fall, in multiples of its size
 
-/// Of the material that strains most: by the weight of the body, and where it is stopped at its own speed or at that of
-/// a fall, v/c, as in a bar.
+/// Largest strain of its materials: under the weight of the body, and v/c as in a bar that is stopped at the initial
+/// speed or that of a fall.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
@@ -42,11 +42,11 @@ Real largest_strain(const Model& model, const NewBody& body) {
 }
 
 struct ExplicitBody {
-    Real step;      // s, that it stands
-    Real elements;  // their number
+    Real step;      // stable step [s]
+    Real elements;  // number of elements
 };
 
-/// The body alone in a model of its own.
+/// Step and elements of the body alone in a model of its own.
 ExplicitBody as_explicit(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;

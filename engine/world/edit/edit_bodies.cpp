@@ -1,4 +1,4 @@
-// Bodies come between steps. A body is a range of rows in every table.
+// Adds bodies between steps. A body is a range of rows in every table.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -20,10 +20,10 @@ namespace skerry {
 
 namespace {
 
-// m, of what find_inversions knows
+// initial bound of find_inversions: nothing has been checked [m]
 constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
 
-constexpr Real default_contact_distance = 0.02;  // of the mean surface edge: thin against what the mesh can resolve
+constexpr Real default_contact_distance = 0.02;  // times the mean surface edge: small against the mesh resolution
 
 Range appended(std::size_t before, std::size_t after) {
     return {static_cast<Index>(before), static_cast<Index>(after)};
@@ -51,7 +51,7 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// What all zones have, or, where `smoothed` stands for both, the one with nodes; of none, linear.
+/// The common kind of all zones; if `smoothed` stands for both kinds, the one with nodes; without zones, linear.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
@@ -59,7 +59,7 @@ ElementKind kind_of(std::span<const MaterialZone> zones) {
     return kind;
 }
 
-/// Masses of the nodes, and the initial rigid motion about the centre of mass.
+/// Sets the masses of the nodes and the initial rigid motion about the centre of mass.
 void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     if (body.kind == BodyKind::kinematic) return;  // no mass: inverse mass 0
@@ -93,7 +93,7 @@ Real mean_edge_length(const Model& model, Range edges) {
     return edges.size() > 0 ? sum / edges.size() : 0;
 }
 
-/// Of triangles that only draw a body.
+/// Mean edge length of triangles that only draw a body [m].
 Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> nodes) {
     Real sum = 0;
     for (const auto& triangle : triangles)
@@ -104,8 +104,7 @@ Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span
     return sum / static_cast<Real>(3 * triangles.size());
 }
 
-/// Smallest altitude of the tetrahedra: three times the volume over the largest face.
-/// m, of all tetrahedra; 0 without any.
+/// Smallest altitude of all tetrahedra: three times the volume over the largest face; 0 without tetrahedra [m].
 Real smallest_altitude(const NewBody& body) {
     Real smallest = std::numeric_limits<Real>::infinity();
     for (const auto& tetrahedron : body.tetrahedra)
@@ -113,7 +112,7 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// A new body as the tables have it: rows, and where the elements of the list stand.
+/// The rows of a new body in the tables, and the places of the elements of its list.
 struct BodyRows {
     Index row;
     Range nodes, tetrahedra;
@@ -128,8 +127,8 @@ void append_elements_of(Model& model, const ElementList& list, BodyRows& rows) {
     start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
 }
 
-/// The triangles that the user gave, or the boundary of the tetrahedra, which the body has among its rows unless it is
-/// round; local nodes.
+/// Triangles of the surface in local nodes: those that the user gave, or the boundary of the tetrahedra. The latter are
+/// among the rows of the body unless it is round.
 std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
     if (body.core_nodes > 0) {
@@ -172,9 +171,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     BodyRows rows{row, nodes, {}, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
-    // what moves as rigid bodies do has tetrahedra, and no elements
+    // rigid and implicit bodies have tetrahedra, but no elements in the tables
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
-    // As they lie in the mesh, until all that does not depend on it is known: bodies of one mesh have the same then.
+    // Elements are rotated last, after all data that do not depend on it: bodies of one mesh share these data.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
@@ -226,7 +225,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         remember_elements(model, row, body, std::move(rows.places));
     }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
-    // to the last bit what a look finds that comes before the body has moved
+    // bitwise equal to an evaluation made before the body has moved
     bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;

@@ -1,4 +1,4 @@
-// Colliders and attachments come and go between steps.
+// Adds and removes colliders and attachments between steps.
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +19,7 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
-/// The pose at time 0 of what is at `pose` now and moves by constant velocities: scripts count from time 0.
+/// Pose at time 0 of an object that is at `pose` now and moves at constant velocities: scripts start at time 0.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -41,7 +41,7 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
-/// The smallest rotation that takes the z axis to a direction; half a turn about x takes it to its opposite.
+/// The smallest rotation that takes the z axis to a direction; half a turn about x for the opposite direction.
 Mat3 turn_from_z(const Vec3& direction) {
     const Vec3 axis(-direction.y(), direction.x(), 0);
     const Real sine = axis.norm();
@@ -49,8 +49,8 @@ Mat3 turn_from_z(const Vec3& direction) {
     return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
 }
 
-/// Where the shape's own frame is in the collider's. A plane is given by a point and a normal; in its own frame it is z
-/// = 0.
+/// Pose of the shape's own frame in that of the collider. A plane is given by a point and a normal; in its own frame it
+/// is z = 0.
 RigidPose shape_frame(const Shape& shape) {
     if (const auto* plane = std::get_if<Plane>(&shape)) return {plane->point, turn_from_z(plane->normal)};
     return {Vec3::Zero(), Mat3::Identity()};
@@ -60,11 +60,11 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Appends the same motion for the shape's own frame, whose turns are not about the axes of the motion's: rotations of
-/// it are known but for whole turns, so there are more keys where those of the motion are far apart.
+/// Appends the motion for the shape's own frame, whose rotations are not about the axes of the given motion. They are
+/// known only up to whole turns, so keyframes are added where those of the motion are far apart.
 MotionScript append_script_of_shape(const Motion& motion, const RigidPose& frame, Column<Keyframe>& keyframe) {
     if (frame.position.isZero(0) && frame.rotation == Mat3::Identity()) return append_script(motion, keyframe);
-    constexpr Real most = 2;  // rad, between keys
+    constexpr Real most = 2;  // between keyframes [rad]
     Column<Keyframe> keys;
     const MotionScript script = append_script(motion, keys);
     Motion of_shape = motion;

@@ -17,7 +17,7 @@ void lower(Range& range, Index by) {
     range.end -= by;
 }
 
-/// What the rows of one body name, all of it rows of its own.
+/// Renumbers the rows that one body refers to; they are all its own rows.
 class RowsOfBody {
 public:
     RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Index>& down)
@@ -120,14 +120,14 @@ private:
     OfBodyTables<Index> down_;
 };
 
-/// Takes rows out of what has one entry a row.
+/// Removes records, of which there is one for each row.
 template <class Record>
 void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
     std::size_t row = 0;
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Keys of the scripts that go; ranges of others that have none may lie anywhere.
+/// Removes rows with the keyframes of their scripts. Empty ranges of other scripts may lie anywhere.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)
@@ -154,7 +154,7 @@ void erase_attachments(const RowMoves& moves, Model& model) {
     model.attachment_map.rows_moved(moves.attachment_now);
 }
 
-/// Those of bodies that are gone went with them.
+/// Renumbers the bodies of joints. Joints of removed bodies were removed with them.
 void renumber_joints(const RowMoves& moves, JointTable& joints) {
     for (Column<Index>* const side : {&joints.first, &joints.second})
         for (Index& body : *side)
@@ -171,7 +171,7 @@ void erase_colliders(const RowMoves& moves, Model& model) {
         if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
 }
 
-/// Clusters are of other bodies: where one goes that has elements, all are found anew.
+/// Renumbers clusters, all of other bodies. If a body with elements is removed, all clusters are found anew.
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)
@@ -228,7 +228,7 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
     table.node.erase(nodes);
     table.anchor.erase(nodes);
     erase_scripts(gone, table);
-    Index end = 0;  // lists lie one behind the other
+    Index end = 0;  // lists are contiguous
     for (Range& of_row : table.nodes) {
         of_row = {end, end + of_row.size()};
         end = of_row.end;

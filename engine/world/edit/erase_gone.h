@@ -1,5 +1,5 @@
-// Rows of bodies and colliders that are gone are taken out of all tables at once: each row behind the first of them is
-// moved and renumbered once, however many there are.
+// Removes the rows of erased bodies and colliders from all tables at once. Each row after the first of them is moved
+// and renumbered once, however many are gone.
 #pragma once
 
 #include "components/contact_table.h"
@@ -9,16 +9,16 @@
 namespace skerry {
 
 // erase_from_cache.cpp
-/// Pairs of what is gone go, and their contacts at rest; others keep what is known of them. Impulses to start from
-/// stay, since their keys name bodies by slot. `body_of_node` as it was before.
+/// Removes pairs with erased partners and their contacts at rest; other pairs keep their data. Impulses of the warm
+/// start stay, since their keys name bodies by slot. `body_of_node`: from before the removal.
 void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactCache& cache);
-/// Contacts of a step. Returns the rows that went.
+/// Removes contacts of a step. Returns the rows removed.
 std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
 
 // erase_gone.cpp
-/// Patches of the bodies behind the first that is gone are left to Model::extend_derived.
+/// Patches of the bodies after the first erased one are left to Model::extend_derived.
 void erase_gone(const RowMoves& moves, Model& model);
-/// Rows of a table of what moves by scripts, with their keys; ascending.
+/// Removes rows of scripted colliders or attachments with their keyframes. `gone` is ascending.
 void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table);
 void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table);
 

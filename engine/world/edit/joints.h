@@ -1,4 +1,4 @@
-// Rows of joints go, and the points of their bodies move.
+// Removal of joints, and velocities of points of bodies.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace skerry {
 
-/// Takes the rows that are marked out of the table. No handle names them any more.
+/// Removes the marked rows from the table. No handle names them any more.
 void erase_joints(std::span<const std::uint8_t> gone, Model& model);
 
-/// Those of a body, which goes: what it is joined to wakes.
+/// Removes the joints of a body that will be removed, and wakes the bodies joined to it.
 void erase_joints_of(std::size_t body, Model& model);
 
-/// Of a point that moves with a body; zero of the world, `body` no_index.
+/// Motion of a point that moves with a body; zero for the world (`body` is no_index).
 struct PointVelocity {
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // m/s, rad/s
 };

@@ -1,4 +1,4 @@
-// A row of MaterialTable, and what settings make of it.
+// The values of a row of MaterialTable, from the table or from settings.
 #pragma once
 
 #include "components/material_table.h"
@@ -33,7 +33,7 @@ struct MaterialRow {
         table.poisson_ratio[row] = poisson_ratio;
         table.damping[row] = damping;
     }
-    /// Whether elements are the same: their forces, masses and losses.
+    /// Whether both give elements the same forces, masses and losses.
     bool same_elements(const MaterialRow& other) const {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&

@@ -11,12 +11,12 @@ namespace skerry {
 
 namespace {
 
-/// Of the solid that tetrahedra fill, or of a sphere, or a capsule or cylinder along z, in the frame of the mesh.
+/// Mass properties of a solid in the frame of its mesh: filled tetrahedra, or a sphere, capsule or cylinder along z.
 struct MassProperties {
-    Real mass = 0;               // kg
-    Vec3 center = Vec3::Zero();  // m
-    Vec3 moments;                // kg m^2
-    Mat3 axes;                   // principal frame to that of the mesh
+    Real mass = 0;               // [kg]
+    Vec3 center = Vec3::Zero();  // [m]
+    Vec3 moments;                // principal moments of inertia [kg m^2]
+    Mat3 axes;                   // principal frame to frame of the mesh
 };
 
 MassProperties mass_properties(const Model& model, const NewBody& body) {
@@ -46,7 +46,7 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
         found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
     }
     found.center /= found.mass;
-    Mat3 second = Mat3::Zero();  // kg m^2, integral of x x^T: m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T)
+    Mat3 second = Mat3::Zero();  // integral of x x^T: m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T) [kg m^2]
     for (std::size_t t = 0; t < mass.size(); ++t) {
         Mat3 squares = Mat3::Zero();
         Vec3 sum = Vec3::Zero();
@@ -89,7 +89,7 @@ Mat3 frame_of_mesh(const RigidBodyTable& table, std::size_t r) {
     return table.rotation[r] * table.axes[r].transpose();
 }
 
-/// What nodes have beside the motion of the body as a whole, in the frame of the mesh; empty where it is rigid.
+/// Motion of the nodes relative to the body as a whole, in the frame of the mesh; empty for a rigid body.
 struct Deformation {
     std::span<Vec3> displacement, velocity;
 
@@ -99,7 +99,7 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// After what deforms in its frame was written by hand. What is free and deforms by much turns as its shape does.
+/// To be called after the deformation was overwritten. The frame of a free body with large strain follows its shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -166,13 +166,13 @@ void follow_weight(Model& model, std::size_t body) {
 
 namespace {
 
-/// Of a mesh frame in which nodes have their rest positions.
+/// The mesh frame in which nodes are nearest to their rest positions.
 struct NearestFrame {
-    Vec3 center, rest_center;  // m
+    Vec3 center, rest_center;  // [m]
     Mat3 rotation;
 };
 
-/// `weight(n)`: of a node of the body.
+/// `weight(n)`: weight of a node of the body.
 NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const Vec3> position, auto&& weight) {
     NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
     Real mass = 0;
@@ -193,7 +193,7 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
     return frame;
 }
 
-/// By masses.
+/// Weighted with the masses of the nodes.
 NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
     const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
     return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
@@ -210,7 +210,7 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
     Vec3 along = Vec3::Zero();
     for (const Index node : nodes)
         if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
-    constexpr Real thin = 1e-6;  // of the length: a line
+    constexpr Real thin = 1e-6;  // fraction of the length: below it nodes are on a line
     for (const Index node : nodes)
         if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
     return false;
@@ -218,7 +218,7 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
 
 namespace {
 
-/// `position`: of what an attachment holds, in its order.
+/// `position`: of the nodes that an attachment holds, in its order.
 NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span<const Vec3> position) {
     std::vector<Vec3> rest;
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment]))
@@ -226,7 +226,7 @@ NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span
     return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
 }
 
-/// What deforms in the frame of a held body, from its nodes.
+/// Computes the deformation of a held body in its frame from its nodes.
 void write_held_shape(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -372,8 +372,8 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
 
 namespace {
 
-/// As follow_node_velocities, where strain is large: with the angular momentum that they give the solid, nodes keep
-/// their velocities to rounding.
+/// Works as follow_node_velocities, for large strain: the angular momentum is that of the deformed solid, and nodes
+/// keep their velocities to rounding.
 void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocity) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -413,7 +413,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        set_motion(table, r, velocity, turn);  // as it turns at rest
+        set_motion(table, r, velocity, turn);  // with the inertia at rest
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
@@ -427,7 +427,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// In the frame of a held body nodes have momenta of their own.
+/// Sums over nodes: those of a held body have momenta of their own.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

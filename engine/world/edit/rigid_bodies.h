@@ -1,4 +1,4 @@
-// Rigid bodies as they come, and after something else than a step has moved their nodes.
+// Creation of rigid bodies, and their update after nodes were moved by anything but a step.
 #pragma once
 
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace skerry {
 
-/// Gives a body, whose nodes are there, the row of RigidBodyTable that its mesh makes.
+/// Appends the row of RigidBodyTable of a body whose nodes already have rows.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Mass and inertia again, after densities have changed; it goes on with the velocity that it has.
+/// Recomputes mass and inertia after densities have changed; the velocities stay the same.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
-/// Where a rigid body is whose nodes are at `position`, and how far the farthest of them is from where it has them
-/// then.
+/// The pose of a rigid body that is nearest to given node positions. `misfit`: greatest distance of a node of this pose
+/// from its given position.
 struct RigidFit {
     Vec3 center;
     Mat3 rotation;  // principal frame to world
@@ -24,48 +24,48 @@ struct RigidFit {
 };
 RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position);
 
-/// Where the frame of its mesh is, of a body that deforms the nearest.
+/// Pose of the mesh frame; for a deforming body, of the nearest rigid placement.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// Whether nodes (local numbers) hold a rigid body as a whole, or the frame of an implicit one: three of them that are
-/// not on one line.
+/// Whether nodes (local numbers) hold a rigid body as a whole, or the frame of an implicit one: three of them must not
+/// lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Which attachments hold whole bodies or their frames, and where: what is derived of the rows of attachments.
+/// Finds the attachments that hold whole bodies or their frames, and the held poses, from the rows of attachments.
 void find_holders(Model& model);
-/// After an implicit body was attached or let go, or its held nodes put elsewhere: its frame is that of its attachment
-/// or its own, and what deforms in it is what leaves nodes where they are, with the velocities that they have.
+/// To be called after an implicit body was attached or released, or its held nodes were moved. Its frame becomes that
+/// of its attachment, or its own. Its deformation is chosen so that all nodes keep their positions and velocities.
 void follow_attachments(Model& model, std::size_t body);
 
-/// After a free implicit body was weighed again: it turns as its shape does, as fast as it did.
+/// To be called after a free implicit body was weighed again: its inertia follows its shape, its spin stays the same.
 void follow_weight(Model& model, std::size_t body);
 
-/// Of the nodes of a body as points, about a centre.
+/// Momenta and inertia of the nodes of a body as point masses, about a centre.
 struct NodeMotion {
     Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s
     Mat3 inertia = Mat3::Zero();                                    // kg m^2
 };
 NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& center);
-/// Gives it momentum (kg m/s) and angular momentum about its centre (kg m^2/s); what deforms it stays.
+/// Sets momentum [kg m/s] and angular momentum about the centre [kg m^2/s]; the deformation stays.
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
-/// Takes its momenta.
+/// Sets both momenta to zero.
 void stop_rigid_body(Model& model, std::size_t body);
-/// The pose of a body, and its nodes where that has them. Angular momentum and velocity stay as they are.
+/// Sets the pose of a body and moves its nodes with it. Angular momentum and velocity stay as they are.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
-/// The pose of a body that moves implicitly nearest to these positions, and what is beside it as its deformation.
+/// Gives an implicit body these node positions: its pose is the nearest one, the remainder is its deformation.
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
-/// The rigid motion nearest to the velocities of its nodes; the rest deforms it, where it can.
+/// Takes the rigid motion nearest to the velocities of the nodes. The remainder becomes deformation, where possible.
 void follow_node_velocities(Model& model, std::size_t body);
 
-/// What a body carries that has a row of RigidBodyTable; zero for others.
+/// Energies and momenta of a body with a row of RigidBodyTable; zero for other bodies.
 struct RigidSums {
     Real kinetic = 0, elastic = 0;         // J
     Vec3 momentum = Vec3::Zero();          // kg m/s
-    Vec3 angular_momentum = Vec3::Zero();  // kg m^2/s, about the origin
+    Vec3 angular_momentum = Vec3::Zero();  // about the origin [kg m^2/s]
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
-/// The same of the nodes that move in the frame of a held implicit body.
+/// Energies and momenta of the free nodes of a held implicit body; `elastic` is that of the whole body.
 RigidSums moving_sums(const Model& model, std::size_t body);
-/// N, what elasticity does to the nodes of an implicit body, by node of it, world.
+/// Elastic forces on the nodes of an implicit body, by local node, in world axes [N].
 std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);
 
 }  // namespace skerry

@@ -8,7 +8,7 @@ bool is_marked(std::span<const std::uint8_t> marks, std::size_t row) {
     return row < marks.size() && marks[row] != 0;
 }
 
-/// Where the rows of a table go, of which some are gone.
+/// Collects the rows of a table that are gone, and the new numbers of all rows.
 void number_rows(std::size_t count, auto&& is_gone, std::vector<Range>& gone, std::vector<Index>& row_now) {
     Index next = 0;
     for (std::size_t row = 0; row < count; ++row) {

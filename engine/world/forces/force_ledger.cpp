@@ -38,8 +38,8 @@ bool rests(const Model& model, Index body) {
     return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
 }
 
-/// N and N m: by an attachment on what deforms in an implicit body, through the nodes that count for it, and on the
-/// frame where that is its own.
+/// Force and moment of an attachment on the deformation of an implicit body, through the nodes that count for it [N,
+/// N m]. If the attachment holds the frame of the body, the moment on the frame is included.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -56,12 +56,12 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// Implicit bodies take their steps at once (docs/methods/time_stepping.md 1.5).
+/// Implicit bodies take a whole step at once (docs/methods/time_stepping.md 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
 }
 
-/// Whether nothing but implicit bodies moves.
+/// Whether all bodies of the pair are implicit.
 bool is_implicit(const Model& model, const PairKey& key) {
     return is_implicit(model, body_row(model, key.first)) &&
            (!key.bodies || is_implicit(model, body_row(model, key.second)));
@@ -89,7 +89,7 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// As in the last step before they came to rest, by the second.
+/// Uses the forces of the last step before the bodies came to rest, as sums over one second.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -108,14 +108,14 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Forces and moments of elements on the nodes that an attachment holds are what a motion of these nodes alone changes
-/// the elastic energy by (virtual work). `contact_force`: N, by node.
+/// The forces and moments of elements on held nodes follow from virtual work: the change of elastic energy when only
+/// these nodes move. `contact_force`: by node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
     motion.assign(nodes.position.size(), Vec3::Zero());
     std::vector<std::uint8_t> taken(nodes.position.size(), 0);
-    // From the last attachment back, as in measure_reactions.
+    // In reverse order of attachments, as in measure_reactions.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Index body = model.attachments.body[a];
         if (model.attachments.slot[a] == no_slot || !rests(model, body)) continue;
@@ -199,7 +199,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// What a pair does at the end of a step: rest goes on as it was while the two were still, and how it was is noted.
+/// Ends the step of a pair. While both bodies rest, the mean sums of their still time go on. Otherwise these are
+/// updated.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -278,7 +279,7 @@ void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> res
 }
 
 void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scratch) {
-    // From the last attachment back, as in measure_reactions.
+    // In reverse order of attachments, as in measure_reactions.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own

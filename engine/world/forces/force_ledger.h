@@ -1,5 +1,5 @@
-// Sums of what contacts and attachments give over a call of advance, while somebody asks for them. No step depends on
-// it.
+// Sums of contact and attachment forces over a call of advance, while a user has requested them. No step depends on
+// them.
 #pragma once
 
 #include <compare>
@@ -18,7 +18,7 @@ struct Model;
 struct StepScratch;
 struct ForceReport;
 
-/// Names partners as handles do, so that rows may come and go. Pairs with a collider come first.
+/// Names partners by slot, as handles do, so that rows may come and go. Pairs with a collider come first.
 struct PairKey {
     bool bodies = false;                  // the second is a body, not a collider
     std::uint32_t first = 0, second = 0;  // slots
@@ -28,27 +28,27 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Largest of the steps of a call, and those of the last one.
+    /// Largest force and contact counts of the steps of a call, and the sums of the present step.
     struct Peak {
-        Real largest_force = 0;  // N
+        Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
-        // of the present step
-        Vec3 impulse = Vec3::Zero();  // N s
+        // sums of the present step
+        Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
         void add(const Vec3& more, Index of_contacts) {
             impulse += more;
             step_contacts += of_contacts;
         }
-        /// `kick`: s, for which loads act in it.
+        /// `kick`: time for which loads act in the step [s].
         void end_step(Real kick);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
         PairKey key{};
-        ContactSums sums{};   // of the call
-        ContactSums still{};  // since one of the two last moved
+        ContactSums sums{};   // sums over the call
+        ContactSums still{};  // sums since one of the two last moved
         Real still_seconds = 0;
-        Index still_contacts = 0;  // of the last step that was not rest
+        Index still_contacts = 0;  // contacts of the last step in which one of the two was awake
         Peak peak{};
         bool touched = false;  // in the present step
     };
@@ -60,20 +60,22 @@ public:
 
     bool on() const { return on_; }
     const Vec3& moment_point() const { return moment_point_; }
-    /// s, for which forces have acted in the call on what `row` of BodyTable moves; no_index: on all but implicit
-    /// bodies.
+    /// Time for which forces have acted in the call on the body in `row` of BodyTable [s]; no_index: on anything that
+    /// is not an implicit body.
     Real seconds_on(const Model& model, Index row) const;
-    /// The same of a pair: of both where both are implicit.
+    /// Time for which forces have acted in the call on a pair [s]. The implicit interval counts only if all its bodies
+    /// are implicit.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
-    /// What holds bodies that rest already is as it was when they came to rest.
+    /// Starts measuring. Supports of bodies already at rest count with the forces of the time when they came to rest.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
-    /// Before the first step of a call, or after a call that took none. `held_velocity`: by node, of held nodes.
+    /// To be called before the first step of a call, or after a call that took no step. Stores the velocity of held
+    /// nodes.
     void begin_call(const Model& model, StepScratch& scratch);
-    /// After a step that was committed. `rested`: by body, whether it was at rest when the step began.
+    /// To be called after a committed step. `rested`: by body, whether it was at rest when the step began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// After leapfrog has let positions drift by so many seconds, with new velocities of held nodes.
+    /// To be called after leapfrog has let positions drift by `seconds`, with new velocities of held nodes.
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);
@@ -95,14 +97,14 @@ private:
     void add_reactions(const Model& model, std::span<const std::uint8_t> rested, const StepScratch& scratch);
 
     bool on_ = false;
-    Vec3 moment_point_ = Vec3::Zero();  // m
-    // s, for which forces acted on implicit bodies (`whole`), and on others
+    Vec3 moment_point_ = Vec3::Zero();  // [m]
+    // intervals in which forces acted on implicit bodies (`whole`) and on others (`kick`) [s]
     struct Seconds {
         Real whole = 0, kick = 0;
     };
     Seconds step_, call_;
-    Real measured_seconds_ = 0;   // s, since forces are measured
-    std::vector<PairRow> pairs_;  // by key
+    Real measured_seconds_ = 0;   // time since measuring began [s]
+    std::vector<PairRow> pairs_;  // sorted by key
     // by slot
     std::vector<Peak> bodies_, colliders_;
     std::vector<AttachmentRow> attachments_;

@@ -15,7 +15,7 @@ void expect_ascending(const Hdf5File& file, const std::string& path, const auto&
         file.complain(path, "keys in disorder", "ascending keys");
 }
 
-/// In a step smaller numbers count as zero.
+/// A step treats smaller numbers as zero.
 void expect_step(const Hdf5File& file, const std::string& path, Real step) {
     if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
 }
@@ -60,7 +60,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
             file.complain("/pairs/second", at_row(second, p), "the same body");
     }
 
-    // either none, which starts a search, or one for each
+    // either no rows, which starts a search, or one for each
     const SearchState& search = cache.search;
     const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
         if (found != 0) expect_size(file, path, found, expected);

@@ -34,7 +34,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
-/// A handle of each row, and a row of each handle that lives.
+/// Checks that each row has a handle, and each live handle a row.
 template <class Handle>
 void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {
@@ -124,7 +124,7 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// Rows of the tables that a body has ranges of.
+/// Checks the rows of the tables in which bodies have ranges.
 void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     const NodeBlockTable& blocks = model.node_blocks;
     const ElementBlockTable& elements = model.elements;
@@ -232,8 +232,7 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// What follows from the lists of nodes is put beside them.
-/// Columns of no rows: nothing has been looked at yet.
+/// Columns may be empty: then no stable step has been evaluated yet.
 void check_watch(const Hdf5File& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();
@@ -245,6 +244,7 @@ void check_watch(const Hdf5File& file, const Model& model) {
     expect_between(file, "/watch/progress/body", std::array{watch.body}, 0, watch.kept);
 }
 
+/// Also computes the columns that follow from the lists of nodes.
 void check_clusters(const Hdf5File& file, Model& model) {
     NodeClusters& clusters = model.clusters;
     const std::size_t count = clusters.body.size();

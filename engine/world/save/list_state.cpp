@@ -117,7 +117,7 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     list_ragged("/run/start/moved_name", start.moved_name, archive);
     archive.column("/run/start/translation", start.translation);
     archive.value("/last_step/kick", world.scratch.parameters.kick);
-    const AnyTable contacts(saved.contacts);  // scratch of the step, of which the last is kept to be shown
+    const AnyTable contacts(saved.contacts);  // scratch data; those of the last step are kept for queries
     for (const ColumnInfo& info : contacts.columns())
         archive.column(std::string("/last_step/contacts/") + info.name, contacts.column(info));
 }

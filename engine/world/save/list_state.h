@@ -1,4 +1,4 @@
-// The only list of the contents of a saved world: the code that writes files and the code that reads them both walk it.
+// The only list of the contents of a saved world, used by the code that writes files and by the code that reads them.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ private:
 };
 
 void list_settings(Settings& settings, SavedRows& saved, Archive& archive);
-/// Everything but the settings, with which a world is made.
+/// Lists everything but the settings, which are needed to make a world.
 void list_state(WorldState& world, SavedRows& saved, Archive& archive);
 
 }  // namespace skerry

@@ -19,7 +19,7 @@ namespace skerry {
 
 namespace {
 
-/// Columns in which a number may be infinite: bounds that nothing has, and the lanes that are left over.
+/// Columns with numbers that may be infinite: bounds without a value, and unused lanes.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 18> paths{"/watch/step",
                                                      "/watch/look/in_frame",
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    using Place = FunctionRef<std::byte*(std::size_t)>;  // makes room for so many rows
+    using Place = FunctionRef<std::byte*(std::size_t)>;  // returns memory for that many rows
 
     void put_value(const std::string& path, void* value, const RowType& type) override {
         read(path, type, [&](std::size_t count) {
@@ -80,7 +80,7 @@ private:
         });
         check(path, type, rows, count);
     }
-    /// The first member makes room for all.
+    /// Reads members one by one. The first one allocates all rows.
     void read_members(const std::string& path, const RowType& type, Place place) const {
         std::byte* rows = nullptr;
         std::size_t count = 0;
@@ -134,7 +134,7 @@ private:
     const Hdf5File& file_;
 };
 
-/// As the world had them, but for what runs it.
+/// Settings of the saved world, except for the backend and the number of threads.
 Settings settings_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
     list_settings(settings, saved, reader);
@@ -151,13 +151,13 @@ Settings settings_of(const Hdf5File& file, const LoadSettings& wanted, Reader& r
     return settings;
 }
 
-/// What is not saved is made from what is.
+/// Derives all data that are not saved from the saved ones.
 void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
-    // laws that have no frame leave both as they are, and the step swaps them
+    // material laws without a frame leave both columns unchanged, and the step swaps them
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
@@ -165,7 +165,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);
-    world.cache.search.memory.sphere.resize(model.bodies.slot.size());  // room that a broad search would make
+    world.cache.search.memory.sphere.resize(model.bodies.slot.size());  // memory that a broad search would allocate
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);
     world.scratch.contacts = saved.contacts;

@@ -1,4 +1,4 @@
-// Values of a world beside its tables, by the names that their members have in a file.
+// Values of a world outside its tables, by the names of their members in a file.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// All but its columns and the look, and what is found anew before each step.
+/// All members but the columns, the look, and data found anew before each step.
 template <>
 struct MembersOf<StepWatch> {
     static auto list() {
@@ -92,7 +92,7 @@ struct MembersOf<RunCounters> {
     }
     static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "a member is not saved");
 };
-/// All but step_size, which may be none.
+/// All members but step_size, which may be absent.
 template <>
 struct MembersOf<Settings> {
     static auto list() {

@@ -1,5 +1,5 @@
-// What a file holds that lies in a world otherwise than in columns: made from the world before it is saved, and put
-// into it after it is read.
+// Data that a file stores in another form than the world does: converted before the world is saved, and back after it
+// is read.
 #pragma once
 
 #include <string>
@@ -10,56 +10,56 @@
 
 namespace skerry {
 
-/// Meshes of bodies and colliders, each once: equal ones are one.
+/// Meshes of bodies and colliders. Equal meshes are stored once.
 struct SavedMeshes {
     Column<Index> of_body;
-    Ragged<Vec3> nodes;                       // m, at rest
+    Ragged<Vec3> nodes;                       // rest positions [m]
     Ragged<std::array<Index, 4>> tetrahedra;  // nodes of the mesh
     Ragged<std::array<Index, 3>> surface;
-    // of BodyRecord::element_tetrahedra
+    // parts of BodyRecord::element_tetrahedra
     Ragged<Index> covered_offset, covered_item;
 };
 
-/// What was found before the first step. Handles as slot and generation.
+/// Overlaps found before the first step. Handles are stored as slot and generation.
 struct SavedStart {
     Column<std::array<std::uint32_t, 6>> overlap;  // the two bodies, the collider
     Column<OverlapKind> kind;
-    Column<std::array<Real, 7>> measure;  // m, depth; direction; place
+    Column<std::array<Real, 7>> measure;  // depth, direction, place [m]
     Column<std::uint8_t> resolved;
     Ragged<std::uint8_t> first_name, second_name, moved_name;
     Column<std::array<std::uint32_t, 2>> moved;
-    Column<Vec3> translation;  // m
+    Column<Vec3> translation;  // [m]
 };
 
 struct SavedRows {
-    Real step_size = 0;  // s, of the settings; 0: none
+    Real step_size = 0;  // Settings::step_size; 0: none [s]
     SavedMeshes meshes;
-    std::uint32_t world = 0;  // the number that handles bear
+    std::uint32_t world = 0;  // number of the world in its handles
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
-    Column<DynamicsReason> choice_reason;           // of BodyRecord::choice, and
-    Column<std::array<Real, 7>> choice_estimate;    // its members in their order
-    Ragged<Index> tetrahedron_material;             // of BodyRecord
+    Column<DynamicsReason> choice_reason;           // reason of BodyRecord::choice
+    Column<std::array<Real, 7>> choice_estimate;    // other members of BodyRecord::choice in their order
+    Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
-    Column<ColliderShape> shape_kind;               // the alternative of Shape, and
-    Column<std::array<Real, 6>> shape_size;         // m, its members in their order, then zeros
+    Column<ColliderShape> shape_kind;               // alternative of Shape
+    Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros [m]
     Ragged<Candidate> candidates;                   // by pair
-    Column<Real> asleep_until;                      // m, by candidate
+    Column<Real> asleep_until;                      // by candidate [m]
     Column<StepLimit> limit;
     Column<std::uint32_t> limit_slot, limit_generation;
     Ragged<std::uint8_t> limit_name;
     Column<std::uint64_t> limit_steps, limit_tries;
     Column<Real> limit_seconds;
     SavedStart start;
-    ContactTable contacts;  // of the last step, unless it was refused
+    ContactTable contacts;  // those of the last step; empty if it was refused
 };
 
 SavedRows rows_to_save(const WorldState& world);
 
-// Each complains by `file` about what does not fit to the columns of the world, or to itself.
-/// Meshes and names of bodies and colliders. Their ranges in the tables must have been checked.
+// The functions below throw SceneError that names `file` if data do not fit the columns of the world or each other.
+/// Restores meshes and names of bodies and colliders. Their ranges in the tables must have been checked.
 void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
-/// Candidates of pairs, and what kept steps from being longer. Surfaces must have been built.
+/// Restores candidates of pairs. Surfaces must have been built.
 void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
 void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
 void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);

@@ -1,4 +1,4 @@
-// Files that hold a whole world (docs/save_restore.md): a head of text and an HDF5 file behind it.
+// Files that hold a whole world (docs/save_restore.md): a head of text followed by an HDF5 file.
 #pragma once
 
 #include <filesystem>
@@ -8,20 +8,20 @@
 
 namespace skerry {
 
-/// What a file is told to hold beside the world: a text of whoever saves it.
+/// Data that a file holds besides the world: a text of the caller.
 struct SavedNote {
     std::string text;
 };
 
-/// All that World::save writes. Changes nothing of the world.
+/// Does all that World::save does. The world does not change.
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file);
 
 struct LoadedWorld {
     World world;
     SavedNote note;
 };
-/// What World::load reads. `compare_hash`: whether the world must be the very one that was saved. Without it any values
-/// that fit together are taken: for tests of what reads them.
+/// Reads a file as World::load does. `compare_hash`: refuse a world whose hash differs from the saved one. Without it
+/// any values that fit together are accepted, for tests of the code that reads them.
 LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings, bool compare_hash = true);
 
 }  // namespace skerry

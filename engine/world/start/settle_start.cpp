@@ -1,4 +1,4 @@
-// Before the first step after something was added: overlaps are found, and taken apart, refused or left.
+// Finds overlaps before the first step after something was added; they are resolved, refused or left.
 #include <algorithm>
 #include <map>
 
@@ -33,7 +33,7 @@ StartOverlap report_of(const Model& model, const PairOverlap& found) {
     return report;
 }
 
-/// Moves bodies apart in rounds: what overlaps is looked for, and everything found so far is satisfied at once.
+/// Moves bodies apart in rounds. Each round searches for overlaps and then satisfies all gaps found so far at once.
 class MoveApart {
 public:
     MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
@@ -60,17 +60,17 @@ public:
     }
 
 private:
-    /// The shift of the first of a pair, less that of the second, has to come this far along a direction.
+    /// A required gap: least shift of the first body of a pair minus that of the second, along a direction.
     struct Gap {
-        Vec3 direction;  // unit
-        Real least;      // m
+        Vec3 direction;  // unit vector
+        Real least;      // [m]
     };
 
     [[noreturn]] void refuse(const PairOverlap& found, const std::string& why) const {
         refuse_overlap(report_of(model_, found), others_, why);
     }
 
-    /// 1/kg; 0 for what stays where it is: what is held, what has made a step, a collider.
+    /// Inverse mass; 0 for immovable partners: held bodies, bodies that have made a step, mesh colliders [1/kg].
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
         const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.bodies.pinned_count[b] > 0 ||
@@ -79,7 +79,8 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Half through, it is a matter of chance on which side the way out is shorter.
+    /// Greatest depth at which the way out is certain. If a body is half through, the shorter way out is a matter of
+    /// chance.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
         if (!pair.is_analytic && search_.has_inside(pair.second))
@@ -116,7 +117,7 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// In a corner a pair has several; a new one of about the same direction takes the place of the old.
+    /// Adds a required gap. In a corner a pair has several; a new one replaces those of nearly the same direction.
     void ask_for(const PairOverlap& found) {
         constexpr Real about_the_same = 0.9;  // cosine
         const Vec3& direction = found.overlap.direction;
@@ -126,11 +127,11 @@ private:
         gaps.push_back(gap);
     }
 
-    /// Pair after pair, until none has to move by more than a part of what is left free. Of each pair the common centre
-    /// of mass stays.
+    /// Sweeps over the pairs until none has to move by more than a fraction of its margin. The common centre of mass of
+    /// a pair stays in place.
     void satisfy() {
         constexpr int most_sweeps = 1000;
-        constexpr Real slack = 0.1;  // of the margin
+        constexpr Real slack = 0.1;  // fraction of the margin
         bool moving = true;
         for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
             moving = false;
@@ -148,8 +149,8 @@ private:
 
     const Model& model_;
     StartSearch& search_;
-    std::map<StartPair, std::vector<Gap>> gaps_;  // in the order of the rows
-    std::size_t others_ = 0;                      // overlaps beside the one that is looked at
+    std::map<StartPair, std::vector<Gap>> gaps_;  // sorted by rows
+    std::size_t others_ = 0;                      // overlaps besides the reported one
 };
 
 std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {

@@ -1,4 +1,4 @@
-// What is said of overlaps at the start, and how they are refused.
+// Messages about overlaps at the start, and their refusal.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Throws SceneError: names those of an overlap, says how many others there are, and why they stay.
+/// Throws SceneError. It names the partners of an overlap, the number of other overlaps, and the reason `why` it stays.
 [[noreturn]] void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::string& why);
 
 }  // namespace skerry

@@ -14,10 +14,10 @@ namespace skerry {
 
 namespace {
 
-// Of the mean edge: a larger contact distance is no measure of what touches, nor of how far things are moved apart.
+// Fraction of the mean edge. A larger contact distance measures neither touch nor the distance to move bodies apart.
 constexpr Real largest_margin = 0.02;
 
-/// The nearest that a box comes to what is behind a plane, m; below 0: it is there.
+/// Whether a box reaches behind a plane.
 bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
@@ -92,7 +92,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
-    // what is less counts as touching in a step, too
+    // a smaller depth counts as touch in a step, too
     if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
     return overlap;
 }
@@ -111,7 +111,7 @@ std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
         second->motion.position += shift(pair.second);
         return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // of a round body and one with faces, the faces that draw it: overlaps that are less are left to the steps
+    // a round body and one with faces: uses the faces that draw the round one; smaller overlaps are left to the steps
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }

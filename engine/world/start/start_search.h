@@ -1,4 +1,4 @@
-// Who overlaps whom before anything moves (docs/decisions/0017-start-overlaps.md).
+// Search for overlaps before anything moves (docs/decisions/0017-start-overlaps.md).
 #pragma once
 
 #include <memory>
@@ -11,11 +11,11 @@
 
 namespace skerry {
 
-/// A body with another, with that of a mesh collider, or with an analytic collider.
+/// A body with another body, with the body of a mesh collider, or with an analytic collider.
 struct StartPair {
     Index first;       // row of BodyTable, deformable
     Index second;      // row of BodyTable, or of ColliderTable
-    bool is_analytic;  // it is of the latter
+    bool is_analytic;  // `second` is a row of ColliderTable
 
     auto operator<=>(const StartPair&) const = default;
 };
@@ -25,26 +25,26 @@ struct PairOverlap {
     Overlap overlap;
 };
 
-/// Looks at a world as it is, with bodies moved as a whole by what `move` says; the world stays as it is.
+/// Searches a world in its present state, with bodies shifted by `move`; the world stays as it is.
 class StartSearch {
 public:
-    /// Colliders are where their motion has them at `now` (s).
+    /// Colliders are at the poses that their motion gives for `now` [s].
     StartSearch(const Model& model, Real now);
 
-    /// All pairs that overlap and of which one is not settled, in the order of their rows.
+    /// All overlapping pairs with at least one partner that is not settled, in the order of their rows.
     std::vector<PairOverlap> find_all();
-    /// Pairs whose boxes overlap, of which one is not settled and one is marked (by row of BodyTable).
+    /// Pairs whose boxes overlap, with a partner that is not settled and one that is marked (by row of BodyTable).
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> look_at(const StartPair& pair);
 
     void move(Index body, const Vec3& by) { shift_[static_cast<std::size_t>(body)] += by; }
     std::span<const Vec3> shifts() const { return shift_; }
     const Vec3& shift(Index body) const { return shift_[static_cast<std::size_t>(body)]; }
-    /// m, of the box of a body.
+    /// Extent of the box of a body [m].
     Vec3 extent(Index body) const;
-    /// m: what is left free between two that are moved apart: their contact distance, if it is not out of proportion.
+    /// Gap left between two bodies that are moved apart: their contact distance, unless that is disproportionate [m].
     Real margin(const StartPair& pair) const;
-    /// A closed surface or tetrahedra: what is pushed half through it may as well come out on the other side.
+    /// Whether it has a closed surface or tetrahedra. A body pushed half through it may come out on the other side.
     bool has_inside(Index body) { return solid(body).closed; }
 
 private:
@@ -53,19 +53,19 @@ private:
     bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
-    /// m: two that are in each other by less cannot be told from two that touch.
+    /// Depth below which an overlap cannot be told from contact [m].
     Real rounding(const StartPair& pair) const;
-    /// Where it has been moved, if it is one.
+    /// The body at its shifted place if it is a sphere or capsule.
     std::optional<RoundSolid> round(Index body) const;
     std::optional<Overlap> look_at_bodies(const StartPair& pair);
     std::optional<Overlap> look_at_collider(const StartPair& pair);
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;
 
     const Model& model_;
-    std::vector<RigidMotion> collider_;  // where it is
-    std::vector<Aabb> box_;              // of bodies, before they are moved
+    std::vector<RigidMotion> collider_;  // their poses
+    std::vector<Aabb> box_;              // of bodies, before their shifts
     std::vector<Vec3> shift_;
-    std::vector<std::unique_ptr<Solid>> solid_;  // of those that were looked at
+    std::vector<std::unique_ptr<Solid>> solid_;  // of bodies that were checked so far
 };
 
 }  // namespace skerry

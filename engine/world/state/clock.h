@@ -1,24 +1,24 @@
-// Where a world stands in time.
+// The times of a world.
 #pragma once
 
 #include "components/types.h"
 
 namespace skerry {
 
-/// A step of implicit bodies in which the others take several. None between calls of advance.
+/// A long step of the implicit bodies, in which all others take several steps. None is open between calls of advance().
 struct LongStepClock {
-    Real length = 0;  // s; 0: there is none
-    Real left = 0;    // s, to its end
+    Real length = 0;  // length of the long step; 0: there is none [s]
+    Real left = 0;    // time to its end [s]
 };
 
-/// All of it is state: the next step depends on it.
+/// All members are state: the next step depends on them.
 struct Clock {
-    Real time = 0;    // s, start of the next step
-    Real offset = 0;  // s, by which positions are ahead of velocities; only leapfrog, and only within advance
-    // s, of the last step: velocities are half of it behind positions (symplectic Euler); 0: no step yet
+    Real time = 0;    // start of the next step [s]
+    Real offset = 0;  // lead of positions over velocities; nonzero only with leapfrog, within advance() [s]
+    // length of the last step; velocities are half of it behind positions (symplectic Euler); 0: no step yet [s]
     Real step_before = 0;
-    // s, for which forces acted in it, while elements know what relaxed in it; else 0. Only what is booked as lost
-    // depends on it.
+    // Interval over which forces acted in the last step, while elements still know its relaxed strain; else 0 [s]. Only
+    // the booked dissipation depends on it.
     Real kick_before = 0;
     LongStepClock long_step;
 };

@@ -1,5 +1,5 @@
-// What is remembered of contacts from step to step: impulses to start from, contacts of what rests, close pairs and
-// their candidates.
+// Contact data that outlive a step: impulses for the warm start, contacts of resting bodies, close pairs and their
+// candidates.
 #pragma once
 
 #include "components/contact_table.h"
@@ -16,11 +16,11 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Forgets what is believed of distances: of a body and within it, which was moved by hand, or of a collider. All
-    /// pairs of it are found and searched again in the next step, and no others.
+    /// Forgets all known distances of a body that was moved by hand (to others and within itself), or of a collider.
+    /// All its pairs are found and searched again in the next step, and no others.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
-    /// Bodies and colliders have come, of which nothing is known.
+    /// Adds rows for new bodies and colliders, about which nothing is known.
     void extend(const Model& model);
 };
 

@@ -1,4 +1,5 @@
-// What the explicit elements of one mesh and material have in common, as far as it takes longer to find than to copy.
+// Data shared by the explicit elements of all bodies with one mesh and material: those that are slower to find than to
+// copy.
 #pragma once
 
 #include "components/column.h"
@@ -9,21 +10,21 @@
 
 namespace skerry {
 
-/// In which order the elements of a body stand, how they share masses and relax, and the step that they stand, as the
-/// mesh lies: a function of mesh, materials and `element` alone. Kept from when the body comes
-/// until the world is settled or rows of bodies move.
+/// Order of the elements of a body, their mass shares and relaxation, and their stable step in the shape of the mesh.
+/// All of it is a function of mesh, materials and `element` alone. Kept from the time the body is added until the world
+/// is settled or rows of bodies move.
 struct KnownElements {
-    Index body;           // that has the mesh and the materials
-    ElementKind element;  // as it was asked for
+    Index body;           // row of the body that has the mesh and the materials
+    ElementKind element;  // the kind that was requested
 
     ElementPlaces places;
     Column<ElementLane> mass_share, relaxation_rate, own_frequency;
     Column<ElementForm> mass_form;
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound, relaxing_share;
-    Real rest_step;  // s
+    Real rest_step;  // stable step at rest [s]
 
-    /// Of each: what is known, and the column of the model.
+    /// Calls `visit` with each known column and its column of the model.
     static void for_each_column(auto& known, auto& elements, auto&& visit) {
         visit(known.mass_share, elements.mass_share);
         visit(known.relaxation_rate, elements.relaxation_rate);

@@ -1,4 +1,4 @@
-// What is simulated: bodies, colliders, attachments, materials and gravity, as they are now.
+// The simulated objects in their present state: bodies, colliders, attachments, materials and gravity.
 #pragma once
 
 #include <array>
@@ -37,27 +37,27 @@
 
 namespace skerry {
 
-/// Slot of an attachment that belongs to a mesh collider: no user has a handle to it.
+/// Slot of an attachment that belongs to a mesh collider: users have no handle to it.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
-/// What only a person or a file reads of a body.
+/// Data of a body that only users and files read.
 struct BodyRecord {
     std::string name;
-    ElementKind element;                           // never `smoothed`: one of the two that it stands for
-    ElementKind asked;                             // what it was added with, and has where its dynamics change
+    ElementKind element;  // never `smoothed`, but one of the two kinds that it stands for
+    ElementKind asked;    // the kind requested by the user; used again where the dynamics change
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
-    std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: all have that of the body
-    // the tetrahedra that the element at each place of its blocks covers; none in a lane that is left over
+    std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: the material of the body
+    // the tetrahedra covered by the element at each place of its blocks; none in an unused lane
     Ragged<Index> element_tetrahedra;
-    bool settled = false;       // it was looked at for overlaps
-    DynamicsEstimate choice{};  // of BodyDynamics::automatic
+    bool settled = false;       // it was checked for overlaps
+    DynamicsEstimate choice{};  // estimate of BodyDynamics::automatic
 };
 
 struct ColliderRecord {
     std::string name;
     Shape shape;
-    bool settled = false;  // as BodyRecord::settled
+    bool settled = false;  // it was checked for overlaps
 };
 
 struct Model {
@@ -69,7 +69,7 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     ElementPatches patches;  // derived: extend_derived
-    // Of the implicit elements. State: the matrices of elements that have stiffened were updated, not made anew.
+    // Clusters of the implicit elements. State: matrices of elements that have stiffened were updated, not made anew.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
     ImplicitNodeTable implicit_nodes;
@@ -91,17 +91,17 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
-    std::vector<KnownElements> known_elements;     // of bodies that came since the world was settled
+    std::vector<KnownElements> known_elements;     // one for each mesh added since the world was settled
 
-    Column<Real> body_mass;  // kg, of all nodes of a body, held ones, too; derived: extend_derived
-    // bodies, colliders or settings have changed since it was last decided which elements are implicit
+    Column<Real> body_mass;  // mass of all nodes of a body, including held ones [kg]; derived: extend_derived
+    // bodies, colliders or settings have changed since the implicit elements were last chosen
     bool clusters_open = true;
-    bool settled = true;      // all bodies and colliders are
+    bool settled = true;      // true if all bodies and colliders are settled
     bool loaded = false;      // some node has a load; derived: derive_all, note_loads
-    Index loaded_bodies = 0;  // that have one; derived: derive_all, note_loads
-    bool any_asleep = false;  // some body rests; derived: note_rest. While none does, no stage asks
+    Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
+    bool any_asleep = false;  // some body rests; derived: note_rest. If false, no stage tests for rest
 
-    /// The number that its handles bear.
+    /// Sets the world number that its handles carry.
     void set_world(std::uint32_t number);
 
     Index row(BodyHandle body, const char* call) const;
@@ -115,25 +115,25 @@ struct Model {
     /// The elements of bodies that are neither asleep nor unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
-    /// The number of a tetrahedron in the mesh that the user gave, by its place in the table.
+    /// Number of a tetrahedron in the mesh that the user gave. `place`: its place in the table.
     Index user_tetrahedron(std::size_t body, Index place) const;
 
-    /// Ends the rest of one body, or of all.
+    /// Wakes one body, or all.
     void wake(std::size_t body);
     void wake_all();
-    /// Before a step: whether any body is out of it. Returns the mass of those that are in it, kg.
+    /// Before a step: notes whether any body is asleep. Returns the mass of all others [kg].
     Real note_rest();
-    /// After loads were set: those of one body, which had some before or not.
+    /// After loads of one body were set. `before`: it had loads before.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    /// A body that is round, as the shape of a collider, and where it is.
+    /// Shape and pose of a round body, in the form of a collider.
     struct RoundShape {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
     };
-    /// nullopt: it has faces.
+    /// nullopt: the body is not round but has faces.
     std::optional<RoundShape> round_shape(std::size_t body) const;
-    /// "sphere", "capsule" or "cylinder", of a body that is round.
+    /// "sphere", "capsule" or "cylinder", for a round body.
     const char* round_name(std::size_t body) const;
     bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
     BodyDynamics dynamics_of(std::size_t body) const {
@@ -141,7 +141,7 @@ struct Model {
                : bodies.implicit[body].size() == 0 ? BodyDynamics::rigid
                                                    : BodyDynamics::implicit_elastic;
     }
-    /// Whether it has a row of rigid_bodies: momentum is there, not with its nodes, and it has no elements.
+    /// Whether it has a row of rigid_bodies: that row holds its momentum, its nodes do not, and it has no elements.
     bool has_frame(std::size_t body) const { return bodies.rigid[body].size() > 0; }
     /// Whether an attachment holds a rigid body as a whole.
     bool is_held(std::size_t body) const {
@@ -150,32 +150,33 @@ struct Model {
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }
-    /// The elements that a body moving implicitly has, in no table; its nodes numbered from zero.
+    /// The elements of an implicit body, which are in no table. Its nodes are numbered from zero.
     ElementList elements_of_implicit(std::size_t body) const;
-    /// Makes stiff_bodies of a body that moves implicitly, from its record, masses and materials.
+    /// Computes stiff_bodies of an implicit body from its record, masses and materials.
     void stiffen(std::size_t body);
     /// Computes the derived columns of newly appended rows. Existing rows are unchanged.
     void extend_derived();
-    /// The same of all rows, and of loads, and what a step leaves of velocities where it has nothing to do.
+    /// Computes the derived columns of all rows, of loads, and the next velocities of bodies that a step skips.
     void derive_all();
-    /// After elements became implicit or explicit: of any body, or of those with a mark.
+    /// After elements became implicit or explicit: rebuilds the clusters of all bodies, or of those with a mark.
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
-    /// Whether a body has this mesh, to the last bit.
+    /// Whether a body has exactly this mesh (bitwise).
     bool has_mesh(std::size_t body, const RestMesh& mesh) const;
     /// The last of a few bodies before row `end` that has this mesh, or no_index.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
-    /// Surface and tree of one body, from its record and its shape at rest; the body must be the last that has rows in
-    /// these tables. What one just before it with the same mesh has is not found again.
+    /// Builds the surface and the tree of one body from its record and its rest shape. The body must be the last with
+    /// rows in these tables. Data of the body just before it with the same mesh are reused.
     void append_outline(std::size_t body);
-    /// The same by rows of a body just before it that has its mesh; false: there is none, and nothing was done.
+    /// Copies surface and tree of a body just before it with the same mesh. Returns false, and does nothing, without
+    /// one.
     bool append_outline_again(std::size_t body);
-    /// The same for all bodies, in place of what there is.
+    /// Rebuilds surfaces and trees of all bodies.
     void rebuild_outlines();
 
-    /// Those that for_each_table visits.
+    /// The tables that for_each_table visits.
     std::vector<AnyTable> tables();
     void for_each_table(auto&& visit) {
         visit("nodes", nodes);

@@ -1,5 +1,5 @@
-// Trees around the surfaces as they are now, for questions between steps. The boxes of BvhTable are those of the last
-// search of each body, and belong to the step.
+// Trees around the present surfaces, for queries between steps. The boxes of BvhTable belong to the step: they are
+// those of the last search of each body.
 #pragma once
 
 #include "components/bvh_table.h"
@@ -8,10 +8,10 @@
 namespace skerry {
 
 struct QueryTrees {
-    Column<Aabb> box;             // m, by row of BvhTable
-    Column<std::uint8_t> fitted;  // by body; empty: none is
+    Column<Aabb> box;             // by row of BvhTable [m]
+    Column<std::uint8_t> fitted;  // by body, whether its boxes are fitted; empty: none is
 
-    /// After nodes have moved, or rows.
+    /// To be called after nodes or rows have moved.
     void forget() { fitted.clear(); }
 };
 

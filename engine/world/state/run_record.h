@@ -1,4 +1,4 @@
-// What a run tells about itself. No step depends on any of it.
+// Records of a run about itself. No step depends on any of them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// Who wants to see contact problems. Idle, it costs a skipped stage.
+/// Subscription to contact problems. Without a subscriber it costs one skipped stage.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;
     std::uint64_t every = 1;
@@ -24,7 +24,7 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
-    std::vector<StartOverlap> start_overlaps;  // of the last look
+    std::vector<StartOverlap> start_overlaps;  // found by the last check
     std::vector<StartMove> start_moves;
     StepLimits limits;
     Balance balance;
@@ -33,10 +33,10 @@ struct RunRecord {
     ProblemWatch problem_watch;
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
-    std::vector<Contact> contact_view;  // what contacts() shows
-    Column<Index> contact_rows;         // of merge_contacts: which contact each of them is
+    std::vector<Contact> contact_view;  // the result of contacts()
+    Column<Index> contact_rows;         // from merge_contacts: the contact behind each entry of the view
     bool contact_view_is_current = false;
-    bool balance_of_rest = false;  // the last look at the balance was since nothing moves
+    bool balance_of_rest = false;  // the last check of the balance was made since all motion stopped
 };
 
 }  // namespace skerry

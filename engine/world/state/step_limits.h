@@ -1,4 +1,4 @@
-// What kept the steps of a run from being longer.
+// Causes that kept the steps of a run from being longer.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace skerry {
 
-/// Counts by cause and body. A pair of them that was seen before costs no allocation.
+/// Counts by cause and body. A known pair of the two costs no allocation.
 class StepLimits {
 public:
-    /// A committed step of `h` seconds.
+    /// Counts a committed step of `h` seconds.
     void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
-    /// A try that was given up.
+    /// Counts a try that was given up.
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
-    /// Most steps first.
+    /// Entries sorted by steps, most first.
     std::vector<StepLimitReport> report() const;
-    /// In the order in which they were first seen.
+    /// Entries in the order in which they were first seen.
     const std::vector<StepLimitReport>& entries() const { return entries_; }
     void restore(std::vector<StepLimitReport> entries) { entries_ = std::move(entries); }
 

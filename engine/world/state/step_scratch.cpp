@@ -33,7 +33,7 @@ StepParameters step_parameters(const Settings& settings) {
     step.collision.use_budgets = settings.contact_budgets;
     step.collision.continuous = settings.continuous_collision;
     step.solver = solver_settings(settings);
-    // below what keeps a pile that looks still from rest, and no more than a warm start gives at rest anyway
+    // small enough for a pile that looks still to come to rest, and no smaller than a warm start reaches at rest anyway
     constexpr Real still_tolerance = 1e-5;
     if (step.sleep.own_limits) step.solver.still_tolerance = still_tolerance;
     return step;

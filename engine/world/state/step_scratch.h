@@ -1,5 +1,5 @@
-// What the stages of one step hand to each other, and the memory they work in. Nothing here outlives the step, but for
-// contacts and regions, which can be looked at until the next one, and what a guess of the solver's cost is based on.
+// Data that the stages of one step pass to each other, and their working memory. Nothing here outlives the step, except
+// contacts and regions, readable until the next one, and the data for estimates of the solver's cost.
 #pragma once
 
 #include "components/contact_table.h"
@@ -24,14 +24,14 @@
 
 namespace skerry {
 
-/// What a step is asked to be. Written before its stages start; none of them writes it.
+/// Inputs of a step. Written before its stages start; no stage writes them.
 struct StepParameters {
-    Real h = 0;     // s, for which positions move
-    Real kick = 0;  // s, for which forces act: from the time of the velocities before the step to that of those after
-    // kick over that of the step before, of which elements still know what relaxed; 0: they do not
+    Real h = 0;     // time by which positions move [s]
+    Real kick = 0;  // time for which forces act: from the velocities before the step to those after it [s]
+    // `kick` over that of the step before, whose relaxed strain the elements still know; 0: they do not
     Real kick_over_last = 0;
-    Real longest = 0;             // s, that the next step may be at most, as far as is known
-    Real lag = 0;                 // s, by which velocities are behind positions at the kick
+    Real longest = 0;             // upper bound of the next step, as far as known [s]
+    Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
@@ -39,32 +39,32 @@ struct StepParameters {
     Real max_strain_step = 0;
     Real theta = 1;
     LongStepTimes long_step;
-    bool takes_long_steps = false;  // implicit bodies may
+    bool takes_long_steps = false;  // implicit bodies may take long steps
     SleepSettings sleep;
-    bool let_invert = false;           // the last of the tries to avoid it
-    bool forces_known = false;         // the try before this one left them: of the same step, and as long
-    bool problem_wanted = false;       // somebody wants to see the contact problem of this step
-    bool forces_wanted = false;        // somebody wants to know what contacts and attachments give
-    Vec3 moment_point = Vec3::Zero();  // m, that their moments are about
-    bool draws_late = false;           // what only draws round bodies is placed when somebody looks at it
+    bool let_invert = false;           // elements may turn inside out in this try
+    bool forces_known = false;         // the previous try of this step, with the same length, left valid forces
+    bool problem_wanted = false;       // the contact problem of this step was requested
+    bool forces_wanted = false;        // forces of contacts and attachments were requested
+    Vec3 moment_point = Vec3::Zero();  // reference point of their moments [m]
+    bool draws_late = false;           // nodes that only draw round bodies are placed on demand
 };
 
-/// What the stages find.
+/// Results of the stages.
 struct StepFindings {
     StepVerdict verdict;
     Inversions inversions;
-    Index crossings = 0;  // features that would go through each other: not zero, and the step is tried again
+    Index crossings = 0;  // features that would pass through each other; if not zero, the step is tried again
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
-    Index unstrained = 0;  // bodies whose elements do nothing in this step
-    Real relaxed = 0;      // J, taken out by what relaxes in the elements in this step
-    Real viscous = 0;      // J, by the viscosity of implicit elements in this step
-    Real damped = 0;       // J, taken out by damping in this step
-    // J, brought in by clusters that follow what has stiffened before this try
+    Index unstrained = 0;  // number of bodies whose elements are skipped in this step
+    Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
+    Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
+    Real damped = 0;       // energy dissipated by damping in this step [J]
+    // energy brought in before this try by clusters that follow stiffened elements [J]
     Real stiffened = 0;
-    StrainFindings strained;  // by the implicit steps of bodies
+    StrainFindings strained;  // results of the implicit steps of bodies
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
@@ -76,29 +76,29 @@ inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inve
     return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);
 }
 
-/// Node velocities that a step overwrites and its contact problem is made of.
+/// State that a step overwrites and that its contact problem consists of.
 struct KeptVelocities {
-    Column<Vec3> velocity;          // m/s, at the start of the step
-    Column<Vec3> velocity_next;     // m/s, predicted
-    Column<Vec3> position, center;  // m, of nodes and of rigid bodies, at the start of the step; where any is rigid
-    Column<Mat3> rotation;          // of rigid bodies, at the start of the step
-    Column<Vec3> angular_momentum;  // kg m^2/s, the same
-    Column<Vec3> deforming, deforming_before;  // m/s, of implicit bodies: kicked, at the start of the step
+    Column<Vec3> velocity;          // at the start of the step [m/s]
+    Column<Vec3> velocity_next;     // predicted [m/s]
+    Column<Vec3> position, center;  // places of nodes and rigid bodies at the start; only if any is rigid [m]
+    Column<Mat3> rotation;          // orientation of rigid bodies at the start of the step
+    Column<Vec3> angular_momentum;  // of rigid bodies at the start of the step [kg m^2/s]
+    Column<Vec3> deforming, deforming_before;  // implicit bodies: after the kick, at the start of the step [m/s]
 };
 
-/// What contacts and attachments give in one step.
+/// Impulses of contacts and attachments in one step.
 struct ForceScratch {
-    Column<PairSums> pairs;              // of sum_contact_impulses
-    Column<Vec3> held_impulse;           // N s, by node, the same
-    Column<Vec3> node_impulse;           // of measure_reactions
-    Column<ImpulseAndMoment> reactions;  // by attachment, the same
-    Column<Vec3> held_velocity;          // m/s, by node: of held nodes, after the step before
+    Column<PairSums> pairs;              // from sum_contact_impulses
+    Column<Vec3> held_impulse;           // by node, from sum_contact_impulses [N s]
+    Column<Vec3> node_impulse;           // from measure_reactions
+    Column<ImpulseAndMoment> reactions;  // by attachment, from measure_reactions
+    Column<Vec3> held_velocity;          // by node: velocity of held nodes after the previous step [m/s]
 };
 
-/// What the settings ask of the contact solver, whose defaults are theirs.
+/// Contact solver settings of a world. Their defaults are those of Settings.
 SolverSettings solver_settings(const Settings& settings);
 
-/// What the settings ask of every step.
+/// Parameters that the settings determine for every step.
 StepParameters step_parameters(const Settings& settings);
 
 struct StepScratch {
@@ -107,8 +107,8 @@ struct StepScratch {
     ContactTable contacts;
     JointBlockTable joints;
     RegionTable regions;
-    Real awake_mass = 0;      // kg, at the start of the step
-    bool ran_inline = false;  // on the calling thread alone
+    Real awake_mass = 0;      // mass of bodies not asleep at the start of the step [kg]
+    bool ran_inline = false;  // the stages ran on the calling thread alone
     bool left_out = false;    // no stage ran, since nothing moves
 
     SeparationMemory separation_memory;
@@ -116,19 +116,19 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Real> stiffness_sum;        // of stable_step, by node
-    Column<std::uint8_t> beside_fast;  // of check_state, by node
-    Column<Vec3> cluster_kick;         // of kick_clusters
-    Column<Real> cluster_work;         // of kick_clusters
-    ImplicitCoupling coupling;         // of couple_implicit_bodies
-    Column<StrainPart> strain_parts;   // of strain_implicit_bodies
-    Column<std::uint8_t> pressed;      // by body at rest, in this step
-    Column<ExternalWork> work_parts;   // of measure_work
-    InversionMemory inversions;        // of find_inversions
-    Column<WatchPart> watch_parts;     // of watch_stable_steps
-    Column<WatchPieces> watch_pieces;  // of keep_shapes
-    Column<Real> viscous_parts;        // of measure_viscosity
-    RestingMemory resting_memory;      // of keep_resting_contacts
+    Column<Real> stiffness_sum;        // by node, used by stable_step
+    Column<std::uint8_t> beside_fast;  // by node, used by check_state
+    Column<Vec3> cluster_kick;         // used by kick_clusters
+    Column<Real> cluster_work;         // used by kick_clusters
+    ImplicitCoupling coupling;         // used by couple_implicit_bodies
+    Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
+    Column<std::uint8_t> pressed;      // marks by body: sleeping bodies pressed by a contact in this step
+    Column<ExternalWork> work_parts;   // used by measure_work
+    InversionMemory inversions;        // used by find_inversions
+    Column<WatchPart> watch_parts;     // used by watch_stable_steps
+    Column<WatchPieces> watch_pieces;  // used by keep_shapes
+    Column<Real> viscous_parts;        // used by measure_viscosity
+    RestingMemory resting_memory;      // used by keep_resting_contacts
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

@@ -1,4 +1,4 @@
-// The loop that fills a span of time with steps, and what it does when one cannot be taken.
+// The loop that fills a time interval with steps, and its reaction when a step cannot be taken.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,18 +21,18 @@ std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() ? 128u : 64u;
 }
 
-/// Keeps the looks at stable steps going. Returns true when the energies are to be looked at, too.
+/// Keeps the evaluation of stable steps going. Returns true when the energies are due for a check, too.
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
-    world.record.balance.work += follow_stiffening(world.model);  // what bodies stand goes by it
+    world.record.balance.work += follow_stiffening(world.model);  // the stable steps depend on it
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
 }
 
-/// What the motion at the start of a call says of its first step.
+/// Limits of the first step of a call, from the motion at its start.
 Tries first_tries(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.settings.max_strain_step;
@@ -115,7 +115,7 @@ void note_inversions(WorldState& world, StepReport& report) {
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
 }
 
-/// Says that the step asked for was too long for a body.
+/// Records that the requested step was too long for a body.
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
@@ -127,7 +127,7 @@ void note_limit(WorldState& world, StepReport& report) {
     report.limited_by = world.model.body_records[static_cast<std::size_t>(body)].name;
 }
 
-/// Steps are counted with an int; a step so small that time does not move on by it would go on for ever.
+/// Refuses a call with too many steps: they are counted with an int, and a step too small to advance time never ends.
 void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
@@ -148,7 +148,7 @@ void require_countable(const Model& model, Real dt) {
         .raise();
 }
 
-/// Says that steps are being taken, until its end, however that comes.
+/// Marks the world as advancing for as long as it exists, also when an exception is thrown.
 class AdvanceScope {
 public:
     explicit AdvanceScope(bool& advancing) : advancing_(advancing) { advancing_ = true; }
@@ -183,7 +183,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    const ArithmeticScope arithmetic;  // what is done between the stages depends on the host no more than they do
+    const ArithmeticScope arithmetic;  // code between the stages must not depend on the host either
     settle_start();
     const AdvanceScope scope(world.advancing);
     Model& model = world.model;
@@ -197,13 +197,13 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    world.cache.crossings.row.clear();  // of a step that was given up: bodies may have changed since
+    world.cache.crossings.row.clear();  // rows of an abandoned step: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
-    world.scratch.parameters.draws_late = !model.loaded;  // loads ask for all nodes in every step
-    Real stiffened = 0;                                   // J, brought in by clusters since the last step
-    bool look_at_end = false;  // energies are those of one time only between calls of leapfrog
-    // by what is called back: the call ends between two steps all the same
+    world.scratch.parameters.draws_late = !model.loaded;  // loads need all nodes in every step
+    Real stiffened = 0;                                   // energy brought in by clusters since the last step [J]
+    bool look_at_end = false;  // with leapfrog, all energies belong to one time only between calls
+    // exception thrown by a callback: the call still ends between two steps
     std::exception_ptr thrown;
     const auto call_back = [&thrown](auto&& call) {
         try {
@@ -241,7 +241,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
-        stiffened += world.scratch.findings.stiffened;  // whatever becomes of the try
+        stiffened += world.scratch.findings.stiffened;  // for every outcome of the try
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -272,15 +272,15 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
-    clock.long_step = {};                // implicit bodies are where they are by now
-    world.cache.search.end_step(false);  // nothing, but where the call ends with a step that is not taken
+    clock.long_step = {};                // implicit bodies have reached this time
+    world.cache.search.end_step(false);  // has an effect only if the call ends with an abandoned step
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
-        stiffened += follow_stiffening(model);  // so that no try of the next call is the first to
+        stiffened += follow_stiffening(model);  // else some try of the next call would have to do it first
         world.record.balance.work += stiffened;
     }
     world.draw();

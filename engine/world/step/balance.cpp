@@ -16,7 +16,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;                        // kg m/s, sum of m |v|
+    Real momentum_size = 0;                        // sum of m |v| [kg m/s]
 };
 
 Present measure(const Model& model, Real lag) {
@@ -30,8 +30,8 @@ Present measure(const Model& model, Real lag) {
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
-    Real implicit = 0;           // J
-    Vec3 kicked = now.momentum;  // kg m/s, of what is kicked; nodes in led frames take their steps at theta
+    Real implicit = 0;           // [J]
+    Vec3 kicked = now.momentum;  // momentum of kicked bodies; nodes in held frames take theta steps [kg m/s]
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
         if (model.is_held(b) && model.is_rigid(b)) continue;
@@ -43,8 +43,8 @@ Present measure(const Model& model, Real lag) {
         if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
-    // Half of the next kick, to first order, but for that of contacts. With v of before and after a kick elastic bodies
-    // keep m v.v' / 2 and their elastic energy together, as leapfrog does.
+    // Half of the next kick to first order, without its contact part. With the velocities v and v' before and after a
+    // kick, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
@@ -67,7 +67,7 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// Moving nodes pull at held ones through the inertia of the implicit elements between them.
+/// Whether an implicit element has a held node: its inertia lets moving nodes pull at the held one.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();
@@ -100,7 +100,7 @@ void add_step(const StepScratch& step, Balance& balance) {
                       contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
-    // what cancels, as weight does what holds it, has been exchanged as well
+    // impulses that cancel each other, as weight and support do, have been exchanged as well
     Vec3 impulse = Vec3::Zero();
     for (const Vec3& part : impulses) {
         impulse += part;
@@ -126,7 +126,7 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
     balance.momentum_known &= !holds_implicit_element(model);  // elements become implicit while a run goes on
-    // the height of a weight means nothing: what it fell does
+    // the height of a weight has no meaning by itself, only its change
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
     balance.energy_scale = std::max(balance.energy_scale, exchanged);

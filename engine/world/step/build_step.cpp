@@ -1,6 +1,6 @@
-// The step: one list of stages. Each is named folder/function; the graph takes the order from what they read and write,
-// so the force and the contact branch run side by side (docs/step_graph.dot shows the result). What a struct of inputs
-// takes of the tables is said by its bind(), where it is defined.
+// The step: one list of stages. Each is named folder/function. The graph derives their order from the data that they
+// read and write, so the force and the contact branch run side by side (docs/step_graph.dot shows the result). The
+// bind() of a struct of inputs lists the columns that it reads.
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "systems/collision/find_candidates.h"
@@ -29,7 +29,7 @@ namespace skerry {
 
 namespace {
 
-/// Scripts give colliders and held nodes their motion during this step.
+/// Scripts set the motion of colliders and held nodes during this step.
 void list_scripted_motion(WorldState& w, TaskGraph& g) {
     ColliderTable& c = w.model.colliders;
     AttachmentTable& a = w.model.attachments;
@@ -43,7 +43,7 @@ void list_scripted_motion(WorldState& w, TaskGraph& g) {
             write(n.velocity));
 }
 
-/// Beside all others.
+/// Evaluates stable steps beside all other stages.
 void list_watch(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
@@ -148,7 +148,7 @@ void list_solve(WorldState& w, TaskGraph& g) {
                         value(p.solver.friction));
 }
 
-/// For who asks what contacts and attachments give.
+/// Sums of contact and attachment forces, if requested.
 void list_forces(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ForceScratch& f = w.scratch.forces;
@@ -163,7 +163,7 @@ void list_forces(WorldState& w, TaskGraph& g) {
             value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
-/// What implicit bodies deform by, and how that pulls at what holds them.
+/// Deformation of implicit bodies, and its reaction on their supports.
 void list_strains(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
@@ -174,7 +174,7 @@ void list_strains(WorldState& w, TaskGraph& g) {
                         make(w.scratch.strain_parts));
 }
 
-/// From here on velocity_next of a rigid body is that of the straight way to where it will be.
+/// From here on velocity_next of a rigid body leads straight to its next position.
 void list_turns(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies,
@@ -184,7 +184,7 @@ void list_turns(WorldState& w, TaskGraph& g) {
             value(w.scratch.parameters.h), outputs<RigidTurns>(m.rigid_bodies, m.nodes));
 }
 
-/// Looks at the step.
+/// Checks of the step.
 void list_checks(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;

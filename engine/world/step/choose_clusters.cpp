@@ -1,4 +1,5 @@
-// Which elements are implicit: those that would make the steps of all much shorter (docs/methods/clusters.md 5).
+// Choice of the implicit elements: those that would make the steps of all bodies much shorter
+// (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,22 +23,22 @@ namespace skerry {
 
 namespace {
 
-// ns, of a step: an entry of a cluster's matrix. Six thrown meshes took 100 an element and 1.5 on a busy core; only
-// their ratio matters.
+// Cost of an entry of a cluster's matrix in a step [ns]. On a busy core six thrown meshes took 100 ns per element and
+// 1.5 ns per entry; only the ratio of the costs matters.
 constexpr Real entry_cost = 0.7;
-/// What it has to save of the cost of a simulated second, for results that differ a little.
+/// Least factor by which clusters must reduce the cost of a simulated second, since results differ a little.
 constexpr Real least_gain = 1.5;
-/// The least moment of inertia of a body may grow by this part, or by so much of what masses at the nodes add to it,
-/// where that is more: 3 to 20 % in meshes as people have them.
+/// Clusters may increase the least moment of inertia of a body by the fraction most_moment, or by the fraction
+/// of_lumping of the increase due to lumped masses, whichever is larger: 3 to 20 % in typical meshes.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
-constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, a second to invert
-/// Implicit elements are taken to be so much stiffer than they are, so that they may deform for a while.
+constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, about a second to invert
+/// Implicit elements are assumed to be stiffer by this factor, so that they may deform for a while.
 constexpr Real headroom = 4;
-constexpr Real most_lengthening = 32;  // of steps
-/// Shorter ones could hardly save least_gain.
+constexpr Real most_lengthening = 32;  // ratio of steps with clusters to steps without
+/// Smaller ratios could hardly save least_gain.
 constexpr Real least_lengthening = 1.68;
-/// What explicit elements stand by mass forms over what they stand by shares, which the search goes by: of four meshes
-/// 1.27 to 1.34.
+/// Ratio of the stable steps of explicit elements with mass forms and with mass shares, on which the search is based;
+/// 1.27 to 1.34 for four meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
@@ -50,7 +51,7 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
         .step;
 }
 
-/// Shares, forms and moduli of a body, to be put back.
+/// Copy of shares, forms and moduli of a body, to restore them.
 struct Kept {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
@@ -77,7 +78,7 @@ struct Kept {
     }
 };
 
-/// What goes with being implicit: guards, leeway of tetrahedra, viscosity.
+/// Updates all data that depend on implicit elements: inversion barriers, leeway of tetrahedra, viscosity.
 void note_implicit(Model& model, std::size_t b) {
     const Range of_body = model.bodies.blocks[b];
     arm_guards(model.all_elements(), of_body, model.nodes.inverse_mass,
@@ -91,7 +92,7 @@ void note_implicit(Model& model, std::size_t b) {
     model.patches.resize_viscous(model.elements.first.size());
 }
 
-/// How much clusters may add to the least moment of inertia of a body, over that.
+/// Limit of the moment that clusters add to the least moment of inertia of a body, as a fraction of it.
 Real most_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
@@ -100,8 +101,8 @@ Real most_moment_of(const Model& model, std::size_t b) {
 }
 
 struct Found {
-    bool possible = false;  // neither too many nor too heavy
-    Real moment = 0;        // that clusters add to the least of the body, over the most that they may
+    bool possible = false;  // neither too many elements nor too heavy clusters
+    Real moment = 0;        // moment that clusters add to the least of the body, over its limit
     ClusterSizes sizes{};
 };
 
@@ -118,7 +119,7 @@ ImplicitOutputs outputs_of(Model& model, Range blocks) {
     return {rows_of(model.elements.mass_share, blocks), rows_of(model.elements.implicit_modulus, blocks)};
 }
 
-/// The implicit elements of bodies at rest, for steps that are tried. Those of bodies that are alike are found once.
+/// Finds the implicit elements of bodies at rest for trial steps. Equal bodies share one search.
 class Searches {
 public:
     Searches(Model& model, std::span<Real> stiffness_sum)
@@ -126,7 +127,7 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// Finds those of a body. Its rows are written where that is possible and where it is not.
+    /// Finds the implicit elements of a body. Its rows are written whether the result is possible or not.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         for (const Result& known : twins.known) {
@@ -159,17 +160,17 @@ private:
     };
     struct OfTwins {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;                    // of the search
-        std::optional<ImplicitSearch> search{};  // once it was asked for
+        Real most_moment = 0;                    // limit of the search
+        std::optional<ImplicitSearch> search{};  // made at the first use
         std::vector<Result> known{};
     };
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
-    std::vector<OfTwins> of_first_;  // by the first of bodies that are alike
+    std::vector<OfTwins> of_first_;  // by the first of a set of equal bodies
 };
 
-/// Every element explicit again, with the masses shared as for a new body.
+/// Makes every element explicit again, with the masses shared as for a new body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> share = rows_of(model.elements.mass_share, blocks);
@@ -184,7 +185,7 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
 
-/// ns a second, where steps are `step` long.
+/// Cost of a simulated second with steps of length `step` [ns].
 Real cost_of(const Model& model, std::size_t entries, Real step) {
     const Real elements = static_cast<Real>(model.elements.first.size() * element_lanes);
     return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
@@ -192,17 +193,17 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // that clusters add to the least of the body, over the most that they may
-    Kept elements;  // what they are
+    Real moment;    // moment that clusters add to the least of the body, over its limit
+    Kept elements;  // its planned elements
 };
 
 /// The implicit elements of all bodies for a step.
 struct Plan {
-    Real step = 0;  // s; 0: none, every element is explicit
-    Real cost = 0;  // ns a second
+    Real step = 0;  // 0: none, every element is explicit [s]
+    Real cost = 0;  // cost of a simulated second [ns]
     bool possible = true;
     std::size_t entries = 0;
-    std::vector<PlannedBody> body;  // that has some
+    std::vector<PlannedBody> body;  // bodies with implicit elements
 };
 
 Plan plan_for(Model& model, Real step, Searches& searches) {
@@ -220,21 +221,21 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     return plan;
 }
 
-/// Gives a body implicit elements and the masses that the others share then. Returns the step that these stand, s.
+/// Gives a body its implicit elements, and the others their mass forms. Returns the stable step of the latter [s].
 Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
     planned.elements.put_back(model, planned.row);
     choose_mass_forms(model, static_cast<Index>(planned.row), stiffness_sum);
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// The clusters of a body are for this step.
+/// Sets the step for which the clusters of a body are made. `stands`: stable step of its explicit elements [s].
 void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
     model.bodies.rest_step[b] = std::min(step, stands);
 }
 
-/// s, for which clusters of this moment over the most that they may have, made for steps of `step`, are not too heavy.
+/// Longest step at which clusters made for `step` are not too heavy. `moment`: added moment over its limit [s].
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
 }
@@ -243,13 +244,13 @@ Real longest_step(const Settings& settings) {
     return settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / settings.step_safety;
 }
 
-/// Gives all bodies the elements of a plan, whose step becomes what they stand: mass forms tell how long it may be.
+/// Gives all bodies the elements of a plan. Their mass forms then determine how long the step may be.
 void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model.settings);
-    std::vector<Real> stands(twin.size());  // s, by body; 0 of those without clusters
+    std::vector<Real> stands(twin.size());  // stable steps by body; 0 for those without clusters [s]
     for (const PlannedBody& body : plan.body) {
-        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // bodies that are alike have the same plan
+        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have the same plan
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
@@ -269,7 +270,7 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
 }
 
-/// The shortest step of all bodies with elements, at rest.
+/// The shortest stable step at rest of all bodies with elements [s].
 Real shortest_step(const Model& model) {
     Real shortest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
@@ -277,8 +278,8 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Of the steps 2, 4, ... times as long as the shortest stable one, and of some between the best of them and the next,
-/// the one worth having clusters for.
+/// Tries 2, 4, ... times the shortest stable step, then some steps between the best of them and the next. Returns the
+/// plan of least cost; its step is 0 if none is worth its clusters.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model.settings);
     Plan best{.body = {}};
@@ -310,15 +311,15 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    constexpr Real inversion_cost = 0.4;  // ns by cube of the width
-    constexpr Real lasts = 128;           // steps, until they may have to be inverted anew
+    constexpr Real inversion_cost = 0.4;  // per cube of the matrix width [ns]
+    constexpr Real lasts = 128;           // number of steps until an inversion may be due again
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
-    // by shares, which follow a deformation
+    // the search uses mass shares, which follow a deformation
     forget_mass_forms(model, blocks);
     const Real most = most_moment_of(model, body);
     const Found found =

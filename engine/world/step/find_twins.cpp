@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Columns are plain numbers: the same bits, not the same values, so that what is not a number is like itself.
+/// Compares plain numbers bitwise, not by value, so that NaN equals itself.
 template <class Rows>
 bool same_bits(const Rows& a, const Rows& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -43,7 +43,7 @@ bool are_alike(const Model& model, std::size_t a, std::size_t b) {
 
 std::vector<std::size_t> find_twins(const Model& model) {
     std::vector<std::size_t> twin;
-    std::map<std::tuple<Index, Index, Real>, std::vector<std::size_t>> first_of;  // that may be alike
+    std::map<std::tuple<Index, Index, Real>, std::vector<std::size_t>> first_of;  // candidates for equality
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         std::vector<std::size_t>& first =
             first_of[{model.bodies.nodes[b].size(), model.bodies.blocks[b].size(), model.bodies.rest_step[b]}];

@@ -1,4 +1,4 @@
-// Bodies of one mesh, whose elements are alike: what is found for one of them holds for all.
+// Bodies with one mesh and equal elements: results for one of them hold for all.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// By body, the first (row) that has the same elements, materials and masses, and the same nodes held, at rest: itself
-/// where none before it has. To the last bit, and in the same order.
+/// For each body the first body (row) with the same elements, materials, masses and held nodes at rest; itself if no
+/// earlier one has them. They must agree bitwise and in order.
 std::vector<std::size_t> find_twins(const Model& model);
 
 }  // namespace skerry

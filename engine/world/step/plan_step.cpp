@@ -19,7 +19,7 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
     if (clock.length == 0) {
-        // a remainder of rounding size joins the last one
+        // a remainder of rounding size joins the last long step
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
         clock.length = clock.left = left / count;
     }
@@ -28,7 +28,7 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
     const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
-    return times.starts && times.ends ? LongStepTimes{} : times;  // as long as all others
+    return times.starts && times.ends ? LongStepTimes{} : times;  // as long as the steps of all others
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {

@@ -1,4 +1,4 @@
-// How long steps may be.
+// Stable steps of bodies and the limits of the step length.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace skerry {
 
 namespace {
 
-// s, where rigid bodies are alone and nobody says how exact: contacts that close within a step, and those of faces that
-// turn, are as exact as the step is short
+// Longest step in worlds with rigid or implicit bodies, if the settings give none [s]. Contacts that close within a
+// step, and those of turning faces, are only as accurate as the step is short.
 constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
 }  // namespace
@@ -29,7 +29,7 @@ Real step_of_body(const Model& model, std::size_t body) {
     const Real step = model.bodies.stable_step[body];
     const Index material = model.bodies.material[body];
     const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
-    // What damping leaves of a velocity in a step of that length: a mode stands omega h below sqrt(2 (1 + kept)).
+    // Damping keeps the fraction `kept` of a velocity in this step: a mode is stable for omega h < sqrt(2 (1 + kept)).
     return damping > 0 && std::isfinite(step) ? step * std::sqrt((1 + std::exp(-damping * step)) / 2) : step;
 }
 
@@ -65,8 +65,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// What the explicit elements of a body with clusters stand where it is strained in places, s, if they stand `stands`
-/// for certain; no more than that where there is no such bound, and no more than is `asked` for.
+/// Stable step of the explicit elements of a body with clusters, for strain in a few places [s]. `stands`: a step known
+/// to be stable. It is returned if it is not below `asked` or there is no better bound; else the result is at most
+/// `asked`.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -79,7 +80,7 @@ Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3
                                                     {asked, stands}, memory.span()));
 }
 
-/// What the explicit elements of a body stand in this shape, s.
+/// Stable step of the explicit elements of a body in this shape [s].
 Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
     stiffness_sum.resize(position.size());
     const Real step =
@@ -89,7 +90,7 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
     return strained_step_of(model, body, position, model.bodies.rest_step[body], step, stiffness_sum);
 }
 
-/// The step that a body stands whose explicit elements stand `step`. Not a number where a shape is none.
+/// Stable step of a body whose explicit elements have the stable step `step` [s]. NaN for an invalid shape.
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -108,7 +109,7 @@ Real look_at_stable_step(const Model& model, std::size_t body, std::span<const V
 
 namespace {
 
-/// Takes over the stable steps that were found, body by body.
+/// Takes over evaluated stable steps, body by body.
 class LooksTaken {
 public:
     LooksTaken(Model& model, Column<Real>& stiffness_sum) : model_(model), stiffness_sum_(stiffness_sum) {
@@ -118,8 +119,9 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // Steps that a strained body makes shorter by this; the next look finds it standing, too. One that has clusters
-        // is let be for longer: what it stands is back as soon as it is less strained, while implicit elements stay.
+        // A body gets clusters when its strain shortens steps by the factor worth_clusters; `reserve` keeps it stable
+        // until the next evaluation. A body with clusters is tolerated for longer: its stable step recovers as soon as
+        // it is less strained, while implicit elements stay.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -137,7 +139,7 @@ public:
         bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
-    /// J, what clusters have brought into the balance.
+    /// Energy that clusters have brought into the balance [J].
     Real end() {
         if (changed_.empty()) return 0;
         model_.rebuild_clusters(changed_);
@@ -147,9 +149,9 @@ public:
 private:
     Model& model_;
     Column<Real>& stiffness_sum_;
-    Real goal_ = std::numeric_limits<Real>::infinity();  // s, what bodies stand when they are not strained
+    Real goal_ = std::numeric_limits<Real>::infinity();  // shortest stable step of all bodies at rest [s]
     Real energy_before_ = 0;                             // J
-    std::vector<std::uint8_t> changed_;                  // by body, whether its implicit elements have; none: no rows
+    std::vector<std::uint8_t> changed_;  // by body, whether its implicit elements have changed; empty: none have
 };
 
 }  // namespace
@@ -181,7 +183,8 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     const auto pieces_of = [&](Index row) {
         return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
     };
-    // no step can begin before they are counted, and each body's first elements are elsewhere
+    // Counted in parallel: no step can begin before, and the first elements of each body are at another place in
+    // memory.
     constexpr std::size_t bodies_per_block = 64;
     const WatchPieces all = reduce(
         executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
@@ -202,7 +205,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
-    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // a save has all rows
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // a saved world has all rows
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);

@@ -12,36 +12,38 @@ namespace skerry {
 
 namespace {
 
-/// Below this many elements and contacts together a step takes less time than waking the workers costs (profiling/step
-/// measures it).
+/// Below this total of elements and contacts a step takes less time than it takes to wake the workers
+/// (profiling/step measures it).
 constexpr std::size_t inline_work = 1024;
 
-/// Tries of one length with the crossings of the last ones as contacts, before the step is shortened.
+/// Number of tries of one length, each with the crossings of the earlier ones as contacts, before a step is shortened.
 constexpr int tries_at_one_length = 4;
 
-/// A step that a body is too fast for, or in which something crosses, is tried again at half its length, down to this
-/// fraction of the stable step; then steps grow back. The bound is on the length: halvings counted step by step add up
-/// until time stands still.
+/// A step in which something crosses is tried again at half its length, down to the stable step over this factor; then
+/// steps grow back. Limits predicted from the speed of deformation do not go below this length either. The bound is on
+/// the length, because halvings counted step by step would add up until time stands still.
 constexpr Real most_shortening = 128;
 
-/// The same for a step that deforms something too fast: what is squeezed between a rigid body and held nodes comes out
-/// at some hundred times the speed of what presses it, and has to stay the exception.
+/// The factor for a step that deforms something too fast, or that an implicit body cannot solve. Material squeezed
+/// between a rigid body and held nodes comes out at some hundred times the speed of the body that presses it. Steps
+/// this short must remain the exception.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// The same for a step that turns elements inside out. Of those in thrown meshes a third stay upright in one half as
-/// long; where they are pressed over, and not thrown, shorter steps are in vain. But they keep the energy of what is
-/// crushed: with 2 in place of 4 a ball shot at a wall gains a third more, as it does where steps grow faster after.
+/// The factor for a step that turns elements inside out. In thrown meshes a third of them stay upright in a step half
+/// as long. Where elements are pressed over, and not thrown, shorter steps do not help. But they conserve the energy of
+/// crushed bodies: with 2 instead of 4 a ball shot at a wall gains a third more energy, as it does if steps grow back
+/// faster.
 constexpr Real most_shortening_against_inversion = 4;
 
-/// From step to step, after an inversion or a crossing.
+/// Growth of the step bound from step to step after an inversion or a crossing.
 constexpr Real step_growth = 1.2;
 
-/// The same while it is known what deforms fastest.
+/// Greatest growth from step to step while the speed of deformation limits the steps.
 constexpr Real fast_growth = 1.5;
 
-/// Elements deform faster in the next step than in this one, most of the time not by more than this.
+/// Reserve for faster deformation in the next step than in this one; it suffices most of the time.
 constexpr Real strain_margin = 0.9;
-/// A step that is too fast is made shorter by a factor between these.
+/// A step that is too fast is shortened by a factor between these two.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -49,7 +51,7 @@ void copy(std::span<const Real> from, Column<Real>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// A contact may have given bodies at rest a velocity that is not committed.
+/// Resets velocities that a contact may have given to sleeping bodies in a try that is not committed.
 void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
         const Range nodes = bodies.nodes[b];
@@ -58,28 +60,28 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
-/// s, for which forces act in a step of length h. Symplectic Euler is leapfrog with velocities half a step before the
-/// positions that their forces belong to: from the middle of the last step to the middle of this one
+/// Time for which forces act in a step of length h [s]. Symplectic Euler is leapfrog with velocities half a step before
+/// the positions of their forces: it kicks from the middle of the last step to the middle of this one
 /// (docs/methods/time_stepping.md 1.5). Leapfrog kicks at the time of the velocities, for the step itself.
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
-    // What stands much less than the last step was not there then, or was softer, and would be thrown by its force.
+    // A body with a stable step much below the last step is new or was softer then; that step's kick would throw it.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.settings.step_safety * stable_step(model));
     return (before + plan.h) / 2;
 }
 
-/// 1 where both differ by rounding alone, as steps do that share what is left of a call. 0: the last one is not known.
+/// Ratio of two kicks. 1 if they differ only by rounding, as equal shares of a call do. 0: the last one is not known.
 Real kick_over_last(Real kick, Real last) {
     constexpr Real rounding = 1e-12;
     if (!(last > 0)) return 0;
     return std::abs(kick - last) <= rounding * last ? 1 : kick / last;
 }
 
-/// Runs the stages, unless they have nothing to do; they leave what they find in world.scratch. Returns false when it
-/// could tell without them that the step is not to be taken.
+/// Runs the stages, unless they have nothing to do; their results are in world.scratch. Returns false if a check before
+/// them has already refused the step.
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
@@ -117,7 +119,7 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Elements remember what they found in this step. Of those of unstrained bodies both columns are the same.
+/// Stores the element state of this step for the next one. For unstrained bodies both columns are equal.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -126,12 +128,12 @@ void keep_frames(WorldState& world) {
         return;
     }
     ElementInputs awake = world.model.awake_elements();
-    // A body that this step wakes has no frames of this step.
+    // A body that this step wakes has no element rotations from this step.
     awake.body_asleep = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Contacts have moved nodes past their velocities.
+/// Contacts have moved nodes further than their velocities do, so no body counts as unstrained.
 void forget_unstrained(BodyTable& bodies) {
     std::ranges::fill(bodies.unstrained, std::uint16_t{0});
 }
@@ -154,7 +156,7 @@ void commit(WorldState& world) {
     world.clock.kick_before = parameters.kick;
 }
 
-/// A strained body stands less than this part of its step at rest.
+/// A body is strained if its stable step is less than this fraction of the one at rest.
 constexpr Real as_at_rest = 0.9;
 
 struct Blamed {
@@ -166,12 +168,12 @@ Blamed blamed(const Model& model, Index body) {
     static const std::string nobody;
     if (body == no_index) return {{}, nobody};
     const auto b = static_cast<std::size_t>(body);
-    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // others belong to a collider
+    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // other bodies belong to a collider
     return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
             model.body_records[b].name};
 }
 
-/// Of a step that is taken: the last tries, the settings or the stiffest body.
+/// Counts the cause that limited a step that is taken: earlier tries, the settings or the stiffest body.
 void note_step(const Model& model, const StepPlan& plan, const Tries& tries, StepLimits& limits) {
     const bool fast = tries.slow_enough < tries.longest;
     StepLimit limit = fast ? StepLimit::speed : tries.limit;
@@ -189,7 +191,7 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     limits.count_step(limit, handle, name, plan.h);
 }
 
-/// Why a try is given up for a shorter one.
+/// Reason why a try is given up for a shorter one.
 StepLimit shortened_by(const StepFindings& found) {
     return found.crossings > 0                          ? StepLimit::crossing
            : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
@@ -197,8 +199,8 @@ StepLimit shortened_by(const StepFindings& found) {
                                                         : StepLimit::inversion;
 }
 
-/// The try after one that is given up for a shorter one. What deforms too fast says how long steps may be; of
-/// anything else it is only known that half as long may do.
+/// Limits of the try after one that is given up for a shorter one. The rate of deformation determines how long a step
+/// may be. For all other causes it is only known that half the length may do.
 Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& tries) {
     const StepFindings& found = world.scratch.findings;
     const StrainRate& fastest = found.verdict.fastest;
@@ -224,8 +226,8 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
     return next;
 }
 
-/// The first try of the step after one that was taken: as long as what deforms fastest allows, but at most fast_growth
-/// times as long as that one, if that was short.
+/// Limits of the first try after a step that was taken. It is as long as the fastest deformation allows, but at most
+/// fast_growth times as long as that step if that was short.
 Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& tries) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
     Tries next{.longest = tries.longest * step_growth,
@@ -234,13 +236,13 @@ Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& 
                .limit = tries.limit,
                .body = tries.body};
     if (fastest.body == no_index && scratch.parameters.longest < plan.stable && tries.slow_enough < tries.longest) {
-        next.slow_enough = fast_growth * plan.h;  // was looked for no further
+        next.slow_enough = fast_growth * plan.h;  // the check searched no further
         next.fastest = tries.fastest;
     }
     return next;
 }
 
-/// Of a try that is given up.
+/// Counts a try that is given up.
 void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits) {
     const StepFindings& found = scratch.findings;
     const StepLimit limit = shortened_by(found);
@@ -251,7 +253,7 @@ void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits
     limits.count_try(limit, handle, name);
 }
 
-/// The table of StepOutcome.
+/// Implements the table of StepOutcome.
 StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
     if (beyond_lists) {
@@ -294,7 +296,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
-    // One would do, but for what forces do in the next try, and for numbers that a list cannot be made for.
+    // One retry would do, if forces could not change the next try and a list could be made for every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -309,7 +311,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // an inversion says nothing of what crossed in the tries before
+            // an inversion says nothing about crossings found in the tries before
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
             tries = shorter_tries(world, plan, tries);
@@ -322,7 +324,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     }
     if (ran) {
         world.transaction.roll_back_try(world.model);
-        world.clock.kick_before = 0;  // elements wrote over what they knew of the step before
+        world.clock.kick_before = 0;  // elements have overwritten their memory of the step before
     }
     return outcome;
 }

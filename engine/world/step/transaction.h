@@ -1,4 +1,4 @@
-// All or nothing: how a step is tried, what becomes of a try, and how what it overwrote is put back.
+// All or nothing: how a step is tried, how a try ends, and how overwritten data are restored.
 #pragma once
 
 #include <algorithm>
@@ -17,91 +17,92 @@ namespace skerry {
 struct StepPlan;
 struct WorldState;
 
-/// What becomes of one try of a step. After all but `committed` the world is as it was before the try.
+/// Outcome of one try of a step. After all but `committed` the world is in its state before the try.
 ///
 ///     try -- good ---------------------------------------------------------------> committed
 ///      |---- features cross, fewer than 4 tries of this length ------------------> again_with_crossings --> try
 ///      |---- features cross; h > stable step / 128 ------------------------------> again_shorter ---------> try
-///      |---- a body is too fast; h > stable step / 1024 -------------------------> again_shorter ---------> try
+///      |---- a body is too fast or unsolved; h > stable step / 1024 -------------> again_shorter ---------> try
 ///      |---- an element turns inside out; h > stable step / 4 -------------------> again_shorter ---------> try
 ///      |---- features cross at the shortest length ------------------------------> again_letting_through -> try
-///      '---- not finite, too far, too fast at the shortest length ---------------> refused
+///      '---- not finite, too far; too fast or unsolved at the shortest length ---> refused
 enum class StepOutcome {
     committed,
-    again_with_longer_lists,  // the same try: what was near enough to cross was not known
-    again_with_crossings,     // what crossed is a contact of the next try, which is as long
-    again_shorter,            // the next try is half as long, or as long as speed allows
-    again_letting_through,    // the next try takes what crosses, and reports it
-    refused,                  // world.scratch.findings say who is to blame
+    again_with_longer_lists,  // repeat the same try: features near enough to cross were not in the lists
+    again_with_crossings,     // crossing features are contacts of the next try, which has the same length
+    again_shorter,            // the next try is half as long, or as long as the speed limit allows
+    again_letting_through,    // the next try accepts crossings and inversions, and reports them
+    refused,                  // world.scratch.findings name the cause
 };
 
-/// What is left of the tries of the present step, and of those before it, for the next one.
+/// Results of the tries of the present and earlier steps that matter for the next try.
 struct Tries {
-    Real longest = std::numeric_limits<Real>::infinity();      // s; grows again step by step
-    Real slow_enough = std::numeric_limits<Real>::infinity();  // s; of what deforms as it did in the last try
-    Index fastest = no_index;                                  // row of BodyTable: whose elements do
-    int with_longer_lists = 0;                                 // of this step, that could not be judged
+    Real longest = std::numeric_limits<Real>::infinity();      // grows again step by step [s]
+    Real slow_enough = std::numeric_limits<Real>::infinity();  // bound at the last rate of deformation [s]
+    Index fastest = no_index;                                  // row of BodyTable: the body that deforms fastest
+    int with_longer_lists = 0;                                 // tries of this step that could not be judged
     int with_crossings = 0;                                    // tries of this step at its present length
-    bool letting_through = false;                              // the next is the last
-    // why `longest` is what it is: of the last try that was given up for a shorter one, but not for speed
+    bool letting_through = false;                              // the next try is the last
+    // cause of `longest`: that of the last try that was given up for a shorter one for a reason other than speed
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// s, how long steps may be while elements deform so fast, but for the shortest length that is tried. `stable`: s, what
-/// else bounds steps.
+/// Longest step at this rate of deformation, but never less than the shortest length that is tried [s]. `stable`: the
+/// other bounds of the step [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
-/// Takes the step that is planned as far as the tries allow, and says what became of it.
+/// Takes the planned step as far as the tries allow, and returns its outcome.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 
-/// What a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
+/// Restores data that a try, or a call of advance, overwrites before it is known to be good. Listed here, once:
 ///
-///     what                                      written by             undone by
-///     nodes.velocity of held and led nodes      drive_nodes            a copy, of the start of the try
-///     bodies.max_speed, bodies.frame_speed      check_state            a copy, of the start of the try
-///     nodes.velocity_next of bodies at rest     solve_regions          zero, which it is as long as they rest
+///     data                                      written by             undone by
+///     nodes.velocity of held and led nodes      drive_nodes            a copy from the start of the try
+///     bodies.max_speed, bodies.frame_speed      check_state            a copy from the start of the try
+///     nodes.velocity_next of sleeping bodies    solve_regions          zero, its value as long as they sleep
 ///     nodes.position, nodes.velocity, time,
 ///     rigid_bodies.center, rotation, moments
-///     and axes                                  drift_to (leapfrog)    a copy, of the start of the call
+///     and axes                                  drift_to (leapfrog)    a copy from the start of the call
 ///     elements.implicit_modulus,
 ///     clusters.inverse                          stiffen_clusters       nothing: they follow the shapes at the start of
 ///                                                                      the try, as they do at the end of a call; with
-///                                                                      leapfrog, whose shapes drift before, a copy, of
-///                                                                      the start of the call
-///     pairs, their search                       find_candidates        nothing: what a search found of the positions
-///                                                                      at the start of the step stays true of them;
-///     search.memory.body_unmeasured                                    what only velocities told is told again
+///                                                                      leapfrog, whose shapes drift before, a copy
+///                                                                      from the start of the call
+///     pairs, their search                       find_candidates        nothing: results of a search for the positions
+///                                                                      at the start of the step stay valid;
+///     search.memory.body_unmeasured                                    bodies that no committed step has measured
+///                                                                      are searched again
 ///
-/// All other state is written only by stages that run in a step that is good, and by commit.
-/// tests/scene/transaction_test.cpp compares this list with what the stages declare.
+/// All other state is written only by stages that run in a good step, and by commit.
+/// tests/scene/transaction_test.cpp compares this list with the writes that the stages declare.
 class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// By body, whether it was at rest when the try began; until `rested` is asked.
+    /// Marks by body: asleep when the try began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// Which bodies took no part in the try, or not in its end: at rest when it began, or now.
+    /// Marks by body: took no part in the try or in its end, since it was asleep when the try began or is asleep now.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
-    /// Only leapfrog drifts before its first kick.
+    /// Both do nothing unless the integrator is leapfrog, which alone drifts before its first kick.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
-    Column<Real> max_speed_, frame_speed_;  // m/s, bodies.max_speed, bodies.frame_speed
-    Column<Vec3> driven_velocity_;          // m/s, of attachments.node
-    Real time_ = 0;                         // s
-    Column<Vec3> position_, velocity_;      // m, m/s, of all nodes
-    Column<Vec3> center_;                   // m, of rigid bodies
-    Column<Vec3> moments_;                  // kg m^2, of rigid bodies
-    Column<Mat3> rotation_, axes_;          // of rigid bodies
-    Column<Vec3> displacement_;             // m, of implicit bodies
-    Column<ElementLane> modulus_;           // Pa, elements.implicit_modulus
-    Column<Real> inverse_;                  // 1/kg, clusters.inverse
+    Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
+    Column<Vec3> driven_velocity_;          // velocities of attachments.node [m/s]
+    Real time_ = 0;                         // start of the call [s]
+    Column<Vec3> position_, velocity_;      // all nodes [m, m/s]
+    Column<Vec3> center_;                   // rigid bodies [m]
+    Column<Vec3> moments_;                  // rigid bodies [kg m^2]
+    Column<Mat3> rotation_, axes_;          // rigid bodies
+    Column<Vec3> displacement_;             // implicit bodies [m]
+    Column<ElementLane> modulus_;           // elements.implicit_modulus [Pa]
+    Column<Real> inverse_;                  // clusters.inverse [1/kg]
 };
 
 }  // namespace skerry

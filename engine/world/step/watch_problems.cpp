@@ -1,4 +1,4 @@
-// Contact problems for whoever wants to look at them: other solvers, mostly.
+// Contact problems for subscribers, mostly other solvers.
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -18,7 +18,7 @@ void copy(std::span<const T> from, Column<T>& to) {
     std::copy(from.begin(), from.end(), to.begin());
 }
 
-/// Contacts of the step stand among those of what rests.
+/// Renumbers contacts of the step by their places among all contacts, which include those at rest.
 void say_places_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
     if (resting.empty()) return;
     Column<Index> rows;
