@@ -27,7 +27,7 @@ struct ContactsNow {
     std::span<const Vec3> normal, point;  // unit; m
     std::span<const Index> first_body, second_body;
     std::span<const Range> body_rigid;            // of RigidBodyTable: empty where a body moves node by node
-    std::span<const Real> body_contact_distance;  // m
+    std::span<const Real> body_contact_distance;  // [m]
 
     static ContactsNow bind(const Binder& binder, const ContactTable& contact, const BodyTable& body) {
         return {.key = binder.read(contact.key),
@@ -51,7 +51,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
 struct ContactsDone {
     std::span<const ContactKey> key;
     std::span<const Vec3> normal;
-    std::span<const Vec3> impulse;     // N s
+    std::span<const Vec3> impulse;     // [N s]
     std::span<const Vec3> point = {};  // m; empty where nothing is rigid or implicit
 
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid) {

@@ -14,8 +14,8 @@ struct ContactMeasures {
     Real dissipated = 0;         // J, -sum of impulse . (velocity before + velocity after) / 2
     // from colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work -
     // dissipated
-    Vec3 outer_impulse = Vec3::Zero();  // N s
-    Real outer_work = 0;                // J
+    Vec3 outer_impulse = Vec3::Zero();  // [N s]
+    Real outer_work = 0;                // [J]
     Index stick_count = 0;
     Index slide_count = 0;
 };
