@@ -47,7 +47,7 @@ concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>
 ///
 ///     struct RestInputs {
 ///         std::span<const Range> nodes;
-///         std::span<const Real> mass;  // kg, by node
+///         std::span<const Real> mass;  // by node [kg]
 ///
 ///         static RestInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
 ///             return {.nodes = binder.read(body.nodes), .mass = binder.read(node.mass)};
