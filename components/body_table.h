@@ -90,7 +90,7 @@ struct BodyTable {
     Column<Real> travel;
     Column<Real> uninverted_until;  // no tetrahedron turns inside out or back while travel is below this [m]
 
-    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines.
+    /// The only list of columns. Derived by Model::rebuild_outlines: triangles to bvh_leaves.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);

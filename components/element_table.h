@@ -144,8 +144,7 @@ struct ElementPatches {
     Column<PaddedVec3> position;  // by slot; scratch [m]
     Column<PaddedVec3> force;     // force of the patch on the node, by slot [N]; scratch
     Column<Real> relaxed;         // energy that relaxed in the elements of a patch in this step [J]; scratch
-    // Per block: its viscous impulse, set if the block is viscous in this step; no rows if no block is viscous;
-    // scratch.
+    // Per block: viscous impulse, set if it is viscous in this step; no rows if no block is viscous; scratch.
     Column<ElementViscousImpulse> viscous_impulse;
     Column<std::uint8_t> viscous;  // by block: whether it is viscous in this step; as many rows; scratch
     // Per block: whether the stiffness of an implicit element comes near its assumed modulus; as many rows; scratch.

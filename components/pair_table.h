@@ -31,7 +31,7 @@ enum class PairKind : std::uint8_t { bodies, collider, self };
 template <>
 inline constexpr std::uint64_t value_count<PairKind> = 3;
 
-/// Whether the surfaces of a pair are known not to go through each other.
+/// Whether the surfaces of a pair intersect, as far as known.
 enum class PairState : std::uint8_t { unknown, apart, overlapping };
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;
@@ -163,7 +163,7 @@ struct SearchMemory {
     Column<Index> entry;                         // rows of `box` in the grid
     Column<Index> planes;                        // rows of ColliderTable
     std::vector<Column<FoundPair>> found_pairs;  // by block of the broad search, unordered
-    Column<FoundPair> pairs;                     // all of them, in key order
+    Column<FoundPair> pairs;                     // all found pairs, in key order
     Column<Index> group_begin, group_end;        // in `pairs`, by kind and slot of the first body
     Column<Index> old_row;            // by pair: previous row in PairTable, no_index for a new or forgotten one
     Column<Index> old_list;           // by list: its previous index
@@ -184,8 +184,7 @@ struct SearchMemory {
 struct SearchState {
     static constexpr Real forgotten = -std::numeric_limits<Real>::infinity();
 
-    Column<Real>
-        body_valid_until;  // by body: the list of pairs is complete while every body's travel_bound is below this [m]
+    Column<Real> body_valid_until;      // by body: the list of pairs holds while every travel_bound is below this [m]
     Column<Real> collider_valid_until;  // by collider [m]
     std::uint64_t broad_searches = 0;
     std::uint64_t pair_searches = 0;

@@ -52,7 +52,8 @@ struct RigidBodyTable {
 
     std::size_t size() const { return mass.size(); }
 
-    /// The only list of columns. Derived: by find_holders. `large` is hashed where it is set.
+    /// The only list of columns. Derived by find_holders: holder, held_position and held_rotation. `large` is hashed if
+    /// it is set.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);

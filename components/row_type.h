@@ -22,7 +22,7 @@ inline constexpr std::size_t bytes_of(NumberType type) {
     return bytes[static_cast<std::size_t>(type)];
 }
 
-/// The integer at a place. Throws std::logic_error for reals.
+/// Returns the integer at an address. Throws std::logic_error for reals.
 std::int64_t number_at(const std::byte* place, NumberType type);
 
 struct Member;
@@ -130,7 +130,7 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
-/// Bytes from the start of an S to a member of it.
+/// Offset of a member of S from its start [bytes].
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};

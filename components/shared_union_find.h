@@ -20,8 +20,7 @@ struct SharedUnionFind {
     /// Both words carry the stamp of a start in their upper half. Words with an earlier stamp count as empty.
     struct Node {
         std::uint64_t parent;
-        std::uint64_t
-            first;  // smallest item of the set, complemented so that it is the largest word; stored at the root
+        std::uint64_t first;  // smallest item of the set, at the root; complemented: the largest word wins
     };
 
     Column<Node> node;

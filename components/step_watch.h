@@ -41,7 +41,7 @@ struct StepWatch {
     std::uint64_t target = 0;  // pieces to be done by the end of the next step
 
     Column<Vec3> position;       // by node: the shape to check [m]
-    Column<Real> stiffness_sum;  // by node, of stable_step.h
+    Column<Real> stiffness_sum;  // stiffness sum by node (stable_step.h)
     Column<Real> step;           // by body: the stable step found, or not_looked_at [s]
 
     /// Starts a new round, after the current one or instead of it.

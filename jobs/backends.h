@@ -121,7 +121,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// One run_graph call.
+/// The work of one run_graph call.
 class GraphJob {
 public:
     GraphJob(const GraphEdges& edges, FunctionRef<void(Index)> run_stage, PredecessorCounts& left)

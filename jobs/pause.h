@@ -1,4 +1,4 @@
-// Waiting without sleeping.
+// Short waits without sleeping.
 #pragma once
 
 #include <thread>

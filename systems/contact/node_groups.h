@@ -36,8 +36,8 @@ struct RigidNodes {
     std::span<const Range> body_nodes;     // BodyTable
     std::span<const Range> body_rigid;     // BodyTable; empty: no body is rigid
     std::span<const Real> round_radius{};  // BodyTable; empty: no body is round
-    std::span<const Index> core_nodes{};   // BodyTable; empty: the same
-    std::span<const Vec3> center{};        // RigidBodyTable; empty: the same
+    std::span<const Index> core_nodes{};   // BodyTable; empty: no body is round
+    std::span<const Vec3> center{};        // RigidBodyTable; empty: no body is round
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -101,7 +101,7 @@ struct RigidNodes {
 
 /// Spins of rigid bodies, by row of RigidBodyTable.
 struct RigidSpins {
-    std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
+    std::span<const Mat3> inverse_inertia{};  // in the world frame [1/(kg m^2)]
     std::span<const Vec3> angular_momentum{}, moment_kick{};
 
     static RigidSpins bind(const Binder& binder, const RigidBodyTable& rigid) {

@@ -7,7 +7,7 @@
 namespace skerry {
 namespace {
 
-/// Whether an impulse of this contact can move anything.
+/// Whether an impulse of this contact can move any node.
 bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) return true;
