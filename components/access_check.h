@@ -1,5 +1,5 @@
-// Who may touch a column. With SKERRY_CHECK_ACCESS (debug and sanitizer builds) every column asks the thread that
-// touches it; without it nothing of this costs anything.
+// Run-time check of column accesses. With SKERRY_CHECK_ACCESS (debug and sanitizer builds) every access to a column is
+// checked against the declarations of the running stage; without it the check costs nothing.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ inline constexpr bool access_is_checked = true;
 inline constexpr bool access_is_checked = false;
 #endif
 
-/// Hears of every touch of a column while a thread works under it, and throws where it must not be.
+/// Is notified of every access to a column while a thread works under it. Throws if the access is not allowed.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;
@@ -35,8 +35,8 @@ inline void check_access(const void* column, std::size_t bytes, bool writes) {
     if (const AccessWatch* watch = access_detail::watch_of_thread) watch->touched(column, bytes, writes);
 }
 
-/// The thread works under `watch` (none: whatever it likes) until the end of the scope, then as before: who waits in
-/// one stage may meanwhile work for another.
+/// Sets the watch of this thread to `watch` until the end of the scope, then restores the previous one. Null allows
+/// every access. Scopes nest, because a thread that waits inside one stage may meanwhile work for another.
 class AccessScope {
 public:
     explicit AccessScope(const AccessWatch* watch) : before_(access_detail::watch_of_thread) {
@@ -50,8 +50,8 @@ private:
     const AccessWatch* before_;
 };
 
-/// A member that tells of copies and moves of what it lies in. A move that must not be ends the program, with a
-/// message: it may not throw.
+/// A member that reports copies and moves of its owner as accesses. A forbidden move terminates the program with a
+/// message, because a move must not throw.
 class CopyCheck {
 public:
     CopyCheck() = default;

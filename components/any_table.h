@@ -1,5 +1,5 @@
-// Tables and columns whose types the caller does not know. Code that is rarely run goes over them by these, so that it
-// is compiled once and not once for every column of every table.
+// Type-erased tables and columns. Rarely run code uses them, so that it is compiled once and not once for every column
+// of every table.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Refers to a column, as a pointer does.
+/// Reference to a column of any type, with the semantics of a pointer.
 class AnyColumn {
 public:
     template <class T>
@@ -25,7 +25,7 @@ public:
     std::byte* write() const { return static_cast<std::byte*>(changed().rows()); }
     /// New rows are value-initialised.
     void resize(std::size_t count) const;
-    /// Removes ranges of rows; Column::erase has the conditions.
+    /// Removes ranges of rows. Preconditions: see Column::erase.
     void erase(std::span<const Range> gone) const { changed().erase(gone, type_->bytes); }
     bool is(const void* column) const { return memory_ == column; }
 
@@ -43,20 +43,20 @@ private:
     const RowType* type_;
 };
 
-/// A column as its table registers it.
+/// Description of a column of a table.
 struct ColumnInfo {
     const char* name;
     ColumnRole role;
-    bool has_row_each;   // false: a list that rows of the table have ranges of
-    std::size_t offset;  // bytes from the table
+    bool has_row_each;   // false: a list into which rows of the table have ranges
+    std::size_t offset;  // from the start of the table [bytes]
     const RowType* type;
 };
 
-/// The columns of a table in the order in which it lists them. any_table.cpp has this for each table.
+/// The columns of a table, in the order in which the table lists them. Instantiated for each table in any_table.cpp.
 template <class Table>
 std::span<const ColumnInfo> columns_of();
 
-/// Refers to a table.
+/// Reference to a table of any type.
 class AnyTable {
 public:
     template <class Table>
@@ -68,7 +68,7 @@ public:
     AnyColumn column(const ColumnInfo& info) const {
         return {reinterpret_cast<RowMemory*>(table_ + info.offset), *info.type};
     }
-    /// Applies to all columns that have one row each.
+    /// Resizes all columns that have one row per row of the table.
     void resize(std::size_t rows) const;
     void erase(std::span<const Range> gone) const;
 

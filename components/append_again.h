@@ -1,4 +1,4 @@
-// Rows once more, for a body that has the same mesh as another.
+// Appends copies of the rows of a body, for another body with the same mesh.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace skerry {
 
-/// How many rows of its tables a body lies behind another with the same mesh.
+/// Row offsets between a body and an earlier body with the same mesh.
 struct RowsBehind {
-    Index nodes, elements;  // of NodeTable; of tetrahedra
+    Index nodes, elements;  // rows of NodeTable; tetrahedra
     Index triangles = 0, edges = 0, vertices = 0;
 };
 
-/// What names no row still names none.
+/// Adds `by` to a row index; no_index stays no_index.
 inline void move_on(Index& row, Index by) {
     if (row != no_index) row += by;
 }
@@ -25,7 +25,7 @@ void move_on(std::array<Index, count>& rows, Index by) {
     for (Index& row : rows) move_on(row, by);
 }
 
-/// Appends these rows of the column once more, each after change(row).
+/// Appends copies of `rows` to the column, each after change(row).
 template <class T>
 void append_again(Column<T>& column, Range rows, auto&& change) {
     const std::size_t first = column.size(), count = static_cast<std::size_t>(rows.size());

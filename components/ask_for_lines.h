@@ -1,12 +1,12 @@
-// Asking for memory before it is needed.
+// Prefetching.
 #pragma once
 
 #include <cstddef>
 
 namespace skerry {
 
-/// Has the cache lines of `count` items brought near, and does not wait for them. Without a loop where few are known
-/// when compiling.
+/// Prefetches the cache lines of `count` items without waiting for them. The loop is unrolled completely if `count` is
+/// a small compile-time constant.
 template <class T>
 [[gnu::always_inline]] inline void ask_for_lines(const T* first, std::size_t count) {
     constexpr std::size_t line = 64;

@@ -15,12 +15,12 @@ struct AttachmentTable {
     Column<std::uint32_t> slot;
     Column<Index> body;           // row of BodyTable
     Column<Range> nodes;          // range in `node` and `anchor`
-    Column<RigidMotion> motion;   // of this step; a node sits at position + rotation anchor
+    Column<RigidMotion> motion;   // in this step; a node is at position + rotation * anchor
     Column<RigidMotion> initial;  // at the start of the script
     Column<MotionScript> script;
-    Column<Index> node;         // rows of NodeTable, of all attachments
-    Column<Vec3> anchor;        // m, of `node`, in the frame of the attachment
-    Column<Keyframe> keyframe;  // of all attachments, by script range
+    Column<Index> node;         // rows of NodeTable, for all attachments
+    Column<Vec3> anchor;        // position of `node` in the frame of the attachment [m]
+    Column<Keyframe> keyframe;  // for all attachments; each script has a range
 
     void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);

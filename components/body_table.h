@@ -21,13 +21,14 @@ enum class BodyKind : std::uint8_t {
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
-/// A frame that moves with a body without turning. Distances between bodies, and within one, change by what nodes move
-/// in their frames and by what the frames move against each other: common motion costs nothing.
+/// A frame that translates with a body but does not rotate. Distances between bodies, and within a body, change only by
+/// the motion of nodes in their frames and by the relative motion of the frames. Common motion therefore changes no
+/// distance.
 struct MovingFrame {
-    Vec3 velocity = Vec3::Zero();  // m/s, the mean of the nodes' when the displacement was last zero
-    Vec3 offset = Vec3::Zero();    // m, how far it has come since then
-    Vec3 position = Vec3::Zero();  // m, how far since the body was added
-    Real path = 0;                 // m, the length of that way
+    Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when the displacement was last zero [m/s]
+    Vec3 offset = Vec3::Zero();    // displacement of the frame since then [m]
+    Vec3 position = Vec3::Zero();  // displacement of the frame since the body was added [m]
+    Real path = 0;                 // length of its path since the body was added [m]
 };
 template <>
 struct NumbersOf<MovingFrame> : Reals<10> {};
@@ -37,58 +38,59 @@ struct BodyTable {
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
     Column<Index> material;             // row of MaterialTable; no_index for a kinematic body
-    Column<SurfaceProperties> surface;  // a property below zero: that of its material
-    Column<CollisionFilter> filter;     // whom it touches; of a kinematic body that of its collider counts
+    Column<SurfaceProperties> surface;  // a negative property is taken from the material
+    Column<CollisionFilter> filter;     // a kinematic body uses the filter of its collider instead
     Column<Index> collider;             // row of ColliderTable of a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
     Column<Range> blocks;         // of ElementBlockTable
     Column<Range> element_nodes;  // of ElementNodeTable
     Column<Range> tetrahedron_blocks;
-    Column<Range> rigid;     // of RigidBodyTable: one row of what moves by it, rigid or implicit, else none
-    Column<Range> implicit;  // of ImplicitNodeTable: a row a node of a body that moves implicitly, else none
+    Column<Range> rigid;     // of RigidBodyTable: one row if the body is rigid or implicit, else empty
+    Column<Range> implicit;  // of ImplicitNodeTable: one row per node if the body is implicit, else empty
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
     Column<Range> bvh_nodes;
     Column<Range> bvh_leaves;
     Column<Index> tetrahedron_count;
-    Column<Index> pinned_count;     // nodes without freedom
-    Column<Real> contact_distance;  // m, thickness of the contact shell; two bodies keep the mean of theirs
-    // Of a rigid body that is round: its core is its first nodes, the middle of a sphere or the two ends of the axis of
-    // a capsule, and its surface is as far from the core as its radius, m. Of a cylinder three: its middle, that of one
-    // end, and a place of the rim there, which say where its surface is; the radius is that of the ball around it. 0:
-    // it has triangles
+    Column<Index> pinned_count;     // nodes without degrees of freedom
+    Column<Real> contact_distance;  // thickness of the contact shell; two bodies use the mean of theirs [m]
+    // Core of a round rigid body: its first nodes. Sphere: 1, its centre. Capsule: 2, the ends of its axis. The surface
+    // of both is at distance round_radius from the core. Cylinder: 3, its centre, the centre of one end and a point of
+    // the rim there, which define its surface; round_radius is then the radius of the bounding ball [m]. 0: the body is
+    // not round and has triangles
     Column<Index> core_nodes;
     Column<Real> round_radius;
-    Column<Real> mean_edge;     // m, of the surface at rest
-    Column<Real> min_altitude;  // m, of the elements at rest
-    Column<Real> rest_step;     // s, stable step of the rest shape
-    Column<Real> stable_step;   // s, as last watched
-    Column<Real> cluster_step;  // s, the longest that its implicit elements stand; 0 where it has none
-    // at rest: left out of the step until something touches it
+    Column<Real> mean_edge;     // of the surface at rest [m]
+    Column<Real> min_altitude;  // of the elements at rest [m]
+    Column<Real> rest_step;     // stable step of the rest shape [s]
+    Column<Real> stable_step;   // stable step at the last check [s]
+    Column<Real> cluster_step;  // longest step at which its implicit elements are stable; 0 if it has none [s]
+    // 1: the body is at rest and left out of the step until something touches it
     Column<std::uint8_t> asleep;
-    // 0, or the steps for which it is taken to be as it was made but for a motion without a turn, so that its elements
-    // do nothing, until that is looked at again (find_unstrained.h)
+    // Steps until find_unstrained.h checks the body again; until then it counts as undeformed and unrotated, so that
+    // its elements give no force. 0: the elements are computed
     Column<std::uint16_t> unstrained;
-    // s, for how long the body has been still (update_sleep.h); and, with the engine's own limits, how far a node has
-    // come from its still_position, m: in this half of sleep_time, below 0 once it has come nearer again; in the one
-    // before
+    // Time for which the body has been still (update_sleep.h) [s]. With the engine's own limits sleep_time has two
+    // halves. `drift` is the largest distance of a node from its still_position in this half, negative once a later
+    // check found it nearer again; `drift_before` is that of the previous half [m]
     Column<Real> still_time;
     Column<Real> drift, drift_before;
-    // m, how far its shape has come from that at the still_position in this half; and in the one before, where it went
-    // one way, else 0
+    // Largest distance of the shape from that at still_position in this half [m]; and that of the previous half if it
+    // only grew there, else 0 [m]
     Column<Real> shape_drift, creep_before;
-    Column<Real> max_speed;  // m/s, of this step's motion
+    Column<Real> max_speed;  // greatest node speed of this step [m/s]
     Column<MovingFrame> frame;
-    // In the frame:
-    Column<Real> frame_speed;   // m/s, greatest of this step's motion
-    Column<Real> displacement;  // m, greatest distance of a node from its displacement origin
-    // m: since any earlier time no node has come further than the growth of travel plus twice the displacement then
+    // Quantities in the frame of the body:
+    Column<Real> frame_speed;   // greatest node speed of this step [m/s]
+    Column<Real> displacement;  // greatest distance of a node from its displacement origin [m]
+    // Travel bound: since any earlier time no node has moved further than the growth of `travel` plus twice the
+    // displacement at that time [m]
     Column<Real> travel;
-    Column<Real> uninverted_until;  // m: the least of the body's tetrahedra
+    Column<Real> uninverted_until;  // no tetrahedron turns inside out or back while travel is below this [m]
 
-    /// The only list of columns. Derived: triangles to bvh_leaves by Model::rebuild_outlines.
+    /// The only list of columns. Derived by Model::rebuild_outlines: triangles to bvh_leaves.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);

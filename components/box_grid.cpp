@@ -6,17 +6,18 @@
 
 namespace skerry {
 
-/// The least power of two above the longest edge. Rounding of the difference never comes below it from above.
+/// Exponent of the least power of two above the longest edge. Rounding of the difference never moves it below that
+/// power.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
-    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;  // m: so that cells have a finite edge
+    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;  // [m]; so that cells have a finite edge
     int level = 0;
     std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);
     return level;
 }
 
-/// Whatever the rounding, of two coordinates the greater one has not the lesser number.
+/// Monotonic in each coordinate despite rounding: the greater of two coordinates never gets the smaller cell number.
 BoxGrid::Cell BoxGrid::cell_at(Level level, const Vec3& point, Real edge) {
-    constexpr Real most = 0x1p62;  // what is further away has the same number
+    constexpr Real most = 0x1p62;  // points further away all get this number
     const auto number = [&](Real coordinate) {
         return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -most, most));
     };
@@ -39,7 +40,8 @@ void BoxGrid::build(std::span<const Aabb> box, std::span<const Index> rows) {
     }
     std::sort(levels_.begin(), levels_.end());
     for (std::size_t b = 1; b < bucket_begin_.size(); ++b) bucket_begin_[b] += bucket_begin_[b - 1];
-    // Each bucket is filled from its begin, which moves to its end: to the begin of the next, as it was.
+    // Each bucket is filled from its begin. Afterwards its begin has moved to its end, which was the begin of the next
+    // one.
     for (const Entry& entry : listed_) entries_[bucket_begin_[bucket_of(entry.cell)]++] = entry;
     std::copy_backward(bucket_begin_.begin(), bucket_begin_.end() - 1, bucket_begin_.end());
     bucket_begin_[0] = 0;

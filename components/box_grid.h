@@ -1,4 +1,4 @@
-// A grid over boxes of any sizes: which of them meet, in time that grows with their number.
+// A hashed grid over boxes of any sizes. Finds overlapping boxes in a time that grows with their number.
 #pragma once
 
 #include <array>
@@ -12,17 +12,18 @@
 
 namespace skerry {
 
-/// Boxes by cells of grids that are each twice as coarse as the one before. A box is in the grid whose cells are just
-/// wider than its longest edge, in the cell of its lower corner: what meets it reaches into that cell, or less than one
-/// cell beside it. Cells are found by a hash of their numbers (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003;
-/// grids of several sizes: Mirtich 1996). Keeps its memory from one `build` to the next.
+/// A hierarchy of grids, each twice as coarse as the one before. A box is stored in the grid whose cells are just wider
+/// than its longest edge, in the cell of its lower corner. Any box that meets it reaches into that cell or comes less
+/// than one cell close to it. Cells are found by hashing their numbers (Teschner, Heidelberger, Müller, Pomeranets,
+/// Gross 2003; grids of several sizes: Mirtich 1996). The memory is reused by the next `build`.
 class BoxGrid {
 public:
-    /// `rows`: those of `box` that are in it, all bounded. `box` stays as it is while the grid is asked.
+    /// `rows`: the rows of `box` to insert; all of these boxes are bounded. `box` must stay unchanged while the grid is
+    /// queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) for rows whose boxes may meet that of `row`, each once. Of any two boxes that share a point
-    /// one is visited from the other, and not the other way round.
+    /// Calls visit(other) once for each row whose box may meet that of `row`. If two boxes share a point, exactly one
+    /// of them is visited from the other.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];
@@ -42,7 +43,7 @@ public:
     }
 
 private:
-    using Level = int;  // of cells of 2^level m
+    using Level = int;  // cells have edges of 2^level [m]
 
     struct Cell {
         Level level;
@@ -74,11 +75,11 @@ private:
     }
 
     std::span<const Aabb> box_;
-    Column<Level> levels_;  // that hold a box, ascending
+    Column<Level> levels_;  // levels that hold a box, ascending
     std::size_t bucket_mask_ = 0;
     Column<std::size_t> bucket_begin_;
-    Column<Entry> entries_;  // by bucket
-    Column<Entry> listed_;   // as `rows` has them
+    Column<Entry> entries_;  // sorted by bucket
+    Column<Entry> listed_;   // in the order of `rows`
 };
 
 }  // namespace skerry

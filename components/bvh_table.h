@@ -12,8 +12,8 @@ namespace skerry {
 
 /// Axis-aligned box.
 struct Aabb {
-    Vec3 lower;  // m
-    Vec3 upper;  // m
+    Vec3 lower;  // [m]
+    Vec3 upper;  // [m]
 };
 
 /// A node of a tree stored in depth-first order: the left child of row i is i + 1, and `skip` is one past its last
@@ -30,15 +30,15 @@ inline constexpr int leaf_lanes = 8;
 /// The triangles of a leaf, rows of TriangleTable; no_index in lanes without one.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// The nodes of these triangles, in one place: whoever fits or gathers a leaf does not go by way of TriangleTable.
+/// The nodes of the triangles of a leaf, stored together: fitting or gathering a leaf does not read TriangleTable.
 struct LeafNodes {
     static constexpr std::size_t most = 3 * leaf_lanes;
-    std::array<std::array<Index, leaf_lanes>, 3> corner;  // side by side; lanes without a triangle repeat the first
+    std::array<std::array<Index, leaf_lanes>, 3> corner;  // by lane; lanes without a triangle repeat the first
     Index count = 0;
-    std::array<Index, most> node{};  // each once, ascending
+    std::array<Index, most> node{};  // without duplicates, ascending
 };
 
-/// The features that the triangles of a leaf own: a search has them in one place, not by way of rows of TriangleTable.
+/// The edges and vertices that the triangles of a leaf own, stored together: a search does not read TriangleTable.
 struct LeafFeatures {
     static constexpr std::size_t most = 3 * leaf_lanes;
     struct Edge {
@@ -54,9 +54,9 @@ struct LeafFeatures {
     std::array<Point, most> point{};
 };
 
-/// Derived: Model::rebuild_outlines makes both tables.
+/// Both tables are derived by Model::rebuild_outlines.
 struct BvhTable {
-    Column<Aabb> box;      // m, refit when a pair of its body is looked at again
+    Column<Aabb> box;      // refitted when a pair of its body is searched again [m]
     Column<BvhNode> node;  // topology, built once from the rest shape
 
     void for_each_column(auto&& visit) {

@@ -1,5 +1,5 @@
-// SKERRY_CHECK: a cheap test of something the caller promised. Alive unless SKERRY_NO_CHECKS is set (the release preset
-// sets it).
+// SKERRY_CHECK: a cheap check of a precondition that the caller must meet. Enabled unless SKERRY_NO_CHECKS is set (the
+// release preset sets it).
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// A promise between parts of the engine was broken: a bug, never bad input.
+/// Thrown when one part of the engine breaks the contract of another: a bug, never bad input.
 class CheckFailed : public std::logic_error {
 public:
     using std::logic_error::logic_error;

@@ -1,4 +1,4 @@
-// Who may touch whom: groups of bodies and colliders, and pairs that are switched off.
+// Collision filters: groups of bodies and colliders, and pairs with collisions switched off.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace skerry {
 
-/// Two collide if each is in a group that the mask of the other has.
+/// Two objects collide if each is in a group that the mask of the other contains.
 struct CollisionFilter {
-    std::uint32_t group = 1;           // a bit for every group that it is in
-    std::uint32_t mask = 0xffffffffu;  // a bit for every group that it touches
+    std::uint32_t group = 1;           // one bit per group that the object belongs to
+    std::uint32_t mask = 0xffffffffu;  // one bit per group that the object collides with
 
     bool operator==(const CollisionFilter&) const = default;
 };
@@ -23,7 +23,7 @@ inline bool may_touch(const CollisionFilter& a, const CollisionFilter& b) {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
 }
 
-/// One row per pair that does not collide, whatever its groups; ascending.
+/// One row per pair that does not collide, whatever its groups. Rows ascend by key.
 struct DisabledPairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
 

@@ -69,7 +69,7 @@ public:
         if (memory.size() < memory.capacity()) {
             ::new (static_cast<void*>(rows(memory) + memory.size())) T(value);
         } else {
-            const T kept = value;  // which may be a row of this column
+            const T kept = value;  // copied first, because `value` may be a row of this column
             memory.make_room(1, sizeof(T));
             ::new (static_cast<void*>(rows(memory) + memory.size())) T(kept);
         }
@@ -89,8 +89,8 @@ private:
 
     static T* rows(const RowMemory& memory) { return static_cast<T*>(memory.rows()); }
 
-    // The only ways to the rows: here the access is checked, where it is. Always inlined: nothing remains of them where
-    // it is not, also in a build that does not optimise.
+    // All accesses to the rows go through these two functions, which check them if checks are enabled. Always inlined:
+    // without checks they cost nothing, even in a build without optimisation.
     [[gnu::always_inline]] const RowMemory& seen() const {
         if constexpr (access_is_checked) check_access(this, sizeof *this, false);
         return memory_;

@@ -1,16 +1,17 @@
-// What a column of a table is to the next step.
+// The role of a column in the state of a world.
 #pragma once
 
 #include <cstdint>
 
 namespace skerry {
 
-/// Every column is one of these. `state` and `link` are hashed and saved, `memory` is saved; the others are neither.
+/// Every column has one of these roles. `state` and `link` are hashed and saved, `memory` is saved only; `derived` and
+/// `scratch` are neither.
 enum class ColumnRole : std::uint8_t {
-    state,    // the next step depends on it, and nothing else says it
-    link,     // state that means something only with other tables, such as a row: hashed by that meaning
-    memory,   // no result depends on it, only when something is looked at again: bounds, and where they count from
-    derived,  // made from state, by the function that its table names
+    state,    // the next step depends on it, and it cannot be derived
+    link,     // state that refers to other tables, such as a row index: hashed by its meaning
+    memory,   // bounds and their reference values: they decide when something is checked again, but change no result
+    derived,  // computed from the state by the function that its table names
     scratch,  // written by each step before it is read, or no result depends on it
 };
 

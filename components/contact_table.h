@@ -1,4 +1,4 @@
-// Contacts of this step, and what they leave for the next one.
+// Contacts of this step, and the impulses kept for the next one.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// The last three are of a body's node, edge and face with an analytic collider.
+/// The last three kinds are contacts of a body's node, edge and face with an analytic collider.
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
 template <>
 inline constexpr std::uint64_t value_count<ContactKind> = 5;
@@ -19,11 +19,11 @@ enum class ContactState : std::uint8_t { open, stick, slide };
 template <>
 inline constexpr std::uint64_t value_count<ContactState> = 3;
 
-/// Names the features that touch, across steps. `pair` holds what touches: bits 63..62 the kind of pair (0 two bodies,
-/// 1 body and collider), then the two handle slots (31 bits each). `feature` holds which parts: bit 63 set for
-/// edge-edge, bit 62 says which of the two bodies the point or first edge belongs to, then the two local feature
-/// numbers (31 bits each); with an analytic collider bit 63 says an edge, bit 62 a face of the body (contact_key.h).
-/// Both are unique in a world and survive the removal of other bodies.
+/// Identifies the two touching features across steps. `pair`: bits 63..62 hold the kind of pair (0 two bodies, 1 body
+/// and collider), followed by the two handle slots (31 bits each). `feature`: bit 63 is set for edge-edge, bit 62 says
+/// which of the two bodies the point or first edge belongs to, followed by the two local feature numbers (31 bits
+/// each). With an analytic collider bit 63 marks an edge and bit 62 a face of the body (contact_key.h). Both are unique
+/// in a world and stay valid when other bodies are removed.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;
@@ -43,16 +43,16 @@ struct MembersOf<Stencil> {
     static std::span<const Member> list();
 };
 
-/// What find_contacts writes of one contact, all at once.
+/// One contact as find_contacts writes it, all fields at once.
 struct ContactRow {
     ContactKey key;
     ContactKind kind;
     Stencil stencil;
-    Vec3 point;             // m, on the second partner
-    Vec3 normal;            // unit, from the second partner to the first (the point, the first edge)
-    Real gap;               // m, distance minus contact distance; > 0 apart
-    Real distance;          // m, signed distance of the surfaces themselves; < 0 overlap
-    Vec3 surface_velocity;  // m/s, of a collider at the point; 0 between bodies (their nodes say it)
+    Vec3 point;             // on the second partner [m]
+    Vec3 normal;            // unit vector from the second partner to the first (the point, the first edge)
+    Real gap;               // distance minus contact distance; > 0 apart [m]
+    Real distance;          // signed distance of the surfaces themselves; < 0 overlap [m]
+    Vec3 surface_velocity;  // of a collider at the point; 0 between bodies, whose nodes have velocities [m/s]
     Real static_friction;
     Real dynamic_friction;
     Real restitution;
@@ -77,9 +77,9 @@ struct ContactTable {
     Column<Index> first_body;
     Column<Index> second_body;
     Column<Index> collider;
-    Column<Vec3> impulse;  // N s, world frame, on the first partner; before the solve: the warm start
+    Column<Vec3> impulse;  // on the first partner, in the world frame; before the solve: the warm start [N s]
     Column<Index> region;  // row of RegionTable, no_index for a contact without a moving node
-    Column<Vec3> slip;     // m/s, tangential relative velocity after the solve
+    Column<Vec3> slip;     // tangential relative velocity after the solve [m/s]
     Column<ContactState> state;
 
     void for_each_column(auto&& visit) {
@@ -111,10 +111,10 @@ struct ContactTable {
 /// Last step's impulses, in key order.
 struct WarmStartTable {
     Column<ContactKey> key;
-    Column<Vec3> impulse;  // N s
+    Column<Vec3> impulse;  // [N s]
     Column<Vec3> normal;
-    Column<Vec3> point;  // m; no rows where no body is rigid or implicit
-    Column<Real> step;   // s, one row: for which forces acted in their step; empty before the first
+    Column<Vec3> point;  // [m]; empty if no body is rigid or implicit
+    Column<Real> step;   // time for which forces acted in that step, one row; empty before the first step [s]
 
     void for_each_column(auto&& visit) {
         visit("key", key, ColumnRole::state);

@@ -1,4 +1,4 @@
-// Sorting rows by a number: one pass to count, one to fill.
+// Counting sort: one pass to count, one to fill.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,8 @@
 
 namespace skerry {
 
-/// Sorts rows by a number of theirs from 0 to `end` - 1; those of one number stay in their order. Rows by several
-/// numbers: by the last of them first. `spare`: memory to work in, which several sorts may have in common: pages that
-/// are touched for the first time cost as much as a sort.
+/// Stable sort of rows by an integer key from 0 to `end` - 1. To sort by several keys, sort by the last one first.
+/// `spare`: working memory that several sorts may share; touching fresh pages costs as much as a sort.
 template <class Row>
 void counting_sort(std::vector<Row>& rows, std::vector<Row>& spare, Index end, auto&& number_of) {
     std::vector<std::size_t> place(static_cast<std::size_t>(end) + 1, 0);

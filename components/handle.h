@@ -1,4 +1,4 @@
-// Handles with generations: how a user names a body, a collider, a material or an attachment.
+// Handles with generations, by which a user refers to a body, a collider, a material or an attachment.
 #pragma once
 
 #include <compare>
@@ -10,13 +10,13 @@
 
 namespace skerry {
 
-/// Names one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, also when
-/// its slot has been used again, and one to a row of another world, too.
+/// Refers to one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, even
+/// if its slot has been reused; a handle to a row of another world is recognised too.
 template <class Tag>
 struct Handle {
     std::uint32_t slot = 0xffffffffu;
     std::uint32_t generation = 0;
-    std::uint32_t world = 0;  // its number: of all worlds that it is in, if it was copied
+    std::uint32_t world = 0;  // number of the world; copies of a world share it
 
     auto operator<=>(const Handle&) const = default;
 };
@@ -30,13 +30,13 @@ using AttachmentHandle = Handle<struct AttachmentTag>;
 template <class HandleType>
 class HandleMap {
 public:
-    /// The number of the world whose rows these are. A world that is copied, or saved and loaded, keeps it, so that
-    /// handles that were taken before are valid after; it is no part of what a step depends on.
+    /// The number of the world that owns the rows. A world that is copied, or saved and loaded, keeps it, so that
+    /// earlier handles stay valid. No step depends on it.
     std::uint32_t world() const { return world_; }
     void set_world(std::uint32_t number) { world_ = number; }
 
-    /// A handle for the new last row, `row`. Freed slots are used again, the lowest first, so that the same calls give
-    /// the same handles.
+    /// Returns a handle for the new last row, `row`. Freed slots are reused, the lowest first, so that the same calls
+    /// give the same handles.
     HandleType insert(Index row) {
         std::uint32_t slot = lowest_free_;
         while (slot < row_.size() && row_[slot] != no_index) ++slot;
@@ -56,24 +56,25 @@ public:
         return row_[handle.slot];
     }
 
-    /// A live handle names another row from now on.
+    /// Makes a live handle refer to another row.
     void rename(HandleType handle, Index row) { row_[handle.slot] = row; }
 
-    /// Forgets a live handle. Its row stays where it is, without a name.
+    /// Releases a live handle. Its row stays where it is, without a handle.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
     }
 
-    /// Rows without a name have gone: `row_now` of each row that there was, no_index for those.
+    /// Updates all handles after rows without a handle were removed. `row_now`: new index of each old row, no_index for
+    /// removed rows.
     void rows_moved(std::span<const Index> row_now) {
         for (Index& row : row_)
             if (row != no_index) row = row_now[static_cast<std::size_t>(row)];
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
-    /// The live handle of a slot that a table row stores.
+    /// The live handle of a slot, as stored in a table row.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {

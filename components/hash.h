@@ -1,4 +1,4 @@
-// Hash: one number for any amount of data.
+// Hash: a 64-bit hash of any amount of data.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,15 @@
 
 namespace skerry {
 
-/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md): not cryptographic, but any change of a bit changes it.
-/// The same on every machine with the same bytes. What is added counts as one row of bytes, however it was cut.
+/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md): not cryptographic, but any changed bit changes it. The
+/// same bytes give the same value on every machine. The value does not depend on how the bytes are split into calls of
+/// add.
 class Hash {
 public:
     Hash();
     void add(const void* data, std::size_t bytes);
     void add(std::uint64_t word) { add(&word, sizeof word); }
-    /// The number of rows, then the rows. T must have no bytes between its fields: they may be anything.
+    /// Adds the number of rows, then the rows. T must have no padding, since padding bytes may have any value.
     template <class T>
     void add(std::span<const T> rows) {
         add(rows.size());

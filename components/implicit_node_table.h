@@ -1,5 +1,5 @@
-// One row per node of the bodies that move implicitly, body after body, in the order of their nodes: how they deform in
-// the frame of their mesh, which moves as a rigid body does (docs/methods/implicit_bodies.md 1).
+// One row per node of the implicit bodies, body after body, in node order: the deformation in the frame of the mesh,
+// which moves like a rigid body (docs/methods/implicit_bodies.md 1).
 #pragma once
 
 #include "components/column.h"
@@ -9,21 +9,21 @@
 namespace skerry {
 
 struct ImplicitNodeTable {
-    Column<Vec3> displacement;  // m, u
-    Column<Vec3> velocity;      // m/s, w; of a held body the whole velocity
-    // m, of what its contacts gave to the velocity of the displacement in the last long step, by its length; zero where
-    // it is in none. By carry_long_steps
+    Column<Vec3> displacement;  // u [m]
+    Column<Vec3> velocity;      // w; for a held body the whole velocity [m/s]
+    // Velocity that its contacts added to w in the last long step, times the length of that step [m]; zero outside a
+    // long step. Written by carry_long_steps.
     Column<Vec3> left;
-    // Of this step, by kick_implicit_bodies:
-    Column<Vec3> elastic_force;  // N, K u, by place in the factor
-    Column<Vec3> impulse;        // N s, by place; afterwards what is made of it
-    // without contacts; with them, by strain_implicit_bodies
+    // Written in this step by kick_implicit_bodies:
+    Column<Vec3> elastic_force;  // K u, by place in the factor [N]
+    Column<Vec3> impulse;        // by place; afterwards overwritten by the result [N s]
+    // First without contacts; strain_implicit_bodies adds them.
     Column<Vec3> velocity_next;
-    // by solve_regions, from zero:
-    Column<Vec3> contact_impulse;  // N s, world
-    // by strain_implicit_bodies:
+    // Accumulated from zero by solve_regions:
+    Column<Vec3> contact_impulse;  // in the world frame [N s]
+    // Written by strain_implicit_bodies:
     Column<Vec3> displacement_next;
-    Column<Vec3> force_rate;  // N/s, K w, by place
+    Column<Vec3> force_rate;  // K w, by place [N/s]
 
     std::size_t size() const { return displacement.size(); }
 
@@ -31,7 +31,7 @@ struct ImplicitNodeTable {
     void for_each_column(auto&& visit) {
         visit("displacement", displacement, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
-        visit("left", left, ColumnRole::link);  // hashed where it is not zero
+        visit("left", left, ColumnRole::link);  // hashed if not zero
         visit("elastic_force", elastic_force, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
         visit("velocity_next", velocity_next, ColumnRole::scratch);

@@ -1,4 +1,4 @@
-// What joints there are, and how a user names one.
+// The kinds of joints, and the handle by which a user refers to one.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace skerry {
 
 using JointHandle = Handle<struct JointTag>;
 
-/// What a joint leaves to its two bodies. ball: a point of both stays one. hinge: that, and they turn about one axis.
-/// slider: they move along one axis and do not turn against each other. fixed: neither.
+/// Relative motion that a joint leaves free. ball: rotation about a common point. hinge: rotation about one axis.
+/// slider: translation along one axis, without rotation. fixed: none.
 enum class JointKind : std::uint8_t { ball, hinge, slider, fixed };
 template <>
 struct EnumNames<JointKind> {

@@ -1,4 +1,4 @@
-// Joints of rigid bodies: one row per joint, and in each step rows of equations three by three
+// Joints of rigid bodies: one row per joint, and in each step blocks of three constraint equations
 // (docs/methods/joints.md).
 #pragma once
 
@@ -14,44 +14,45 @@
 
 namespace skerry {
 
-/// What drives the axis of a hinge or a slider: nothing, towards a speed, or towards a position.
+/// Drive of the axis of a hinge or a slider: none, towards a speed, or towards a position.
 enum class JointDrive : std::uint8_t { none, speed, position };
 template <>
 inline constexpr std::uint64_t value_count<JointDrive> = 3;
 
 struct JointMotorRow {
-    Real target = 0;      // rad/s or m/s; rad or m
-    Real most = 0;        // N m or N
-    Real most_speed = 0;  // rad/s or m/s, on the way to a position
+    Real target = 0;      // speed [rad/s or m/s] or position [rad or m]
+    Real most = 0;        // largest torque or force [N m or N]
+    Real most_speed = 0;  // largest speed on the way to a position [rad/s or m/s]
 
     bool operator==(const JointMotorRow&) const = default;
 };
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
 
-/// Where a joint sits on a body, or in the world: its origin, and its axis as the third of the frame.
+/// Frame of a joint on a body or in the world: its origin, and its axis as the third axis of the frame.
 struct JointFrame {
-    Vec3 point = Vec3::Zero();  // m, in the frame of the mesh, or the world
+    Vec3 point = Vec3::Zero();  // in the frame of the mesh, or of the world [m]
     Mat3 axes = Mat3::Identity();
 };
 template <>
 struct NumbersOf<JointFrame> : Reals<12> {};
 
-/// The relative coordinate is the angle of a hinge (rad) or the way of a slider (m), zero where the joint was made.
+/// The relative coordinate is the angle of a hinge [rad] or the displacement of a slider [m], zero when the joint was
+/// made.
 struct JointTable {
     Column<std::uint32_t> slot;
     Column<JointKind> kind;
     Column<JointDrive> drive;
-    Column<std::uint8_t> parts;  // the joint has switched off collisions of its bodies
+    Column<std::uint8_t> parts;  // 1: the joint has switched off collisions between its bodies
     Column<Index> first;         // row of BodyTable
     Column<Index> second;        // row of BodyTable, or no_index: the world
     Column<JointFrame> first_frame, second_frame;
-    Column<Real> lower, upper;  // limits of the coordinate; infinite: none
+    Column<Real> lower, upper;  // limits of the coordinate; infinite: no limit
     Column<JointMotorRow> motor;
-    // Of the last step: the coordinate at its start, whole turns counted, and
+    // Values of the last step: the coordinate at its start, whole turns included, and the impulses.
     Column<Real> coordinate;
-    Column<Vec3> impulse, moment;  // N s, N m s, on the first body, in the frame on the second
-    Column<Real> step;             // s, 0 before the first
+    Column<Vec3> impulse, moment;  // on the first body, in the frame on the second [N s, N m s]
+    Column<Real> step;             // time for which the impulses acted; 0 before the first step [s]
 
     std::size_t size() const { return slot.size(); }
 
@@ -75,35 +76,35 @@ struct JointTable {
     }
 };
 
-/// What the third row of a block lets its coordinate do.
+/// Law of the third row of a block: how its coordinate may move.
 struct AxisLaw {
-    bool locked = true;  // as the other two
+    bool locked = true;  // locked like the other two rows
     Real coordinate = 0;
     Real lower = -std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
     JointDrive drive = JointDrive::none;
     JointMotorRow motor{};
-    Real most_impulse = 0;  // N s or N m s, of the motor in this step
+    Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
 };
 
-/// Three rows of one joint in this step: of the velocities at its point, or of the spins. Impulses are on the first
-/// body.
+/// Three constraint rows of one joint in this step, on the velocities at its point or on the angular velocities.
+/// Impulses act on the first body.
 struct JointBlock {
     Index joint;                    // row of JointTable
-    bool turning;                   // of spins
+    bool turning;                   // the rows constrain angular velocities
     Index first, second;            // rows of RigidBodyTable; no_index: the world
-    Index first_node, second_node;  // its first node, where impulses can move it, else no_index
-    Vec3 point;                     // m
+    Index first_node, second_node;  // first node of the body if impulses can move it, else no_index
+    Vec3 point;                     // [m]
     Mat3 frame;                     // columns: the directions of the rows
-    Vec3 error;                     // m or rad, along the rows that are locked
+    Vec3 error;                     // along the locked rows [m or rad]
     AxisLaw axis;
 };
 
-/// In the order of the joints; those of a joint stand together.
+/// In joint order; blocks of one joint are adjacent.
 struct JointBlockTable {
     Column<JointBlock> block;
-    Column<Vec3> impulse;          // N s or N m s, by row of the block; before the solve: the warm start
+    Column<Vec3> impulse;          // by row of the block; before the solve: the warm start [N s or N m s]
     Column<Real> coordinate;       // by row of JointTable
-    Column<std::uint8_t> resting;  // by row of JointTable: what it joins rests, and it gives what it gave
+    Column<std::uint8_t> resting;  // by row of JointTable: its bodies are at rest, and it keeps its last impulse
 
     std::size_t size() const { return block.size(); }
     void for_each_column(auto&& visit) {

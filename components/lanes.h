@@ -1,5 +1,5 @@
-// Lanes<T, W>: W rows side by side, so that a kernel loads W values of one field at once, and Real8, the register they
-// are loaded into.
+// Lanes<T, W>: W rows side by side, so that a kernel loads W values of one field at once. Real8: the register into
+// which they are loaded.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Elements worked on side by side: 8 doubles fill one 512-bit register, or two of 256 bits.
+/// Number of elements processed side by side: 8 doubles fill one 512-bit register, or two of 256 bits.
 inline constexpr int element_lanes = 8;
 
 template <class T, int W>
@@ -19,20 +19,20 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
     const T& operator[](std::size_t i) const { return lane[i]; }
 };
 
-/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler instead of a
-/// loop over Lanes: it does not depend on the vectoriser's luck, and every lane gets the bits that the same source
-/// gives for one Real.
+/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler is used
+/// instead of a loop over Lanes: it does not depend on auto-vectorisation, and every lane gets the bits that the same
+/// source gives for one Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
-/// Half of it.
+/// Half of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
-// The same where other reals lie, at the address of any Real. Not memcpy: without 512-bit registers that becomes copies
-// of 16 bytes, which a load of 32 bytes right after has to wait for.
+// Unaligned variants that may alias other reals, for loads from the address of any Real. Not memcpy: without 512-bit
+// registers it becomes copies of 16 bytes, and a load of 32 bytes right after has to wait for them.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 
-/// What the kernel of the element forces works on: as many reals as a register has.
+/// Vector type of the element force kernel: as many reals as a register holds.
 #ifdef __AVX512VL__  // not __AVX512F__, which cmake/flags.cmake hides from Eigen
 using KernelReal = Real8;
 #else
@@ -57,7 +57,7 @@ inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>
     *reinterpret_cast<Real8InMemory*>(to.lane) = from;
 }
 
-/// Part `part` of the lanes of a block, for T = Real8 all of them.
+/// Part `part` of the lanes of a block; all lanes for T = Real8.
 template <class T>
 [[gnu::always_inline]] inline T load_part(const Lanes<Real, element_lanes>& from, std::size_t part) {
     if constexpr (lanes_of<T> == element_lanes)

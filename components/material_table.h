@@ -11,14 +11,14 @@
 
 namespace skerry {
 
-/// What a kernel needs of a material, derived once.
+/// Material constants used by the kernels, derived once.
 struct MaterialConstants {
     MaterialModel model;
-    Real shear_modulus;       // Pa, Lame mu of small strain
-    Real lame_lambda;         // Pa, Lame lambda of small strain
-    Real density;             // kg/m^3
+    Real shear_modulus;       // Lame mu of small strain [Pa]
+    Real lame_lambda;         // Lame lambda of small strain [Pa]
+    Real density;             // [kg/m^3]
     Real loss_factor = 0;     // systems/material/relaxation.h
-    Real bulk_viscosity = 0;  // damping ratio of an element's own highest frequency, by its change of volume
+    Real bulk_viscosity = 0;  // damping ratio of an element's highest frequency, acting on its change of volume
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
@@ -27,17 +27,17 @@ struct MembersOf<MaterialConstants> {
     static std::span<const Member> list();
 };
 
-/// Which part of the stress an element gives: all of it, what goes with one of Lame's constants alone, or what keeps a
-/// tetrahedron from turning over, which no other element has.
+/// Part of the stress that an element gives: all of it, the part of one Lame constant alone, or the inversion barrier,
+/// which keeps a tetrahedron from turning over. Only tetrahedra have the barrier.
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 template <>
 inline constexpr std::uint64_t value_count<ElementPart> = 4;
 
-/// Pa, of the law of guards, over the modulus lambda + 2 mu of the material.
+/// Modulus of the inversion barrier over the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// What goes with one of Lame's constants alone: the other is zero. A guard loses nothing, but for its viscosity where
-/// a cluster carries it.
+/// The constants of one part of the stress: for a part of one Lame constant the other is zero. An inversion barrier has
+/// no losses except its viscosity if a cluster carries it.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
@@ -49,7 +49,7 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// What a contact needs of a surface. What is below zero is left to others: of a body to its material, of a collider to
+/// Surface properties of a contact. A negative property of a body is taken from its material, one of a collider from
 /// the body.
 struct SurfaceProperties {
     Real static_friction = -1;
@@ -64,9 +64,9 @@ struct NumbersOf<SurfaceProperties> : Reals<3> {};
 struct MaterialTable {
     Column<MaterialConstants> constants;
     Column<SurfaceProperties> surface;
-    Column<Real> young_modulus;  // Pa
+    Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // 1/s, rate at which deformation velocities decay; rigid motion is kept
+    Column<Real> damping;        // decay rate of deformation velocities; rigid motion is kept [1/s]
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {

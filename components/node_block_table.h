@@ -10,42 +10,42 @@
 
 namespace skerry {
 
-// Nodes of a round body that a step looks at: its core, which contacts see, and some around it, which tell how fast it
-// spins. The others draw it.
-inline constexpr Index sphere_step_nodes = 13;   // the middle, and the corners of an icosahedron
-inline constexpr Index capsule_step_nodes = 12;  // two ends of the axis, a pole and four at the rim around either
-inline constexpr Index cylinder_core_nodes = 3;  // of a cylinder all nodes count: its rims tell how it turns
+// Nodes of a round body that take part in a step: its core, which contacts use, and some around it, from which its spin
+// is measured. The other nodes only draw it.
+inline constexpr Index sphere_step_nodes = 13;   // the centre and the corners of an icosahedron
+inline constexpr Index capsule_step_nodes = 12;  // both ends of the axis, with a pole and four rim points at each
+inline constexpr Index cylinder_core_nodes = 3;  // all nodes of a cylinder take part: its rims show its rotation
 
-/// Of all nodes of a body those that a step looks at; `core_nodes`: as in BodyTable.
+/// The nodes of a body that take part in a step. `core_nodes`: as in BodyTable.
 inline Range step_nodes_of(Range all, Index core_nodes) {
     if (core_nodes == 0 || core_nodes == cylinder_core_nodes) return all;
     return {all.begin, std::min(all.begin + (core_nodes == 1 ? sphere_step_nodes : capsule_step_nodes), all.end)};
 }
 
-// fixed: sums over a body are sums over its blocks in order, whatever the worker count
+// Fixed, because sums over a body are sums over its blocks in order, whatever the worker count.
 inline constexpr Index nodes_per_block = 256;
 
-/// What one pass over a block of nodes found; added up per body in block order.
+/// Sums of one pass over a block of nodes; added up per body in block order.
 struct NodeBlockSums {
-    Real mass;              // kg, of the nodes that move
-    Vec3 momentum;          // kg m/s
-    Vec3 first_moment;      // kg m, sum of m (x - origin)
-    Vec3 angular_momentum;  // kg m^2/s, about the origin given
-    Mat3 second_moment;     // kg m^2, sum of m (x - origin)(x - origin)^T
-    Real dissipated;        // J, kinetic energy of deformation that damping takes out of the block
+    Real mass;              // mass of the moving nodes [kg]
+    Vec3 momentum;          // [kg m/s]
+    Vec3 first_moment;      // sum of m (x - origin) [kg m]
+    Vec3 angular_momentum;  // about the given origin [kg m^2/s]
+    Mat3 second_moment;     // sum of m (x - origin)(x - origin)^T [kg m^2]
+    Real dissipated;        // kinetic energy of deformation that damping takes from the block [J]
 };
 
-/// Blocks of at most nodes_per_block nodes; a block never crosses from one body to the next. A round body has
-/// one, of the nodes that a step looks at.
+/// Blocks of at most nodes_per_block nodes. A block belongs to one body. A round body has one block, of the nodes that
+/// take part in a step.
 struct NodeBlockTable {
     Column<Index> begin;  // first node
     Column<Index> end;    // one past the last node
     Column<Index> body;   // row of BodyTable
-    // m^2/s^2, of velocity_next + push_out, by check_state; not a number if any node's is not finite
+    // Largest square of velocity_next + push_out, written by check_state [m^2/s^2]; NaN if any node's is not finite.
     Column<Real> max_speed_squared;
-    Column<Real> frame_speed_squared;   // the same in the body's frame
-    Column<Real> displacement_squared;  // m^2, in the body's frame, by advance_positions
-    Column<NodeBlockSums> sums;         // by damp_velocity
+    Column<Real> frame_speed_squared;   // the same speed in the body's frame [m^2/s^2]
+    Column<Real> displacement_squared;  // in the body's frame, written by advance_positions [m^2]
+    Column<NodeBlockSums> sums;         // written by damp_velocity
 
     /// The only list of columns.
     void for_each_column(auto&& visit) {

@@ -1,5 +1,4 @@
-// Nodes that do not move by their own masses alone: groups that one matrix of inertia couples
-// (docs/methods/clusters.md).
+// Clusters: groups of nodes coupled by one matrix of inertia (docs/methods/clusters.md).
 #pragma once
 
 #include <span>
@@ -10,14 +9,14 @@
 
 namespace skerry {
 
-/// Clusters of all bodies: an impulse on a node moves every node of its cluster, by a row of `inverse`. Made by
-/// build_clusters from the implicit elements, and kept up with these by stiffen_clusters.
+/// Clusters of all bodies. An impulse on a node moves every node of its cluster, by a row of `inverse`. Made by
+/// build_clusters from the implicit elements and updated by stiffen_clusters.
 struct NodeClusters {
-    Ragged<Index> nodes;              // by cluster: rows of NodeTable, moving ones, ascending
+    Ragged<Index> nodes;              // by cluster: rows of NodeTable, moving nodes only, ascending
     Column<Index> body;               // by cluster: row of BodyTable
-    Column<std::size_t> first_entry;  // by cluster: of its matrix in `inverse`
-    Column<Real> inverse;             // 1/kg, A^-1, row by row
-    Column<Index> cluster_of, place;  // by node: its cluster or no_index, its place there. No rows without clusters
+    Column<std::size_t> first_entry;  // by cluster: start of its matrix in `inverse`
+    Column<Real> inverse;             // A^-1, row by row [1/kg]
+    Column<Index> cluster_of, place;  // by node: its cluster or no_index, its place in it; empty without clusters
 
     std::size_t size() const { return body.size(); }
     bool empty() const { return body.empty(); }
@@ -29,14 +28,14 @@ struct NodeClusters {
         cluster_of.clear();
         place.clear();
     }
-    /// Row of the cluster that a node belongs to, or no_index.
+    /// Cluster of a node, or no_index.
     Index cluster(Index node) const { return cluster_of.empty() ? no_index : cluster_of[node]; }
-    /// The first node of the cluster that a node belongs to, or itself.
+    /// The first node of the cluster of `node`, or `node` itself.
     Index leader(Index node) const {
         const Index of = cluster(node);
         return of == no_index ? node : nodes.item[nodes.offset[of]];
     }
-    /// 1/kg, by what an impulse on the node at a place moves the nodes of its cluster.
+    /// Velocities of the nodes of a cluster per unit impulse on the node at place `at` [1/kg].
     std::span<const Real> row(Index cluster, Index at) const {
         const auto c = static_cast<std::size_t>(cluster);
         const std::size_t count = nodes[c].size();

@@ -9,18 +9,18 @@ namespace skerry {
 
 /// Mesh vertices of all bodies, body after body. Plain data: no behaviour, no pointers.
 struct NodeTable {
-    Column<Vec3> position;       // m, world frame
-    Column<Vec3> velocity;       // m/s
-    Column<Vec3> velocity_next;  // m/s, written by predict_velocity, corrected by solve_regions
-    // m/s, split impulse: moves the position of this step only; zero unless a contact is pressed in
+    Column<Vec3> position;       // in the world frame [m]
+    Column<Vec3> velocity;       // [m/s]
+    Column<Vec3> velocity_next;  // written by predict_velocity, corrected by solve_regions [m/s]
+    // Split impulse: moves the position in this step only; zero unless a contact is pressed in [m/s].
     Column<Vec3> push_out;
-    Column<Vec3> force;                // N, elastic and external, on nodes without freedom; written by predict_velocity
-    Column<Vec3> load;                 // N, set by the user, kept until changed
-    Column<Vec3> rest_position;        // m, as added, in the frame of the mesh
-    Column<Vec3> displacement_origin;  // m, where the node was when the displacement of its body was last zero
-    Column<Vec3> still_position;       // m, where the node was when the drift of its body was last zero
-    Column<Real> mass;                 // kg, lumped
-    Column<Real> inverse_mass;         // 1/kg, 0: pinned or kinematic
+    Column<Vec3> force;  // elastic and external, on nodes without degrees of freedom; written by predict_velocity [N]
+    Column<Vec3> load;   // set by the user, kept until changed [N]
+    Column<Vec3> rest_position;        // as added, in the frame of the mesh [m]
+    Column<Vec3> displacement_origin;  // position when the displacement of its body was last zero [m]
+    Column<Vec3> still_position;       // position when the drift of its body was last zero [m]
+    Column<Real> mass;                 // lumped [kg]
+    Column<Real> inverse_mass;         // 0: pinned or kinematic [1/kg]
     Column<Index> body;                // row of BodyTable
 
     /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest) and

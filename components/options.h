@@ -1,4 +1,4 @@
-// The choices a user makes by name. Each enum has its names in one place (names()), which the scene reader, the
+// Options that a user selects by name. Each enum has its names in one place (EnumNames), which the scene reader, the
 // program's help and the reports share.
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace skerry {
 
-/// guard: what tetrahedra push back with that are about to turn over (docs/methods/elasticity.md 7.7); no material has
-/// it.
+/// guard: the inversion barrier, which acts on tetrahedra that are about to turn over (docs/methods/elasticity.md 7.7).
+/// No material can select it.
 enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
-/// What carries the stress of a body. linear: its tetrahedra, with constant strain each; they lock: in bending, and
-/// where volume hardly changes. edge_smoothed: its edges, with the mean strain of the tetrahedra around each.
-/// edge_node_smoothed: the same for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a
-/// Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
+/// Elements that carry the stress of a body. linear: tetrahedra with constant strain; they lock in bending and if the
+/// volume hardly changes. edge_smoothed: edges, with the mean strain of the tetrahedra around each. edge_node_smoothed:
+/// edges for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a Poisson ratio of 0.25,
+/// edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// cone: Coulomb's law. pyramid: the paper's four-sided approximation of it (docs/methods/friction.md 1.3).
 enum class Friction { cone, pyramid };
@@ -23,12 +23,12 @@ enum class ContactRegions { separate, global };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
 enum class WarmStart { off, on };
-/// What is done about bodies that overlap each other or colliders before the first step after one of them was added.
-/// resolve: they are moved apart, without energy, where the way out is short, and refused where it is not; refuse: they
-/// are refused; ignore: the run reports them and begins as it is (docs/decisions/0017-start-overlaps.md).
+/// Treatment of bodies that overlap each other or colliders before the first step after one of them was added. resolve:
+/// move them apart without energy if the way out is short, otherwise refuse them. refuse: refuse them. ignore: report
+/// them and start as they are (docs/decisions/0017-start-overlaps.md).
 enum class StartOverlaps { resolve, refuse, ignore };
-/// How two things overlap. crossing: their surfaces go through each other; inside: the first is inside the second;
-/// around: the second is inside the first; coincident: each is inside the other.
+/// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first is inside the second. around:
+/// the second is inside the first. coincident: each is inside the other.
 enum class OverlapKind { crossing, inside, around, coincident };
 /// Time integrators (docs/integration.md). Both alternate a kick, which changes velocities by forces, and a drift,
 /// which moves positions by velocities. symplectic_euler: first order when started from given velocities, with bounded
@@ -126,7 +126,7 @@ struct EnumNames<Integrator> {
     }};
 };
 
-/// Names that a choice had in earlier versions, each with the hint that a reader gives whoever still uses it.
+/// Names of options in earlier versions, each with the hint that a reader gives to users who still write it.
 template <class Enum>
 struct RemovedNames {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 0> table{};
@@ -158,7 +158,7 @@ struct RemovedNames<SolverMethod> {
     }};
 };
 
-/// The name of a choice, as scenes and reports write it.
+/// The name of an option value, as scenes and reports write it.
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
     for (const auto& [candidate, name] : EnumNames<Enum>::table)
@@ -166,7 +166,7 @@ constexpr std::string_view name_of(Enum value) {
     return "?";
 }
 
-/// The choice with this name, if there is one.
+/// The option value with this name, if there is one.
 template <class Enum>
 constexpr std::optional<Enum> from_name(std::string_view name) {
     for (const auto& [value, candidate] : EnumNames<Enum>::table)

@@ -1,4 +1,4 @@
-// Ragged<T>: rows of different length, stored as offsets and items.
+// Ragged<T>: rows of different lengths, stored as offsets and items.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Rows that follow each other.
+// Ranges of consecutive rows.
 #pragma once
 
 #include <algorithm>
@@ -18,18 +18,19 @@ struct Range {
     bool operator==(const Range&) const = default;
 };
 
-/// A range of rows, to be written or not as all of them are.
+/// Returns the part of `all` that covers `rows`.
 template <class T>
 std::span<T> rows_of(std::span<T> all, Range rows) {
     return all.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
 }
-/// The same of a column.
+/// Returns the part of a column that covers `rows`.
 auto rows_of(auto& column, Range rows) requires requires {
     column.span();
 }
 { return rows_of(column.span(), rows); }
 
-/// Where a row is once ranges of rows, ascending, are gone; of one that is gone itself, where the next one is.
+/// New index of a row after ranges of rows, ascending, are removed. For a removed row: the new index of the next kept
+/// row.
 inline Index row_without(Index row, std::span<const Range> gone) {
     Index below = 0;
     for (const Range& rows : gone) {
@@ -39,7 +40,7 @@ inline Index row_without(Index row, std::span<const Range> gone) {
     return row - below;
 }
 
-/// More rows that are gone, behind those that are listed.
+/// Appends rows that follow the listed ones, and merges adjacent ranges.
 void append_gone(Range rows, auto& gone) {
     if (rows.size() == 0) return;
     if (!gone.empty() && gone.back().end == rows.begin)

@@ -13,30 +13,30 @@ namespace skerry {
 
 enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, not_finite };
 
-/// What a region was spared; or'ed.
+/// Shortcuts taken by the solver for a region; combined with bitwise or.
 enum RegionShortcut : std::uint8_t {
     shortcut_none = 0,
-    shortcut_closed_form = 1,   // one contact
-    shortcut_separating = 2,    // no contact closes: zero impulses solve it
-    shortcut_certified = 4,     // the warm start solves it
-    shortcut_frictionless = 8,  // one row a contact
-    shortcut_in_lanes = 16      // small: solved side by side with others
+    shortcut_closed_form = 1,   // exact solution of a single contact
+    shortcut_separating = 2,    // no contact closes: zero impulses are the solution
+    shortcut_certified = 4,     // the warm start is the solution
+    shortcut_frictionless = 8,  // one row per contact
+    shortcut_in_lanes = 16      // small: solved side by side with other regions
 };
 
 /// One row per region, numbered by its first contact.
 struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
-    Ragged<Index> joints;      // rows of JointBlockTable, ascending; no rows where there is no joint
-    Column<ContactKey> id;     // key of its first contact: a region that keeps it is the same region in the next step
-    Column<Index> iterations;  // sweeps; 0 when the warm start already solves it
+    Ragged<Index> joints;      // rows of JointBlockTable, ascending; no rows without joints
+    Column<ContactKey> id;     // key of its first contact; it identifies the region across steps
+    Column<Index> iterations;  // sweeps; 0 if the warm start is the solution
     Column<Real> error;        // e_nat, docs/methods/errors.md 2
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
-    Column<Real> dissipated;  // J, taken out by its contacts in this step
-    Column<Real> push_work;   // J, put in by moving positions alone
-    // in which they are started: large ones by predicted cost, small ones by size, single contacts last
+    Column<Real> dissipated;  // energy dissipated by its contacts in this step [J]
+    Column<Real> push_work;   // energy added by moving positions alone [J]
+    // Start order: large regions by predicted cost, small ones by size, single contacts last.
     Column<Index> order;
-    bool pushed = false;  // some region wrote NodeTable::push_out
+    bool pushed = false;  // whether some region wrote NodeTable::push_out
 
     std::size_t size() const { return contacts.size(); }
     std::span<const Index> joints_of(std::size_t region) const {
@@ -58,12 +58,12 @@ struct RegionTable {
     }
 };
 
-/// What is remembered of regions from step to step, by ascending id. It tells how long a region will take, and nothing
-/// else: no result depends on it, so it is no part of the state.
+/// History of the regions across steps, by ascending id. It only predicts how long a region will take. No result
+/// depends on it, so it is not part of the state.
 struct RegionHistoryTable {
     Column<ContactKey> id;
-    Column<Index> contacts;  // how many
-    Column<Real> sweeps;     // moving average
+    Column<Index> contacts;  // number of contacts
+    Column<Real> sweeps;     // moving average of the sweeps
     Column<Index> age;       // steps since the number of its contacts changed
 
     void for_each_column(auto&& visit) {

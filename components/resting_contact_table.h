@@ -1,15 +1,15 @@
-// Contacts between what rests, which no step looks for.
+// Contacts between bodies at rest. Steps do not search for them.
 #pragma once
 
 #include "components/contact_table.h"
 
 namespace skerry {
 
-/// Contacts as they were in the last step that looked for them, in key order. Of them steps need the impulses, to start
-/// from when something wakes; the others are kept to be shown.
+/// Contacts as they were in the last step that searched for them, in key order. Steps need the impulses as a warm start
+/// for when a body wakes; the other columns are kept for display.
 struct RestingContactTable {
     ContactTable contact;  // `region`: no_index
-    Column<Real> step;     // s, for which forces acted in the step that its impulse belongs to
+    Column<Real> step;     // time for which forces acted in the step of its impulse [s]
 
     void for_each_column(auto&& visit) {
         contact.for_each_column([&](const char* name, auto& column, ColumnRole) {

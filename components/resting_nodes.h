@@ -1,4 +1,4 @@
-// Which nodes lie in bodies at rest: nothing happens to them in a step.
+// Nodes of bodies at rest: a step does not change them.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// With empty spans no body rests.
+/// Empty spans mean that no body rests.
 struct RestingNodes {
     std::span<const Index> node_body = {};           // NodeTable
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable

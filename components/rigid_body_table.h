@@ -1,4 +1,4 @@
-// One row per rigid body: how it moves as a whole. Its nodes follow (docs/methods/rigid_bodies.md).
+// One row per rigid or implicit body: its rigid motion, which its nodes follow (docs/methods/rigid_bodies.md).
 #pragma once
 
 #include <cstdint>
@@ -13,46 +13,47 @@
 
 namespace skerry {
 
-/// The principal frame has its origin in the centre of mass and its axes along those of inertia. `axes` turns it into
-/// the frame of the mesh, `rotation` into the world: a node is at center + rotation axes^T (rest_position -
+/// The principal frame has its origin in the centre of mass and its axes along the principal axes of inertia. `axes`
+/// maps it to the frame of the mesh, `rotation` to the world: a node is at center + rotation axes^T (rest_position -
 /// rest_center).
 struct RigidBodyTable {
     Column<Index> body;  // row of BodyTable
-    Column<Real> mass;   // kg
-    // What deforms by much has those of its shape:
-    Column<Vec3> moments;           // kg m^2, of inertia about the principal axes
-    Column<Mat3> axes;              // of the principal frame, in the frame of the mesh
-    Column<Vec3> rest_center;       // m, in the frame of the mesh
-    Column<Vec3> center;            // m
+    Column<Real> mass;   // [kg]
+    // Inertia; for a body with large deformation that of its current shape:
+    Column<Vec3> moments;           // of inertia about the principal axes [kg m^2]
+    Column<Mat3> axes;              // axes of the principal frame, in the frame of the mesh
+    Column<Vec3> rest_center;       // in the frame of the mesh [m]
+    Column<Vec3> center;            // [m]
     Column<Mat3> rotation;          // principal frame to world
-    Column<Vec3> momentum;          // kg m/s
-    Column<Vec3> angular_momentum;  // kg m^2/s, about the centre
-    Column<std::uint8_t> large;     // whether what deforms in its frame does so by the laws of its elements
-    // The attachment that holds it as a whole, or the frame of what deforms in it, and where the frame of the mesh is
-    // in that of the attachment:
+    Column<Vec3> momentum;          // [kg m/s]
+    Column<Vec3> angular_momentum;  // about the centre of mass [kg m^2/s]
+    Column<std::uint8_t> large;     // 1: its deformation is large and follows the laws of its elements
+    // The attachment that holds the body as a whole, or the frame of an implicit body, and the pose of the frame of the
+    // mesh in that of the attachment:
     Column<Index> holder;        // row of AttachmentTable, or no_index
-    Column<Vec3> held_position;  // m
+    Column<Vec3> held_position;  // [m]
     Column<Mat3> held_rotation;
-    // Of this step, by kick_rigid_bodies:
-    Column<Mat3> inverse_inertia;    // 1/(kg m^2), world
-    Column<Vec3> kick, moment_kick;  // N s, N m s about the centre: of gravity and loads
-    // by solve_regions, from zero:
-    Column<Vec3> contact_impulse, contact_moment;  // N s, N m s about the centre
-    Column<Vec3> push_velocity, push_spin;         // m/s, rad/s: of this step's positions only
-    // by turn_rigid_bodies:
+    // Written in this step by kick_rigid_bodies:
+    Column<Mat3> inverse_inertia;    // in the world frame [1/(kg m^2)]
+    Column<Vec3> kick, moment_kick;  // of gravity and loads; moment about the centre of mass [N s, N m s]
+    // Accumulated from zero by solve_regions:
+    Column<Vec3> contact_impulse, contact_moment;  // moment about the centre of mass [N s, N m s]
+    Column<Vec3> push_velocity, push_spin;         // they move the positions of this step only [m/s, rad/s]
+    // Written by turn_rigid_bodies:
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
-    // by strain_implicit_bodies: how a body turns in the shape that it has come to, and its principal frame in the
-    // world before it is turned. Of rigid bodies, and of those that are deformed by little, they stay
+    // Written by strain_implicit_bodies: moments and axes of inertia in the new shape, and the principal frame in the
+    // world before it is turned. Unchanged for rigid bodies and for bodies with small deformation.
     Column<Vec3> moments_next;
     Column<Mat3> axes_next, rotation_shaped;
-    // N m s, what keeps the frame of a held body on its way against what deforms in it
+    // Angular impulse that keeps the frame of a held body on its path against the deformation in it [N m s].
     Column<Vec3> hold_moment;
     Column<std::uint8_t> large_next;
 
     std::size_t size() const { return mass.size(); }
 
-    /// The only list of columns. Derived: by find_holders. `large` is hashed where it is set.
+    /// The only list of columns. Derived by find_holders: holder, held_position and held_rotation. `large` is hashed if
+    /// it is set.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);

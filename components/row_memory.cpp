@@ -16,7 +16,7 @@ namespace {
 
 [[maybe_unused]] constexpr std::size_t large_page = std::size_t{2} << 20;
 
-/// An advice: where it is refused, or there are no such pages, memory is as it was.
+/// Asks for large pages. This is only a hint: if it is refused or there are no such pages, the memory stays as it was.
 void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);

@@ -1,4 +1,4 @@
-// Memory of columns: whole cache lines and, of long ones, pages of 2 MiB where the system has them.
+// Memory of columns: whole cache lines, and pages of 2 MiB for long columns if the system has them.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +8,17 @@
 
 namespace skerry {
 
-/// Bytes to which the rows of a column are aligned: a vector register, and a line that no other column shares.
+/// Alignment of the rows of a column [bytes]: a vector register, and a cache line that no other column shares.
 inline constexpr std::size_t row_alignment = 64;
 
-/// Memory of `bytes`, which may be 0, from operator new. A step goes through the columns of a large world once: with
-/// pages of 4 kB looking up where each is takes 4 % of a step of 360,000 tetrahedra (docs/scaling.md). So Linux is
-/// asked for pages of 2 MiB under what spans whole ones. Throws std::bad_alloc.
+/// Allocates `bytes`, which may be 0, with operator new. A step reads the columns of a large world once; with pages of
+/// 4 kB the address translation takes 4 % of a step of 360,000 tetrahedra (docs/scaling.md). On Linux, memory that
+/// spans whole pages of 2 MiB is therefore requested as such pages. Throws std::bad_alloc.
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 
-/// Rows of plain data whose type only the caller knows: each is `row_bytes` long, the same in every call. Copying its
-/// bytes copies a row, and nothing has to be done when a row ends. Memory never shrinks.
+/// Rows of plain data whose type only the caller knows. Each row has `row_bytes` bytes, the same in every call. Rows
+/// are copied bytewise and need no destructor. The memory never shrinks.
 class RowMemory {
 public:
     RowMemory() = default;
@@ -30,12 +30,12 @@ public:
     std::size_t size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Room for `count` rows, and no more.
+    /// Makes room for `count` rows, and no more.
     void reserve(std::size_t count, std::size_t row_bytes);
-    /// Room for `more` rows behind the last. Memory at least doubles, so that appending rows one by one moves each only
-    /// a few times.
+    /// Makes room for `more` rows behind the last. The memory at least doubles, so that appending rows one by one moves
+    /// each row only a few times.
     void make_room(std::size_t more, std::size_t row_bytes);
-    /// The first `count` rows; the caller has made room for them, and writes those that are new.
+    /// Sets the number of rows to `count`. The caller must have made room for them and writes the new ones.
     void set_size(std::size_t count) { size_ = count; }
     void copy(const RowMemory& other, std::size_t row_bytes);
     void swap(RowMemory& other) noexcept;

@@ -1,5 +1,5 @@
-// Descriptions of the rows of a column, for code that does not know their type: it saves, loads, hashes, resizes or
-// erases them. A struct that tables hold has its NumbersOf or MembersOf below its definition.
+// Type descriptions of column rows, for code that saves, loads, hashes, resizes or erases rows without knowing their
+// type. A struct stored in tables has its NumbersOf or MembersOf below its definition.
 #pragma once
 
 #include <array>
@@ -22,20 +22,20 @@ inline constexpr std::size_t bytes_of(NumberType type) {
     return bytes[static_cast<std::size_t>(type)];
 }
 
-/// The integer at a place. Throws std::logic_error for reals.
+/// Returns the integer at an address. Throws std::logic_error for reals.
 std::int64_t number_at(const std::byte* place, NumberType type);
 
 struct Member;
 
 struct RowType {
-    std::size_t bytes;                               // of a row
+    std::size_t bytes;                               // size of a row
     void (*make)(void* rows, std::size_t count);     // value-initialises rows; vectors and matrices are zero
-    std::size_t width = 0;                           // numbers of a row, which have no gaps; 0: it has members
-    NumberType number = NumberType::uint8;           // of which type they are
-    std::uint64_t values = 0;                        // how many values an enum has; 0: the type is no enum
-    std::span<const Member> (*members)() = nullptr;  // null: none
+    std::size_t width = 0;                           // numbers per row, without padding; 0: it has members
+    NumberType number = NumberType::uint8;           // type of these numbers
+    std::uint64_t values = 0;                        // number of values of an enum; 0: not an enum
+    std::span<const Member> (*members)() = nullptr;  // null: no members
 
-    /// Whether rows are known well enough to be saved.
+    /// Whether the description suffices to save the rows.
     bool is_known() const { return width > 0 || members != nullptr; }
 };
 
@@ -85,7 +85,7 @@ struct MembersOf;
 template <class Enum>
 struct EnumNames;
 
-/// How many values an enum has, from 0 on. 0: no enum, or one whose numbers are not checked.
+/// Number of values of an enum, counted from 0. 0: not an enum, or an enum whose values are not checked.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>
@@ -130,7 +130,7 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
-/// Bytes from the start of an S to a member of it.
+/// Offset of a member of S from its start [bytes].
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};
@@ -138,7 +138,7 @@ std::size_t member_offset(T S::*member) {
     return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(place) - memory);
 }
 
-/// One in the list of a MembersOf.
+/// A member in the list of a MembersOf.
 struct Member {
     template <class S, class T>
     Member(const char* its_name, T S::*place) : name(its_name), offset(member_offset(place)), type(&row_type<T>) {}

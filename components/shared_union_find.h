@@ -11,22 +11,22 @@
 
 namespace skerry {
 
-/// The sets of UnionFind, without locks (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find
-/// problem): a root is hung below a smaller one by one exchange, which fails if another thread was first, and is then
-/// tried again from the new root. So the root of a set is its smallest index here, too, however many threads joined it
-/// in whatever order. Parent and stamp change together, and nothing else is read through them, so that no order of
-/// memory is asked for; what has been joined by all threads they have to wait for by themselves.
+/// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
+/// root is attached to a smaller one by one compare-and-exchange; if another thread was first, it is retried from the
+/// new root. The root of a set is therefore its smallest index, whatever the number of threads and the order of the
+/// joins. Parent and stamp change together and guard no other data, so that relaxed memory order suffices; threads must
+/// synchronise before they use the result of all joins.
 struct SharedUnionFind {
-    /// Both with the stamp of a start in their upper half: of an earlier one they hold nothing.
+    /// Both words carry the stamp of a start in their upper half. Words with an earlier stamp count as empty.
     struct Node {
         std::uint64_t parent;
-        std::uint64_t first;  // item of the set, complemented: the smallest is the largest word. At its root
+        std::uint64_t first;  // smallest item of the set, at the root; complemented: the largest word wins
     };
 
     Column<Node> node;
     std::uint32_t now = 0;
 
-    /// Makes each of `count` indices a set of its own. Nothing is cleared.
+    /// Makes each of `count` indices a set of its own. Clears no memory.
     void start(std::size_t count) {
         if (node.size() < count) node.resize(count);
         if (now == std::numeric_limits<std::uint32_t>::max()) {
@@ -36,7 +36,7 @@ struct SharedUnionFind {
         ++now;
     }
 
-    /// Brings `index` from the memory, for a root() that will be asked for soon.
+    /// Prefetches `index` for a later root().
     void fetch(Index index) const { __builtin_prefetch(node.data() + index, 1); }
 
     Index root(Index index) {
@@ -46,13 +46,13 @@ struct SharedUnionFind {
             if (parent == index) return index;
             const Index next = parent_in(load(node[parent].parent), parent);
             if (next == parent) return parent;
-            // halves the path; whoever was first has halved it, too
+            // path halving; if another thread was first, it has halved the path, too
             exchange(node[index].parent, word, stamped(next));
             index = next;
         }
     }
 
-    /// Joins the sets of two indices. Returns the root of both as it was then.
+    /// Joins the sets of two indices. Returns their common root at that time.
     Index join(Index a, Index b) {
         while (true) {
             a = root(a);
@@ -64,14 +64,14 @@ struct SharedUnionFind {
         }
     }
 
-    /// Has the set of a root begin with an item unless it begins with a smaller one. Once nothing is joined any more.
+    /// Lowers the first item of the set of `root` to `item` if it is smaller. Call it only after all joins.
     void begin_with(Index root, Index item) {
         const std::uint64_t mine = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
         std::uint64_t word = load(node[root].first);
         while (word < mine && !exchange(node[root].first, word, mine)) continue;
     }
 
-    /// The smallest item that the set of a root was told, or no_index.
+    /// The smallest item passed to begin_with for the set of `root`, or no_index.
     Index first_item(Index root) {
         const std::uint64_t word = load(node[root].first);
         return stamp_of(word) == now ? static_cast<Index>(~static_cast<std::uint32_t>(word)) : no_index;
@@ -87,7 +87,7 @@ private:
     }
 
     static std::uint64_t load(std::uint64_t& word) { return std::atomic_ref(word).load(std::memory_order_relaxed); }
-    /// On failure `expected` is what stands there.
+    /// On failure `expected` receives the current value.
     static bool exchange(std::uint64_t& word, std::uint64_t& expected, std::uint64_t next) {
         return std::atomic_ref(word).compare_exchange_strong(expected, next, std::memory_order_relaxed);
     }

@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). The distributions of the
-/// standard differ between libraries, these do not. Scenes that scatter bodies depend on the numbers: they stay as they
-/// are.
+/// splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). Unlike the distributions of
+/// the standard library, these give the same numbers everywhere. Scenes that scatter bodies depend on them, so they
+/// must not change.
 class SplitMix {
 public:
     explicit SplitMix(std::uint64_t seed) : state_(seed) {}

@@ -1,4 +1,4 @@
-// The boundary of the bodies: triangles, edges and vertices.
+// The surfaces of the bodies: triangles, edges and vertices.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 namespace skerry {
 
 /// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one
-/// of its triangles (the lowest that has it), so that a pair of close triangles yields each pair of features once.
+/// of its triangles, the lowest that has it, so that a pair of close triangles yields each pair of features once.
 ///
-/// A round body has one without area, its core: three times the middle of a sphere or cylinder, or both ends of the
-/// axis of a capsule, the second twice. Of the latter the first side is an edge; other sides have none (no_index).
+/// A round body has one degenerate triangle, its core. Sphere or cylinder: three times the centre. Capsule: the two
+/// ends of the axis, the second one twice; its first side is an edge. Other sides have no edge (no_index).
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
     Column<std::array<Index, 3>> vertex;  // rows of VertexTable
     Column<std::uint8_t> owned_vertices;  // bit k: this triangle owns vertex k
     Column<std::uint8_t> owned_edges;     // bit k: this triangle owns edge k
-    Column<Index> element;                // the tetrahedron behind it (element index of ElementBlockTable), or no_index
+    Column<Index> element;                // the tetrahedron behind it (index in TetrahedronBlockTable), or no_index
 
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::derived);
@@ -41,7 +41,7 @@ inline bool is_core(const std::array<Index, 3>& node) {
 struct EdgeTable {
     Column<std::array<Index, 2>> node;  // rows of NodeTable, the lower first
     Column<std::array<Index, 2>>
-        triangle;  // rows of TriangleTable; the second is no_index on an open boundary, and of a core
+        triangle;  // rows of TriangleTable; the second is no_index on an open boundary and for a core
 
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::derived);
@@ -51,7 +51,7 @@ struct EdgeTable {
 
 struct VertexTable {
     Column<Index> node;            // row of NodeTable
-    Column<Index> triangle_begin;  // range in triangle_item of the triangles around the vertex
+    Column<Index> triangle_begin;  // range in SurfaceTables::vertex_triangle of the triangles around the vertex
     Column<Index> triangle_end;
 
     void for_each_column(auto&& visit) {
@@ -61,7 +61,7 @@ struct VertexTable {
     }
 };
 
-/// The three tables and the list that vertices point into. All of it is derived: Model::rebuild_outlines.
+/// The three tables and the list that vertices refer to. All of it is derived by Model::rebuild_outlines.
 struct SurfaceTables {
     TriangleTable triangles;
     EdgeTable edges;

@@ -1,5 +1,5 @@
-// The engine's number and vector types, and the choices a user makes by name. The only component header that is public
-// beside options.h: it is installed with the library.
+// Number and vector types of the engine. Besides options.h, this is the only public component header: it is installed
+// with the library.
 #pragma once
 
 #include <Eigen/Core>

@@ -11,21 +11,21 @@
 namespace skerry {
 
 /// Disjoint sets of 0 .. count-1, by union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case analysis of set
-/// union algorithms). The smaller root wins a join, so that the root of a set is its smallest index: it does not depend
-/// on the order of the joins. Memory is kept from one start to the next.
+/// union algorithms). The smaller root wins a join, so that the root of a set is its smallest index, whatever the order
+/// of the joins. The memory is reused by the next start.
 struct UnionFind {
-    /// The fields are used together, at places all over the memory.
+    /// The fields of an index are stored together, because they are accessed together and at random.
     struct Node {
         Index parent;
-        std::uint32_t stamp;  // parent and number are of the start that has this stamp
-        Index number;         // of the set, at its root; no_index before it was asked for
+        std::uint32_t stamp;  // parent and number belong to the start with this stamp
+        Index number;         // number of the set, stored at its root; no_index until it is assigned
     };
 
     Column<Node> node;
     std::uint32_t now = 0;
     Index number_count = 0;
 
-    /// Makes each of `count` indices a set of its own. Nothing is cleared: a stamp of an earlier start is no stamp.
+    /// Makes each of `count` indices a set of its own. Clears no memory: nodes with an earlier stamp count as new.
     void start(std::size_t count) {
         if (node.size() < count) node.resize(count);
         if (now == std::numeric_limits<std::uint32_t>::max()) {
@@ -36,7 +36,7 @@ struct UnionFind {
         number_count = 0;
     }
 
-    /// Brings `index` from the memory, for a root() that will be asked for soon.
+    /// Prefetches `index` for a later root().
     void fetch(Index index) const { __builtin_prefetch(node.data() + index, 1); }
 
     Index root(Index index) {
@@ -46,7 +46,7 @@ struct UnionFind {
         }
         while (node[index].parent != index) {
             const Index next = node[node[index].parent].parent;
-            // most paths are short already, and need no write
+            // most paths are short already and need no write
             if (next != node[index].parent) node[index].parent = next;
             index = next;
         }
@@ -62,8 +62,8 @@ struct UnionFind {
 
     void join(Index a, Index b) { join_roots(root(a), root(b)); }
 
-    /// The number of the set of `index`: sets are numbered in the order in which they are first asked for, once nothing
-    /// is joined any more.
+    /// The number of the set of `index`. Sets are numbered in the order of their first query. Call it only after all
+    /// joins.
     Index number(Index index) {
         Node& top = node[root(index)];
         if (top.number == no_index) top.number = number_count++;

@@ -1,4 +1,4 @@
-// What a stage touches: accesses, and the Binder that hands out columns and notes what it hands out.
+// Declared accesses of a stage, and the Binder, which hands out columns and records the accesses.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace skerry {
 
-/// value: is read, and no stage may write it; so nothing waits for it.
+/// value: read, and never written by any stage, so that it causes no dependency.
 enum class Use : std::uint8_t { value, read, write };
 
-/// The use of one object: a column, a table, a number. Objects are told apart by the memory that they occupy, so that a
-/// table and its columns, which lie inside it, are known to be the same data, whatever the table lists.
+/// Use of one object: a column, a table, a number. Objects are identified by the memory that they occupy. A table
+/// therefore conflicts with the columns inside it, whichever columns it lists.
 struct Access {
     std::uintptr_t begin;
     std::uintptr_t end;
@@ -24,7 +24,7 @@ struct Access {
 
     bool writes() const { return use == Use::write; }
     bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
-    /// One has to wait for the other.
+    /// Whether one stage has to wait for the other.
     bool conflicts_with(const Access& other) const {
         return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
     }
@@ -32,8 +32,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// Something that can be declared: an object that stays where it is. A span or a pointer would declare itself instead
-/// of what it shows.
+/// Type of an object that can be declared and that stays in place. A span or a pointer does not qualify: it would
+/// declare itself instead of the data it refers to.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -43,21 +43,20 @@ inline constexpr bool shows_other_data<RaggedView<T>> = true;
 template <class T>
 concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>;
 
-/// Makes what a function takes, spans, of what the tables own, columns. A struct of inputs is bound where it is
-/// defined:
+/// Converts columns, which the tables own, to spans, which functions take. A struct of inputs defines its own binding:
 ///
 ///     struct RestInputs {
 ///         std::span<const Range> nodes;
-///         std::span<const Real> mass;  // kg, by node
+///         std::span<const Real> mass;  // by node [kg]
 ///
 ///         static RestInputs bind(const Binder& binder, const BodyTable& body, const NodeTable& node) {
 ///             return {.nodes = binder.read(body.nodes), .mass = binder.read(node.mass)};
 ///         }
 ///     };
 ///
-/// The same bind runs with a list when a stage is listed, which declares what the stage takes, and without one whenever
-/// it starts. So it must ask for the same columns whatever these hold: read_if and write_if, never if. Must not
-/// allocate.
+/// bind runs with an access list when a stage is listed, which declares the accesses of the stage, and without one
+/// whenever the stage starts. It must therefore request the same columns whatever they contain: use read_if and
+/// write_if, never if. It must not allocate.
 class Binder {
 public:
     Binder() = default;
@@ -78,7 +77,7 @@ public:
         note(object, Use::read);
         return object;
     }
-    /// A table without one of its columns, which another stage may write meanwhile.
+    /// Declares a table without one of its columns, which another stage may write at the same time.
     template <Resource T, class Row>
     const T& read_but(const T& table, const Column<Row>& column) const {
         if (!list_) return table;
@@ -93,7 +92,7 @@ public:
         note(column, Use::write);
         return column.span();
     }
-    /// For those that make rows, or write an object as a whole.
+    /// For stages that add rows, or write an object as a whole.
     template <Resource T>
     requires(!std::is_const_v<T>) T& make(T& object) const {
         note(object, Use::write);
@@ -105,7 +104,7 @@ public:
         return object;
     }
 
-    /// Nothing where not wanted; declared all the same.
+    /// Returns an empty span unless `wanted`; the access is declared in both cases.
     template <class T>
     std::span<const T> read_if(bool wanted, const Column<T>& column) const {
         const std::span<const T> rows = read(column);
@@ -118,7 +117,7 @@ public:
     }
 
     template <Resource T>
-    void read(const T&&) const = delete;  // nothing to come back to when the stage runs
+    void read(const T&&) const = delete;  // a temporary would be gone when the stage runs
     template <Resource T>
     void value(const T&&) const = delete;
 

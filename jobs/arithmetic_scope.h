@@ -1,4 +1,4 @@
-// How floating-point arithmetic is done, for as long as a scope lasts.
+// Floating-point mode for the lifetime of a scope.
 #pragma once
 
 #if defined(__SSE2__)
@@ -7,10 +7,10 @@
 
 namespace skerry {
 
-/// Sums round to nearest, exceptions are masked, and numbers below 2^-1022 count as zero, as operands and as results;
-/// the end of the scope gives the thread back as it was. Blocks and stages run in such a scope, whoever's thread it is,
-/// so that all workers calculate alike. Denormal numbers are what motion that decays ends in, and cost a hundred times
-/// as much as others (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
+/// Sets the floating-point mode: round to nearest, exceptions masked, and denormals (below 2^-1022) treated as zero,
+/// both as operands and as results. The end of the scope restores the thread's previous mode. Blocks and stages run in
+/// such a scope on any thread, so that all workers calculate alike. Decaying motion ends in denormals, which cost a
+/// hundred times as much as other numbers (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
 class ArithmeticScope {
 public:
 #if defined(__SSE2__)

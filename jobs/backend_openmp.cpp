@@ -1,4 +1,4 @@
-// OpenMP: one team for each outermost call, tasks inside it.
+// OpenMP backend: one team for each outermost call, tasks inside it.
 #include <omp.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace {
 
 class OpenMpExecutor;
 
-// Which executor's team the thread works for now. omp_in_parallel() would also be true in a team of the host's.
+// Executor whose team this thread currently works for. omp_in_parallel() would also be true in a team of the host
+// program.
 thread_local const OpenMpExecutor* team_of_thread = nullptr;
 
 class TeamScope {
@@ -39,8 +40,7 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // Always the whole team, also for fewer blocks: the runtime ends the threads that a smaller team leaves
-            // out.
+            // Always the whole team, even for fewer blocks: with a smaller team the runtime ends the unused threads.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

@@ -1,5 +1,5 @@
-// The calling thread alone: the twin that the other backends are compared with, and what a scene too small for threads
-// runs on.
+// Serial backend: the calling thread alone. It is the reference for the other backends, and runs scenes that are too
+// small for threads.
 #include "jobs/backends.h"
 
 namespace skerry {

@@ -1,4 +1,4 @@
-// oneTBB: tasks in the arena of the caller, or in one of our own.
+// oneTBB backend: tasks in the arena of the caller, or in an arena of its own.
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -33,8 +33,8 @@ public:
         if (workers <= 1) {
             job.drain(0);
         } else {
-            // Isolated: a worker that waits for the last block must not start a long stage meanwhile, which would hold
-            // up everything that waits for these blocks, and would be counted as time of this stage.
+            // Isolated, because a worker that waits for the last block must not start a long stage meanwhile. That
+            // would delay everything that waits for these blocks, and would count as time of this stage.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();
@@ -59,7 +59,7 @@ private:
         }
     }
 
-    // The contexts are isolated: a host that cancels its own tasks must not make us leave out blocks or stages.
+    // The contexts are isolated: when a host cancels its own tasks, no blocks or stages may be left out here.
     static void drain_together(BlockJob& job, int workers) {
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
@@ -87,10 +87,10 @@ private:
         }
     };
 
-    // More workers than cores only come when the library is told to allow them. It takes the least of what is asked
-    // for, so this never raises a limit that the host has set.
+    // oneTBB runs more workers than cores only with a raised limit. It applies the smallest requested limit, so this
+    // never raises a limit that the host has set.
     std::optional<tbb::global_control> more_threads_;
-    std::optional<tbb::task_arena> arena_;  // none: the caller's
+    std::optional<tbb::task_arena> arena_;  // none: the arena of the caller
     PredecessorCounts left_;
 };
 

@@ -1,4 +1,4 @@
-// Threads of our own: no library whose inside the thread sanitizer cannot see.
+// Thread backend without a library: the thread sanitizer can see all of its code.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,13 +15,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A step has a dozen stages in 100 us: a worker that slept between two of them would wake too late for the second.
+// A step has a dozen stages in 100 us: a worker that slept between two stages would wake too late for the second.
 constexpr std::chrono::microseconds spin_time{50};
 
-// Among the workers of its executor; callers are all number 0.
+// Number of this thread among the workers of its executor; all callers have number 0.
 thread_local int own_number = 0;
 
-/// Waits without sleeping, not longer than spin_time, until ready() is true.
+/// Spins for at most spin_time until ready() is true. Returns whether it is.
 bool spin_until(bool may_spin, auto&& ready) {
     if (!may_spin) return ready();
     const Clock::time_point end = Clock::now() + spin_time;
@@ -34,8 +34,8 @@ bool spin_until(bool may_spin, auto&& ready) {
     return false;
 }
 
-/// workers - 1 threads and the caller. What is to do is listed under one mutex: the blocks of the run_blocks calls that
-/// are open, and the stages that are ready. Blocks are taken from the counter of their job, without the mutex.
+/// An executor of workers - 1 threads and the caller. One mutex guards the open work: the unfinished run_blocks calls
+/// and the stages that are ready. Blocks are taken from the counter of their job, without the mutex.
 class ThreadsExecutor final : public Executor {
 public:
     explicit ThreadsExecutor(int workers)
@@ -97,8 +97,8 @@ public:
     }
 
 private:
-    /// A run_blocks call that others may help with. Lives on the stack of its caller, which leaves only when all
-    /// helpers have.
+    /// A run_blocks call that other workers may help with. It lives on the stack of its caller, which returns only
+    /// after all helpers have left.
     struct OpenJob {
         BlockJob& job;
         OpenJob* next = nullptr;
@@ -106,7 +106,7 @@ private:
         bool owner_sleeps = false;
     };
 
-    /// Takes what there is to do until finished() is true, which is called under the mutex.
+    /// Takes open work until finished() is true; finished() is called with the mutex held.
     void work_until(auto&& finished) {
         std::unique_lock lock(mutex_);
         while (true) {
@@ -131,7 +131,7 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // An owner that does not sleep may leave, and its job with it, as soon as the count is zero.
+            // Unless it sleeps, the owner may return and destroy its job as soon as the count is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;
@@ -150,7 +150,7 @@ private:
         --sleepers_;
     }
 
-    /// After the mutex is free again, so that who wakes up does not run into it.
+    /// Call this after releasing the mutex, so that a woken thread does not block on it.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {
@@ -205,12 +205,12 @@ private:
     }
 
     const int workers_;
-    const bool may_spin_;  // not when there are more workers than cores: a spinning one would hold up a working one
+    const bool may_spin_;  // false with more workers than cores: a spinning worker would hold up a working one
     PredecessorCounts left_;
 
     std::mutex mutex_;
     std::condition_variable work_announced_, helpers_left_;
-    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_, read without it by those who spin
+    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_; spinning threads read it without
     std::atomic<int> sleepers_{0};             // likewise
     OpenJob* open_ = nullptr;
     GraphJob* graph_ = nullptr;

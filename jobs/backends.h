@@ -1,4 +1,4 @@
-// What the backends share: the work of one call, which any number of workers do together.
+// Shared parts of the backends: the work of one call, done by any number of workers together.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@ std::unique_ptr<Executor> make_openmp_executor(int workers);
 std::unique_ptr<Executor> make_threads_executor(int workers);
 std::unique_ptr<Executor> make_serial_executor();
 
-/// Keeps the exception of the lowest block or stage.
+/// Keeps the exception of the lowest block or stage that threw.
 class FirstError {
 public:
-    /// Called inside a catch block.
+    /// Call it inside a catch block.
     void keep(Index number) noexcept {
         std::lock_guard lock(mutex_);
         if (any() && number_ <= number) return;
@@ -31,7 +31,7 @@ public:
         any_.store(true, std::memory_order_relaxed);
     }
     bool any() const noexcept { return any_.load(std::memory_order_relaxed); }
-    /// After all workers have returned.
+    /// Call it after all workers have returned.
     void rethrow() {
         if (any()) std::rethrow_exception(std::move(error_));
     }
@@ -43,10 +43,10 @@ private:
     std::exception_ptr error_;
 };
 
-/// The blocks of one run_blocks call, as a contiguous share for each worker: it begins with its own, so that it finds
-/// in its caches what it wrote in the loop before, and then helps the next ones out. A share is a counter, as cheap as
-/// a task for each worker instead of one for each block, and a slow block holds nobody up. After an exception the other
-/// blocks still run, so that which one is the lowest does not depend on timing.
+/// The blocks of one run_blocks call, as a contiguous share for each worker. A worker begins with its own share, whose
+/// data it wrote in the previous loop and may still have in its caches, and then helps with the next ones. A share is a
+/// counter: this costs one task per worker instead of one per block, and a slow block delays no other. After an
+/// exception the other blocks still run, so that the lowest failing block does not depend on timing.
 class BlockJob {
 public:
     BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
@@ -57,10 +57,10 @@ public:
         for (int share = 0; share < shares_; ++share) share_[share].next = begin_of(share);
     }
 
-    /// `worker`: its number among those of the executor.
+    /// `worker`: number of the calling thread among the workers of the executor.
     void drain(int worker) noexcept {
         const ArithmeticScope arithmetic;
-        const AccessScope access(watch_);  // whose blocks they are may touch what the stage may, whoever's thread it is
+        const AccessScope access(watch_);  // a block may access the columns declared by its stage, on any thread
         for (int i = 0; i < shares_; ++i) {
             const int share = (worker + i) % shares_;
             const Index end = begin_of(share + 1);
@@ -76,13 +76,13 @@ public:
         }
         exhausted_.store(true, std::memory_order_relaxed);
     }
-    /// Whether no block is left to be taken; it may say so a little late.
+    /// Whether no block is left to take. The answer may lag behind.
     bool exhausted() const noexcept { return exhausted_.load(std::memory_order_relaxed); }
     void rethrow() { error_.rethrow(); }
 
 private:
     static constexpr int most_shares = 64;
-    struct alignas(64) Share {  // on a cache line of its own: who takes from it writes it, for each block
+    struct alignas(64) Share {  // on a cache line of its own, because it is written for each block
         Index next;
     };
 
@@ -98,7 +98,7 @@ private:
     Share share_[most_shares];
 };
 
-/// How many predecessors each stage still waits for. Kept by an executor, so that a graph no larger than one before
+/// Number of unfinished predecessors of each stage. An executor keeps it, so that a graph no larger than an earlier one
 /// allocates nothing.
 class PredecessorCounts {
 public:
@@ -110,7 +110,8 @@ public:
         for (std::size_t stage = 0; stage < counts.size(); ++stage)
             left_[stage].store(counts[stage], std::memory_order_relaxed);
     }
-    /// True for the last predecessor of the stage, which then sees what all the others wrote.
+    /// Reports one finished predecessor of the stage. Returns true for the last one, which then sees the writes of all
+    /// others.
     bool arrive(Index stage) {
         return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1;
     }
@@ -120,7 +121,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// One run_graph call.
+/// The work of one run_graph call.
 class GraphJob {
 public:
     GraphJob(const GraphEdges& edges, FunctionRef<void(Index)> run_stage, PredecessorCounts& left)
@@ -128,8 +129,8 @@ public:
         left_.reset(edges.predecessor_count);
     }
 
-    /// Calls spawn for every stage without a predecessor but the first, which it returns (no_index: the graph is
-    /// empty).
+    /// Calls spawn for every stage without a predecessor except the first, which it returns (no_index for an empty
+    /// graph).
     template <class Spawn>
     Index spawn_roots(Spawn&& spawn) {
         Index first = no_index;
@@ -144,9 +145,9 @@ public:
         return first;
     }
 
-    /// Runs the stage, then a stage that became ready by it, and so on until there is none; spawn gets all others that
-    /// became ready. Returns how many stages are done. After an exception the rest of the graph is walked without
-    /// running it.
+    /// Runs the stage, then a stage that became ready through it, and so on until there is none. All other stages that
+    /// became ready are passed to spawn. Returns the number of finished stages. After an exception the rest of the
+    /// graph is walked without running it.
     template <class Spawn>
     Index run_from(Index stage, Spawn&& spawn) noexcept {
         Index done = 0;
@@ -168,7 +169,7 @@ public:
         return done;
     }
 
-    /// Every stage on the calling thread, in order.
+    /// Runs every stage on the calling thread, in order.
     void run_all() noexcept {
         for (Index stage = 0; stage < static_cast<Index>(edges_.predecessor_count.size()); ++stage) run(stage);
     }

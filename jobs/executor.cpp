@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-// SKERRY_BACKEND_LIST: from the list of the build, with a comma after each name.
+// SKERRY_BACKEND_LIST comes from the build, with a comma after each name.
 constexpr std::array built_backends{SKERRY_BACKEND_LIST Backend::serial};
 
 }  // namespace

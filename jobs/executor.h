@@ -1,4 +1,4 @@
-// Workers: what runs blocks of rows and stages of a graph. One implementation per backend_*.cpp.
+// Executors: workers that run blocks of rows and stages of a graph. Each backend_*.cpp has one implementation.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@
 
 namespace skerry {
 
-/// Which stages wait for which. Stages are numbered so that every edge goes up.
+/// Dependencies of the stages. Stages are numbered so that every edge goes from a lower to a higher number.
 struct GraphEdges {
     std::span<const Index> successor_offset;  // stage_count + 1
     std::span<const Index> successor;
     std::span<const Index> predecessor_count;  // by stage
 };
 
-/// A set of workers. The calling thread is always one of them. Arithmetic never depends on how many there are: what is
-/// split is split into fixed blocks. An exception thrown by a block or a stage reaches the caller of run_blocks or
-/// run_graph, the one of the lowest number when there are several; a graph then starts no further stage.
+/// A set of workers. The calling thread is always one of them. Results never depend on the number of workers, because
+/// work is split into fixed blocks. An exception thrown by a block or a stage is rethrown by run_blocks or run_graph;
+/// if there are several, it is that of the lowest number. A graph then starts no further stage.
 class Executor {
 public:
     virtual ~Executor() = default;
@@ -28,21 +28,21 @@ public:
     virtual Backend backend() const = 0;
     virtual int worker_count() const = 0;
 
-    /// Calls body(0) .. body(count - 1), each once, in any order and at the same time; returns when all have returned.
-    /// May be called from within a block or a stage.
+    /// Calls body(0) .. body(count - 1), each once, in any order and concurrently; returns when all have returned. It
+    /// may be called from within a block or a stage.
     virtual void run_blocks(Index count, FunctionRef<void(Index block)> body) = 0;
 
-    /// Calls run_stage once for every stage, after all its predecessors; stages that do not wait for each other run at
-    /// the same time.
+    /// Calls run_stage once for every stage, after all its predecessors. Independent stages run concurrently.
     virtual void run_graph(const GraphEdges& edges, FunctionRef<void(Index stage)> run_stage) = 0;
 };
 
-/// Workers of the given backend, or for automatic of the first of this build. `workers` 0 means: as many as the
+/// Makes an executor of the given backend; `automatic` picks the first of this build. `workers` 0 means: as many as the
 /// caller's arena has (tbb), as OMP_NUM_THREADS says (openmp), as the machine has cores (threads). With tbb and 0 the
-/// work runs in the arena that the caller is in. Throws std::invalid_argument when this build lacks the backend.
+/// work runs in the arena that the caller is in. Throws std::invalid_argument if this build lacks the backend or
+/// `workers` is negative.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);
 
-/// The backends of this build, the default first.
+/// The backends of this build, the default one first.
 std::span<const Backend> available_backends();
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// A borrowed callable: no allocation, valid while the callable lives.
+// FunctionRef: a non-owning reference to a callable. It does not allocate, and is valid while the callable lives.
 #pragma once
 
 #include <memory>

@@ -1,11 +1,11 @@
-// Waiting without sleeping.
+// Short waits without sleeping.
 #pragma once
 
 #include <thread>
 
 namespace skerry {
 
-/// Lets the other thread of the core have it for some cycles.
+/// Yields the core to its other hardware thread for some cycles.
 inline void pause_briefly() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();

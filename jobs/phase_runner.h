@@ -1,4 +1,4 @@
-// PhaseRunner: an executor that wants to see every block, those of a Team included.
+// PhaseRunner: an interface of executors that run every block themselves, including those of a Team.
 #pragma once
 
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace skerry {
 
-/// What an executor is, too, that runs the phases of a Team itself: profiling records their blocks one by one. A Team
-/// gathered on it calls no other worker.
+/// Additional base class of an executor that runs the phases of a Team itself; profiling uses it to record their blocks
+/// one by one. A Team gathered on it calls no other worker.
 class PhaseRunner {
 public:
     virtual ~PhaseRunner() = default;
 
-    /// As Team::run_phases.
+    /// Same contract as Team::run_phases.
     virtual void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body) = 0;
 };
 

@@ -1,4 +1,4 @@
-// Sums and extremes over rows that are the same bits on any number of workers.
+// Reductions (sums, extremes) over rows that give the same bits on any number of workers.
 #pragma once
 
 #include <type_traits>
@@ -8,10 +8,10 @@
 
 namespace skerry {
 
-/// combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is block_result(begin, end)
-/// of at most `block` rows. Blocks run at the same time, their results are joined in block order: floating-point
-/// addition gives another result in another order. `partial` holds the results of the blocks and keeps its memory
-/// between calls.
+/// Returns combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is
+/// block_result(begin, end) of at most `block` rows. Blocks run concurrently. Their results are combined in block
+/// order, because floating-point addition depends on the order. `partial` holds the results of the blocks and keeps its
+/// memory between calls.
 template <class T, class BlockResult, class Combine>
 T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial,
          const std::type_identity_t<T>& identity, BlockResult&& block_result, Combine&& combine) {

@@ -29,7 +29,7 @@ struct Bind {
     X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
 };
 
-// What `Take` makes of objects: declared when the stage is listed, made anew whenever it starts.
+// Argument made by `Take` from objects: declared when the stage is listed, made anew whenever the stage starts.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;
@@ -75,27 +75,27 @@ AccessList joined(const auto&... args) {
 
 }  // namespace access_detail
 
-/// Passes span<const T> of a column, RaggedView<T> of a ragged, const T& of anything else.
+/// Passes a span<const T> for a column, a RaggedView<T> for a Ragged, a const T& for any other object.
 template <Resource T>
 auto read(const T& object) {
     return access_detail::Argument<access_detail::Read, const T>{{&object}};
 }
 template <Resource T>
-void read(const T&&) = delete;  // nothing to come back to when the stage runs
+void read(const T&&) = delete;  // a temporary would be gone when the stage runs
 
-/// Passes span<T> of a column.
+/// Passes a span<T> for a column.
 template <class T>
 auto write(Column<T>& column) {
     return access_detail::Argument<access_detail::Write, Column<T>>{{&column}};
 }
 
-/// Passes T&: for stages that make rows, or write an object as a whole.
+/// Passes a T&, for stages that add rows, or write an object as a whole.
 template <Resource T>
 requires(!std::is_const_v<T>) auto make(T& object) {
     return access_detail::Argument<access_detail::Make, T>{{&object}};
 }
 
-/// Passes const T&: for what no stage writes, else the graph does not compile().
+/// Passes a const T& to an object that no stage writes; otherwise compile() of the graph throws.
 template <Resource T>
 auto value(const T& object) {
     return access_detail::Argument<access_detail::Value, const T>{{&object}};
@@ -103,20 +103,20 @@ auto value(const T& object) {
 template <Resource T>
 void value(const T&&) = delete;
 
-/// Passes X::bind(binder, objects...), which declares what of the objects, tables mostly, X takes.
+/// Passes X::bind(binder, objects...), which declares the parts of the objects (mostly tables) that X uses.
 template <class X, Resource... T>
 auto inputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, const T...>{{&objects...}};
 }
 
-/// The same for an X that is written to.
+/// Passes X::bind(binder, objects...) for an X that is written to.
 template <class X, Resource... T>
 auto outputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, T...>{{&objects...}};
 }
 
-/// The stage is skipped if predicate(what args pass) is false when its turn comes. It knows nothing else: a predicate
-/// with a memory of its own could look at what the stage has not declared.
+/// Skips the stage if predicate(values passed by args) is false when its turn comes. The predicate must be stateless:
+/// one with captures could read data that the stage has not declared.
 template <class Predicate, class... Args>
 auto only_if(Predicate predicate, Args... args) {
     static_assert(access_detail::is_stateless<Predicate>,

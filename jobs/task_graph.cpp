@@ -16,7 +16,7 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
-/// What one stage may overwrite while the other takes it as a value.
+/// Whether one stage may write an object that the other takes as a value.
 bool breaks_value(const AccessList& written, const AccessList& taken) {
     return std::ranges::any_of(written, [&](const Access& access) {
         return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {
@@ -29,7 +29,7 @@ bool breaks_value(const AccessList& written, const AccessList& taken) {
 
 TaskGraph::TaskGraph() : inline_executor_(make_executor(Backend::serial, 1)) {}
 
-/// Refuses what the running stage has not declared.
+/// Throws CheckFailed for accesses that the running stage has not declared.
 class TaskGraph::StageWatch final : public AccessWatch {
 public:
     StageWatch(const StageDeclaration& stage, const Tracked& tracked) : stage_(stage), tracked_(tracked) {}
@@ -71,8 +71,8 @@ void TaskGraph::compile() {
                 throw CheckFailed(std::string("the stage ") + reader.name + " takes as a value what " + writer.name +
                                   " writes");
     edges_.clear();
-    // before[s][p]: s waits for p, directly or through others. Nearest predecessors first: one that another already
-    // waits for needs no edge of its own, and what is left is the smallest set of edges.
+    // before[s][p]: s waits for p, directly or through others. Nearest predecessors are visited first: a predecessor
+    // that another one already waits for needs no edge of its own, so that the set of edges is minimal.
     std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
     for (std::size_t s = 0; s < count; ++s) {
         for (std::size_t p = s; p-- > 0;) {
@@ -112,7 +112,8 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
         executor.run_graph(edges, [&](Index number) { run_stage(number, Trace::now(), executor, trace); });
         return;
     }
-    // Stage after stage: where one ends the next begins, and a step of some microseconds reads the clock half as often.
+    // Stages run one after the other: the end time of one is the start time of the next. This halves the clock reads,
+    // which matter in a step of some microseconds.
     Trace::Time time = Trace::now();
     executor.run_graph(edges, [&](Index number) { time = run_stage(number, time, executor, trace); });
 }

@@ -1,4 +1,4 @@
-// TaskGraph: the stages of a step in one list; which waits for which follows from what they read and write.
+// TaskGraph: the stages of a step in one list. Their dependencies follow from their declared reads and writes.
 #pragma once
 
 #include <concepts>
@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace access_detail {
 
-// How a function is called with what its arguments pass, with the executor in front if it takes one.
+// Calls a function with the values passed by its arguments, and with the executor in front if it takes one.
 template <class F, class Passed>
 struct StageCall;
 
@@ -52,23 +52,23 @@ using ResultOf =
 
 }  // namespace access_detail
 
-/// The arguments fit the function; a read() does not fit a span that can be written to.
+/// Whether the arguments fit the function; a read() does not fit a mutable span.
 template <class F, class... Args>
 concept StageFits = access_detail::CallOf<F, Args...>::possible;
 
-/// What a stage did since the graph was made, or since reset_stats().
+/// Statistics of a stage since the graph was made, or since reset_stats().
 struct StageStats {
     const char* name;
-    double seconds = 0;  // of the stage's own thread, from start to end
+    double seconds = 0;  // on the thread of the stage, from start to end [s]
     std::uint64_t runs = 0;
-    std::uint64_t skipped = 0;  // its guard was false, or it returned false
+    std::uint64_t skipped = 0;  // guard was false, or the stage returned false
 };
 
-/// What a stage was listed as.
+/// Declaration of a stage.
 struct StageDeclaration {
     const char* name;
     AccessList accesses;
-    bool guarded;  // by an only_if: it may be left out
+    bool guarded;  // has an only_if: the stage may be skipped
 };
 
 /// Stages and the order between them. Building may allocate; running does not, after the first run on an executor.
@@ -90,7 +90,7 @@ public:
     TaskGraph();
 
     /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that
-    /// returns bool says false when there was nothing to do.
+    /// returns bool returns false if there was nothing to do.
     template <class F, class... Args>
     requires StageFits<F, Args...>
     void stage(const char* name, F function, Args... args) {
@@ -123,18 +123,18 @@ public:
         add({name, access_detail::joined(args..., make(result)), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Finds the edges. Once, after the last stage was added. Throws CheckFailed when a stage takes as a value what a
-    /// stage writes.
+    /// Finds the edges. Call it once, after the last stage was added. Throws CheckFailed if a stage takes as a value an
+    /// object that a stage writes.
     void compile();
 
-    /// With SKERRY_CHECK_ACCESS: a stage that touches a column within this memory without having declared it throws
-    /// CheckFailed. `name_of` says what lies at a place, for the message.
+    /// With SKERRY_CHECK_ACCESS a stage throws CheckFailed if it accesses an undeclared column within this memory.
+    /// `name_of` returns the name of the object at an address, for the message.
     using NameOf = std::string (*)(void* memory, const void* place);
     void track(void* memory, std::size_t bytes, NameOf name_of) { tracked_ = {memory, bytes, name_of}; }
 
-    /// Runs every stage once. An exception of a stage comes out here; stages that had not started are left out.
+    /// Runs every stage once. Rethrows an exception of a stage; stages that had not started are left out.
     void run(Executor& executor, Trace* trace = nullptr);
-    /// The same on the calling thread alone, in the order of the list: for scenes too small to pay for threads.
+    /// Runs every stage once on the calling thread, in list order: for scenes too small to pay for threads.
     void run_inline(Trace* trace = nullptr);
 
     std::span<const StageDeclaration> stages() const { return stages_; }
@@ -142,7 +142,7 @@ public:
     void reset_stats();
 
     /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are
-    /// numbered as listed.
+    /// numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
     /// The graph as Graphviz dot text.
     std::string to_dot() const;
@@ -158,7 +158,7 @@ private:
     class StageWatch;
 
     void add(StageDeclaration stage, Run run);
-    /// Returns when it ended: `begin` if it was not allowed to run.
+    /// Returns the end time of the stage, or `begin` if its guard was false.
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
@@ -166,7 +166,7 @@ private:
     std::vector<Run> run_;           // by stage
     std::vector<StageStats> stats_;  // by stage
     std::vector<Edge> edges_;
-    std::vector<Index> successor_offset_, successor_, predecessor_count_;  // edges_, as an executor wants them
+    std::vector<Index> successor_offset_, successor_, predecessor_count_;  // edges_ in the form that an executor needs
     std::unique_ptr<Executor> inline_executor_;
     Tracked tracked_;
     bool compiled_ = false;

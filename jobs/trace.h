@@ -1,4 +1,4 @@
-// Trace: what every worker did and when, for Perfetto and chrome://tracing.
+// Trace: a timeline of the work of every worker, for Perfetto and chrome://tracing.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own; the lists grow
-/// while recording, up to the bound given. Zones beyond it are counted, and the file says how many.
+/// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own, which grows up to
+/// the given bound. Zones beyond it are only counted, and the file reports their number.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -21,7 +21,7 @@ public:
 
     static constexpr std::size_t default_zones_per_worker = std::size_t{1} << 20;  // 24 bytes each
 
-    /// The calling thread becomes worker 0.
+    /// Starts a trace in which the calling thread is worker 0.
     explicit Trace(std::size_t max_zones_per_worker = default_zones_per_worker);
     ~Trace();
     Trace(const Trace&) = delete;
@@ -29,24 +29,24 @@ public:
 
     static Time now() { return Clock::now(); }
 
-    /// Adds a zone of the calling thread. The name must outlive the trace: a literal. Any thread, at any time but
-    /// during clear and write_json.
+    /// Adds a zone of the calling thread. The name must outlive the trace, like a literal. Can be called from any
+    /// thread at any time except during clear and write_json.
     void add(const char* name, Time begin, Time end);
 
-    /// Forgets all zones, and counts time from now on.
+    /// Removes all zones and restarts the clock at zero.
     void clear();
 
     std::size_t zone_count() const;
     std::uint64_t dropped_count() const;
-    int worker_count() const;  // threads that recorded something, and the one that made the trace
+    int worker_count() const;  // threads that recorded something, plus the one that made the trace
 
-    /// Trace Event Format: one complete event ("X") for each zone, times in microseconds.
+    /// Writes the Trace Event Format: one complete event ("X") for each zone, times in microseconds.
     void write_json(std::ostream& out) const;
 
 private:
     struct Zone {
         const char* name;
-        std::int64_t begin;  // ns after start_
+        std::int64_t begin;  // after start_ [ns]
         std::int64_t end;
     };
     struct Worker {
@@ -57,14 +57,14 @@ private:
 
     Worker& worker_of_this_thread();
 
-    std::uint64_t id_;  // of this trace, never used again: a thread remembers its list by it
+    std::uint64_t id_;  // never reused: a thread caches its list under this number
     std::size_t max_zones_per_worker_;
     Time start_;
-    mutable std::mutex mutex_;  // guards the list, not what is in it
+    mutable std::mutex mutex_;  // guards the list, not its elements
     std::vector<std::unique_ptr<Worker>> workers_;
 };
 
-/// Records the time between its construction and its destruction. Without a trace it costs a test of a pointer.
+/// Records the time between its construction and its destruction as a zone. Without a trace it costs one pointer test.
 class TraceZone {
 public:
     TraceZone(Trace* trace, const char* name) : trace_(trace), name_(name) {

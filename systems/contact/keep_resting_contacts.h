@@ -1,4 +1,4 @@
-// What is known of the contacts between what comes to rest is kept while it rests (docs/methods/skipping.md 3.2).
+// Keeps the contacts between bodies that have come to rest for as long as they rest (docs/methods/skipping.md 3.2).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace skerry {
 
 struct RestingInputs {
-    // PairTable: its key, ascending, and which pairs were not looked at in this step, since neither partner moves
+    // PairTable: the keys, ascending, and which pairs were left out of this step because neither partner moves
     std::span<const std::uint64_t> pair;
     std::span<const std::uint8_t> idle;
     std::span<const std::uint8_t> asleep;  // by body, after the step
@@ -31,20 +31,20 @@ struct RestingInputs {
     }
 };
 
-/// Room to work in.
+/// Working memory.
 struct RestingMemory {
-    Column<Index> source;  // by row of `next`: row of what was kept, or the complement of a row of this step's contacts
+    Column<Index> source;  // by row of `next`: a kept row, or the complement of a row of this step's contacts
     RestingContactTable next;
 };
 
-/// After a step in which forces acted for `kick` (s): keeps the contacts of this step all of whose sides rest or stand
-/// still, and of those kept before the ones of pairs that this step did not look at. Returns false, and costs a look at
-/// the contacts and one at the pairs, where nothing changes.
+/// Updates the resting contacts after a step in which forces acted for `kick` [s]. Keeps the contacts of this step
+/// whose sides both rest or stand still, and the previously kept contacts of pairs that this step left out. Returns
+/// false if nothing changes; this costs one pass over the contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 
-/// The rows to show of both, in key order: a row of the step's contacts, or the complement of a row of those that rest.
-/// Of those that are in both, since their bodies have just come to rest, the step's.
+/// Lists the rows to display of both tables, in key order: a row of the step's contacts, or the complement of a row of
+/// the resting ones. A contact in both, whose bodies have just come to rest, is listed as the step's.
 void merge_contacts(const ContactTable& contacts, const RestingContactTable& kept, Column<Index>& rows);
 
 }  // namespace skerry

@@ -8,11 +8,11 @@
 namespace skerry {
 namespace {
 
-// A block of so many contacts takes some microseconds, as long as it takes a worker to join. Every block looks at how
-// many contacts it has for each other one, so that there are no more than most_blocks.
+// A block of 2^least_shift contacts takes some microseconds, about as long as a worker needs to join. Every block
+// counts its contacts for each other block, which limits their number to most_blocks.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 
-/// Contacts in blocks of a power of two.
+/// Splits the contacts into blocks whose size is a power of two.
 struct Blocks {
     std::size_t shift = least_shift;
     std::size_t contacts;
@@ -23,7 +23,7 @@ struct Blocks {
     std::size_t of(std::size_t contact) const { return contact >> shift; }
     std::size_t count() const { return of(contacts - 1) + 1; }
 
-    /// Calls body(block, begin, end) for all of them.
+    /// Calls body(block, begin, end) for all blocks.
     template <class Body>
     void run(Executor& executor, Body&& body) const {
         parallel_for(executor, contacts, std::size_t{1} << shift,
@@ -31,17 +31,18 @@ struct Blocks {
     }
 };
 
-/// What contacts of each block belong to regions that begin in each other, and where those are put.
+/// For each pair of blocks: the number of contacts of the first whose regions begin in the second, later their
+/// positions.
 class Places {
 public:
     Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
         place_.assign(blocks * blocks, 0);
     }
-    /// Those of `block`, by block in which their regions begin: none before the first, none behind `block`.
+    /// Entries of `block`, by the block in which the regions begin: unused beyond `block` itself.
     Index* of(std::size_t block) { return place_.data() + block * blocks_; }
 
-    /// Makes places of the counts: by the block in which regions begin, then in order. Returns where each begins and
-    /// the end.
+    /// Converts the counts to positions, sorted by the block in which regions begin and then by contact. Returns the
+    /// begin of each block, and the end.
     std::array<Index, most_blocks + 1> cut() {
         std::array<Index, most_blocks + 1> begin;
         Index sum = 0;
@@ -69,8 +70,8 @@ void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnio
     });
 }
 
-/// Joins the moving nodes of a contact, each with its group: `leader(node)` stands for that. Returns one of them, or
-/// no_index.
+/// Joins the groups of the moving nodes of a contact; `leader(node)` represents the group of a node. Returns one of the
+/// leaders, or no_index.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets) {
     Index one = no_index;
@@ -87,7 +88,7 @@ template <class Leader>
 void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
                std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
                std::span<Index> contact_node) {
-    constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
+    constexpr std::size_t ahead = 12;  // prefetch distance in contacts
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         const auto fetch = [&](const Stencil& next) {
             for (const Index node : next.node) {
@@ -103,8 +104,8 @@ void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil
     });
 }
 
-/// Regions first .. last - 1, whose contacts are given in order and so far name the first of their region: numbers
-/// them and sorts their contacts by region. `begin`: of all places.
+/// Numbers the regions first .. last - 1 and sorts their contacts by region. `contact`: their contacts in order, which
+/// so far name the first contact of their region. `begin`: first position in the list of all contacts.
 void collect(std::span<const Index> contact, Index begin, Index first, Index last, std::span<Index> contact_region,
              Ragged<Index>& list) {
     Index* const offset = list.offset.data();
@@ -113,13 +114,13 @@ void collect(std::span<const Index> contact, Index begin, Index first, Index las
     Index next = first;
     for (const Index c : contact) {
         Index& region = contact_region[static_cast<std::size_t>(c)];
-        // the first contact of a region comes before its others, and has its number by then
+        // the first contact of a region precedes its others, so that it already has its number
         region = region == c ? next++ : contact_region[static_cast<std::size_t>(region)];
         ++offset[region];
     }
     for (Index r = first; r < last; ++r) offset[r] = std::exchange(begin, begin + offset[r]);
     for (const Index c : contact) list.item[offset[contact_region[static_cast<std::size_t>(c)]]++] = c;
-    // the fill has moved each offset to the start of the next region: move them back
+    // filling has moved each offset to the start of the next region: move them back
     for (Index r = last - 1; r > first; --r) offset[r] = offset[r - 1];
     if (first < last) offset[first] = start;
 }
@@ -147,9 +148,9 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
             sets.begin_with(contact_region[i], static_cast<Index>(i));
         }
     });
-    // From now on a contact names the first one of its region.
+    // From here on contact_region holds the first contact of the region.
     Places places(blocks.count(), memory.place);
-    std::array<Index, most_blocks + 1> first_region{};  // that begins in each block
+    std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in it
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
         Index* const count = places.of(block);
         Index beginning = 0;

@@ -1,4 +1,4 @@
-// Regions of many contacts, found by all workers (docs/methods/regions.md 3.1).
+// Finds the regions of many contacts with all workers (docs/methods/regions.md 3.1).
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace skerry {
 
-/// Kept between steps.
+/// Working memory, kept between steps.
 struct BlockLabels {
     SharedUnionFind sets;
-    Column<Index> by_block;  // contacts, by the block in which their region begins
-    Column<Index> place;  // by pair of blocks: where the next contact of the one goes whose region begins in the other
+    Column<Index> by_block;  // contacts, sorted by the block in which their region begins
+    Column<Index> place;     // by pair of blocks: next position of a contact of one whose region begins in the other
 };
 
-/// Writes the region of each contact and the contacts of each region; returns how many regions there are. Regions are
-/// numbered by their first contact. Afterwards the sets are those of all moving nodes, and know their first contacts.
+/// Writes the region of each contact and the contacts of each region, and returns the number of regions. Regions are
+/// numbered by their first contact. Afterwards the sets cover all moving nodes and hold their first contacts.
 Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, BlockLabels& memory, Ragged<Index>& contacts,
                       std::span<Index> contact_region);

@@ -10,25 +10,25 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t contact_block = 512;  // ~5 us of merging
-constexpr std::size_t stored_block = 512;   // ~5 us of copying what the other cores wrote
+constexpr std::size_t stored_block = 512;   // ~5 us of copying data that other cores wrote
 
-/// Turns an impulse by the smallest rotation that takes one unit normal to the other, so that it keeps its place in the
-/// friction cone. A normal that flipped names another contact: nothing is carried over.
+/// Rotates an impulse by the smallest rotation that takes one unit normal to the other, so that it stays in the
+/// friction cone. A flipped normal belongs to another contact: the result is then zero.
 Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     const Real cosine = from.dot(to);
-    constexpr Real flipped = -0.999;  // cosine; beyond it the axis of the rotation is noise
+    constexpr Real flipped = -0.999;  // cosine; below it the axis of the rotation is noise
     if (!(cosine > flipped)) return Vec3::Zero();
     const Vec3 axis = from.cross(to);  // length sin(angle)
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
 }
 
-/// Runs along the keys of a table, all of which ascend.
+/// Cursor over the keys of a table. All keys to find must ascend.
 class SearchPlace {
 public:
     SearchPlace(std::span<const ContactKey> keys, const ContactKey& first)
         : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
 
-    /// Whether there is such a row, and then it is row().
+    /// Whether a row with this key exists; row() then returns it.
     bool find(const ContactKey& key) {
         while (row_ < keys_.size() && keys_[row_] < key) ++row_;
         return row_ < keys_.size() && keys_[row_] == key;
@@ -45,7 +45,7 @@ struct Rows {
     std::size_t begin, end;
 };
 
-/// The first row from `row` on that begins a pair.
+/// The first row, from `row` on, at which a pair begins.
 std::size_t start_of_pair(std::span<const ContactKey> key, std::size_t row) {
     while (row > 0 && row < key.size() && key[row].pair == key[row - 1].pair) ++row;
     return row;
@@ -57,7 +57,8 @@ Rows rows_of_pair(std::span<const ContactKey> key, std::uint64_t pair) {
     return {static_cast<std::size_t>(begin - key.begin()), static_cast<std::size_t>(end - key.begin())};
 }
 
-/// How far, m, what is gone may be from the contact that takes its impulse over; 0 if bodies move node by node.
+/// Largest distance between a vanished contact and the contact that takes over its impulse; 0 if no body of the pair is
+/// rigid or implicit [m].
 Real reach_of_pair(const ContactsNow& now, std::size_t row) {
     const auto has_frame = [&](Index body) {
         return body != no_index && now.body_rigid[static_cast<std::size_t>(body)].size() > 0;
@@ -82,7 +83,7 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
     const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // every block finds its own place in both tables, then all run along together
+        // each block finds its start in both tables; then all three are merged
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
@@ -103,7 +104,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
                       std::span<Vec3> impulse) {
     if (last.point.empty() || now.key.empty()) return false;
     SKERRY_CHECK(last.point.size() == last.key.size() && impulse.size() == now.key.size());
-    constexpr Real least_cosine = 0.9;  // of both normals
+    constexpr Real least_cosine = 0.9;  // between both normals
     const Real scale = kick / last.step[0];
     const auto hand_on = [&](std::size_t gone, Rows rows, Real reach) {
         std::size_t nearest = rows.end;
@@ -117,7 +118,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
         if (nearest != rows.end)
             impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
     };
-    // blocks of whole pairs: impulses stay within theirs
+    // blocks consist of whole pairs, because impulses stay within their pair
     parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         end = start_of_pair(last.key, end);
         for (std::size_t row = start_of_pair(last.key, begin); row < end;) {

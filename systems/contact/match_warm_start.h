@@ -1,4 +1,4 @@
-// Carries impulses from the last step to this one (docs/methods/region_solver.md 7).
+// Warm start: carries impulses over from the last step to this one (docs/methods/region_solver.md 7).
 #pragma once
 
 #include <span>
@@ -13,21 +13,21 @@
 
 namespace skerry {
 
-/// impulse = last step's impulse of the same key, or that with which it came to rest, turned so that the old normal
-/// becomes the new one, times kick, for which forces act in this step, over that of the step that it belongs to; zero
-/// for a new contact. All tables are in key order: a merge. Parallel over blocks of contacts. Returns false when there
-/// is nothing to do (skipped).
+/// Sets each impulse to the last impulse of the same key, from the last step or from the step in which the contact came
+/// to rest. It is rotated with the contact normal and scaled by `kick`, the time for which forces act in this step [s],
+/// over that of the old step. New contacts get zero. All tables are in key order, so that this is a merge. Parallel
+/// over blocks of contacts. Returns false if there is nothing to do (skipped).
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
                       const WarmStartTable& last, const RestingContactTable& resting, Real kick,
                       std::span<Vec3> impulse);
 
-/// The contacts of this step, and how their bodies move.
+/// The contacts of this step, and data of their bodies.
 struct ContactsNow {
     std::span<const ContactKey> key;
     std::span<const Vec3> normal, point;  // unit; m
     std::span<const Index> first_body, second_body;
-    std::span<const Range> body_rigid;            // of RigidBodyTable: empty where a body moves node by node
-    std::span<const Real> body_contact_distance;  // m
+    std::span<const Range> body_rigid;  // of RigidBodyTable: empty for a body that is neither rigid nor implicit
+    std::span<const Real> body_contact_distance;  // [m]
 
     static ContactsNow bind(const Binder& binder, const ContactTable& contact, const BodyTable& body) {
         return {.key = binder.read(contact.key),
@@ -40,19 +40,19 @@ struct ContactsNow {
     }
 };
 
-/// What contacts that are gone carried goes to the nearest contact of their pair within twice the contact distance, if
-/// its normal is about the same. For pairs of which a body is rigid or implicit: faces that lie on each other have more
-/// contacts than freedoms, which come and go by the last bits of places, and each takes a part of the weight along.
-/// After match_warm_start. Parallel over blocks of pairs. Returns false when there is nothing to do (skipped).
+/// Adds the impulse of each vanished contact to the nearest contact of its pair within twice the contact distance whose
+/// normal is similar. Only for pairs with a rigid or implicit body: resting faces have more contacts than degrees of
+/// freedom, contacts come and go with rounding, and each takes its part of the weight along. Call it after
+/// match_warm_start. Parallel over blocks of pairs. Returns false if there is nothing to do (skipped).
 bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 
-/// What is kept of a step's contacts.
+/// Contact data of a step that the next warm start needs.
 struct ContactsDone {
     std::span<const ContactKey> key;
     std::span<const Vec3> normal;
-    std::span<const Vec3> impulse;     // N s
-    std::span<const Vec3> point = {};  // m; empty where nothing is rigid or implicit
+    std::span<const Vec3> impulse;     // [N s]
+    std::span<const Vec3> point = {};  // empty if no body is rigid or implicit [m]
 
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid) {
         return {.key = binder.read(contact.key),
@@ -62,7 +62,7 @@ struct ContactsDone {
     }
 };
 
-/// Keeps this step's impulses for the next. Parallel over contacts.
+/// Stores this step's impulses for the next step. Parallel over contacts.
 void store_warm_start(Executor& executor, const ContactsDone& done, Real kick, WarmStartTable& last);
 
 }  // namespace skerry

@@ -18,7 +18,7 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// What the tangential impulse uses up: its length for the cone, the larger of its two components for the pyramid.
+/// Tangential load, which friction limits: the length for the cone, the larger of two components for the pyramid.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
     if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);
@@ -29,8 +29,8 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
                       Friction friction) {
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // the solver puts a sliding impulse onto the dynamic limit to rounding; the warm start turns it without changing
-    // the ratio
+    // The solver puts a sliding impulse onto the dynamic limit up to rounding. Rotation by the warm start keeps the
+    // ratio.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, friction);
     const Real limit = dynamic_friction * along;
@@ -39,7 +39,7 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
-/// What comes from outside: the collider's surface, and nodes that no impulse moves.
+/// Adds the external impulse and work: from the collider's surface, and from nodes that no impulse moves.
 void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse,
                std::span<const Real> inverse_mass, std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                ContactMeasures& sum) {
@@ -76,7 +76,8 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
     const std::size_t count = contacts.size();
     const TouchPlaces places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
-    // a fixed number of parts, so that their sums need no memory; their borders depend on the contact count alone
+    // The number of parts is fixed, so that their sums need no allocation; their borders depend only on the contact
+    // count.
     constexpr std::size_t part_limit = 64, smallest_part = 128;
     const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
     std::array<ContactMeasures, part_limit> parts{};

@@ -1,4 +1,4 @@
-// What each contact did in this step: slip, stick or slide.
+// Measures each contact after the solve: slip, and whether it sticks or slides.
 #pragma once
 
 #include "components/contact_table.h"
@@ -9,19 +9,19 @@
 namespace skerry {
 
 struct ContactMeasures {
-    Real max_penetration = 0;    // m, largest -distance: overlap of the surfaces themselves
-    Real max_gap_violation = 0;  // m, largest -gap: pressed into the contact shell
-    Real dissipated = 0;         // J, -sum of impulse . (velocity before + velocity after) / 2
-    // from colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work -
-    // dissipated
-    Vec3 outer_impulse = Vec3::Zero();  // N s
-    Real outer_work = 0;                // J
+    Real max_penetration = 0;    // largest -distance: overlap of the surfaces themselves [m]
+    Real max_gap_violation = 0;  // largest -gap: depth in the contact shell [m]
+    Real dissipated = 0;         // -sum of impulse . (velocity before + velocity after) / 2 [J]
+    // From colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work -
+    // dissipated.
+    Vec3 outer_impulse = Vec3::Zero();  // [N s]
+    Real outer_work = 0;                // [J]
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// How round bodies spin, before and after the solve: at a contact their surface has a velocity that their core has
-/// not.
+/// Spins of round bodies before and after the solve. At a contact their surface has a velocity that their core does not
+/// have.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};

@@ -1,4 +1,4 @@
-// Which nodes do not move by themselves: those of a rigid body, and those of a cluster.
+// Groups of nodes that move together: the nodes of a rigid body, and those of a cluster.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// Where contacts touch: ContactTable. Only read of cylinders, whose surface the normal alone does not tell.
+/// Contact points of ContactTable. Only read for cylinders, whose surface does not follow from the normal alone.
 struct TouchPlaces {
     std::span<const Vec3> point{};
     std::span<const Real> distance{};
@@ -25,7 +25,7 @@ struct TouchPlaces {
         return {.point = binder.read(contact.point), .distance = binder.read(contact.distance)};
     }
 
-    /// m, on the surface of the first partner (`weight` > 0) or of the second.
+    /// Contact point on the surface of the first partner (`weight` > 0) or of the second [m].
     Vec3 on(Real weight, std::size_t contact, const Vec3& normal) const {
         return weight > 0 ? Vec3(point[contact] + distance[contact] * normal) : point[contact];
     }
@@ -36,8 +36,8 @@ struct RigidNodes {
     std::span<const Range> body_nodes;     // BodyTable
     std::span<const Range> body_rigid;     // BodyTable; empty: no body is rigid
     std::span<const Real> round_radius{};  // BodyTable; empty: no body is round
-    std::span<const Index> core_nodes{};   // BodyTable; empty: the same
-    std::span<const Vec3> center{};        // RigidBodyTable; empty: the same
+    std::span<const Index> core_nodes{};   // BodyTable; empty: no body is round
+    std::span<const Vec3> center{};        // RigidBodyTable; empty: no body is round
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -57,7 +57,7 @@ struct RigidNodes {
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
         return rows.size() > 0 ? rows.begin : no_index;
     }
-    /// m, of the round body in whose core a node is; 0: it is a point.
+    /// Radius of the round body whose core contains the node; 0 for a plain node [m].
     Real radius(Index node) const {
         return round_radius.empty() ? 0
                                     : round_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
@@ -66,15 +66,15 @@ struct RigidNodes {
         return !core_nodes.empty() &&
                core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
     }
-    /// m: from the place in the core of a round body, whose nodes have weights of the sum 1 or -1, to where a contact
-    /// touches it, times that sum: -radius normal. Of a cylinder, whose middle is the place, to where it is touched.
+    /// Vector from the point in the core of a round body to the contact point, times the sum of its nodes' weights,
+    /// which is 1 or -1: -radius normal. For a cylinder the vector starts at its centre [m].
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
                      const TouchPlaces& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
         return weight * (places.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
     }
-    /// m/s: by how much the surfaces of the round bodies in a contact pass each other by their spins, where they touch.
-    /// `spin(r)`: rad/s, by row of RigidBodyTable.
+    /// Relative velocity of the surfaces of the round bodies in a contact due to their spins, at the contact point
+    /// [m/s]. `spin(r)`: by row of RigidBodyTable [rad/s].
     Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPlaces& places,
                  auto&& spin) const {
         Vec3 sum = Vec3::Zero();
@@ -91,7 +91,7 @@ struct RigidNodes {
         }
         return sum;
     }
-    /// The first node of the rigid body that a node belongs to, or itself.
+    /// The first node of the rigid body that contains `node`, or `node` itself.
     Index leader(Index node) const {
         return row(node) == no_index
                    ? node
@@ -99,9 +99,9 @@ struct RigidNodes {
     }
 };
 
-/// How rigid bodies spin, by row of RigidBodyTable.
+/// Spins of rigid bodies, by row of RigidBodyTable.
 struct RigidSpins {
-    std::span<const Mat3> inverse_inertia{};  // 1/(kg m^2), world
+    std::span<const Mat3> inverse_inertia{};  // in the world frame [1/(kg m^2)]
     std::span<const Vec3> angular_momentum{}, moment_kick{};
 
     static RigidSpins bind(const Binder& binder, const RigidBodyTable& rigid) {
@@ -110,13 +110,13 @@ struct RigidSpins {
                 .moment_kick = binder.read(rigid.moment_kick)};
     }
 
-    /// rad/s, at the start of the step.
+    /// Spin at the start of the step [rad/s].
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
-    /// rad/s, with the moment of forces.
+    /// Spin including the moment of forces [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
 };
 
-/// All of them, and what joints join; no node is of both kinds.
+/// All groups of nodes, and the joints. No node is both in a rigid body and in a cluster.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
@@ -124,7 +124,7 @@ struct NodeGroups {
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
-        // but the matrices, which may still change in a step
+        // all but the matrices, which may still change in a step
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -134,7 +134,7 @@ struct NodeGroups {
     }
 
     bool empty() const { return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty(); }
-    /// The first node of the group that a node belongs to, or itself.
+    /// The first node of the group that contains `node`, or `node` itself.
     Index leader(Index node) const { return rigid.leader(clusters == nullptr ? node : clusters->leader(node)); }
 };
 

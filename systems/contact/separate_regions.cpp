@@ -7,15 +7,15 @@
 namespace skerry {
 namespace {
 
-/// Whether an impulse of this contact can move anything.
+/// Whether an impulse of this contact can move any node.
 bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) return true;
     return false;
 }
 
-/// Joins the moving nodes of a contact, each with its group: `leader(node)` stands for that. Returns their root, or
-/// no_index.
+/// Joins the groups of the moving nodes of a contact; `leader(node)` represents the group of a node. Returns their
+/// root, or no_index.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, UnionFind& sets) {
     Index root = no_index;
@@ -37,7 +37,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     for (const JointBlock& joint : joints)
         if (joint.first_node != no_index && joint.second_node != no_index)
             sets.join(joint.first_node, joint.second_node);
-    constexpr std::size_t ahead = 12;  // contacts: by then their nodes have come from the memory
+    constexpr std::size_t ahead = 12;  // prefetch distance in contacts
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
             sets.fetch(node);
@@ -78,7 +78,7 @@ void collect(std::size_t count, const RegionOf& region_of, Index region_count, R
     list.item.resize(static_cast<std::size_t>(offset[region_count]));
     for (std::size_t i = 0; i < count; ++i)
         if (region_of(i) != no_index) list.item[offset[region_of(i)]++] = static_cast<Index>(i);
-    // the fill has moved each offset to the start of the next region: move them back
+    // filling has moved each offset to the start of the next region: move them back
     for (Index r = region_count; r > 0; --r) offset[r] = offset[r - 1];
     offset[0] = 0;
 }
@@ -88,8 +88,8 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
         contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
 }
 
-/// `number(node)`: of the region of a joint. Returns how many regions there are with those where no contact touches
-/// what they join.
+/// Sorts the joints by region. `number(node)`: region of a joint with this node. Returns the number of regions,
+/// including those of joints whose bodies no contact touches.
 template <class Number>
 Index collect_joints(std::span<const JointBlock> joints, const Number& number, Index region_count,
                      Ragged<Index>& list) {
@@ -104,7 +104,7 @@ Index collect_joints(std::span<const JointBlock> joints, const Number& number, I
     return region_count;
 }
 
-/// One after the other: few contacts, or one worker. The twin of separate_in_blocks.
+/// Sequential version for few contacts or few workers. The reference for separate_in_blocks.
 Index separate_in_order(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                         UnionFind& sets, RegionTable& regions, std::span<Index> contact_region) {
     const Index count = groups.empty()
@@ -124,7 +124,7 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set of joints alone is told of one item behind the contacts, by which its region is numbered.
+    // A set without contacts gets an item beyond the contacts, which gives its region a number.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -11,23 +11,23 @@
 
 namespace skerry {
 
-/// Kept between steps.
+/// Working memory, kept between steps.
 struct SeparationMemory {
-    UnionFind sets;  // of few contacts, or on few workers; else
+    UnionFind sets;  // for few contacts or few workers; otherwise `labels`
     BlockLabels labels;
 };
 
-/// From so many contacts on this many workers separate them. In blocks it is 1.3 to 1.5 times the work, and asks the
-/// workers to join five times: 1,024 contacts take 50 us in order, and 65 shared by all in blocks.
+/// Minimum number of contacts and of workers for separation in blocks. Blocks need 1.3 to 1.5 times the work and five
+/// parallel phases: 1,024 contacts take 50 us in order, and 65 shared by all in blocks.
 inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 
-/// Fills `regions.contacts` and `contact_region`. Two contacts are in one region if a chain of shared moving nodes
-/// (inverse mass > 0) joins them; nodes of one of the `groups` count as shared. Bodies that a joint of the groups
-/// joins do, too. Regions are numbered by their first contact, those of joints alone by their first joint behind them,
-/// and hold contacts and joints in order; contacts without a moving node belong to none. `mode` global puts all into
-/// one region. Returns false when there are no contacts and no joints (skipped). The result does not depend on the
-/// number of workers, though the way there does.
+/// Fills `regions.contacts`, `regions.joints` and `contact_region`. Two contacts are in one region if a chain of shared
+/// moving nodes (inverse mass > 0) connects them; nodes of one of the `groups` count as shared, and so do bodies
+/// connected by a joint of the groups. Regions are numbered by their first contact. Regions of joints alone follow,
+/// numbered by their first joint. Regions hold contacts and joints in order; contacts without a moving node belong to
+/// none. `mode` global puts all into one region. Returns false if there are no contacts and no joints (skipped). The
+/// result does not depend on the number of workers.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);

@@ -1,4 +1,4 @@
-// What contacts gave in this step, pair by pair.
+// Sums of the contact impulses of this step, pair by pair.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Who touches: a body and a collider (`collider` is a row, mesh colliders included), two bodies, the one of the lower
-/// slot first, or a body and itself.
+/// Partners of a contact: a body and a collider (`collider` is a row, for mesh colliders, too), two bodies, the one of
+/// the lower slot first, or a body and itself.
 struct ContactPartners {
     Index first = no_index;     // row of BodyTable, of a deformable body
     Index second = no_index;    // row of BodyTable, of a deformable body, or no_index
@@ -24,15 +24,15 @@ struct ContactPartners {
     bool operator==(const ContactPartners&) const = default;
 };
 
-/// Sums over contacts. The moments of the partners differ by what the distance of their surfaces makes of friction:
-/// each is that of the nodes, or of the point of the collider, which the impulses act on, so that it is what changes
-/// the angular momentum of the partner.
+/// Sums over contacts. The moments on the two partners differ, because friction acts across the distance of their
+/// surfaces. Each moment is taken at the nodes, or at the point of the collider, so that it equals the change of
+/// angular momentum of the partner.
 struct ContactSums {
-    Vec3 impulse = Vec3::Zero();        // N s, on the first
-    Vec3 first_moment = Vec3::Zero();   // N m s, on the first
-    Vec3 second_moment = Vec3::Zero();  // N m s, on the second
-    Vec3 friction = Vec3::Zero();       // N s, the tangential parts of `impulse`
-    Real pressing = 0;                  // N s, sum of the sizes of the normal parts
+    Vec3 impulse = Vec3::Zero();        // on the first [N s]
+    Vec3 first_moment = Vec3::Zero();   // on the first [N m s]
+    Vec3 second_moment = Vec3::Zero();  // on the second [N m s]
+    Vec3 friction = Vec3::Zero();       // the tangential parts of `impulse` [N s]
+    Real pressing = 0;                  // sum of the magnitudes of the normal parts [N s]
 
     ContactSums& operator+=(const ContactSums& more) {
         impulse += more.impulse;
@@ -51,7 +51,7 @@ struct ContactSums {
 struct PairSums {
     ContactPartners partners;
     ContactSums sums{};
-    Index contacts = 0;  // with an impulse
+    Index contacts = 0;  // number of contacts with an impulse
 };
 
 struct ContactSumInputs {
@@ -61,9 +61,9 @@ struct ContactSumInputs {
     std::span<const BodyKind> body_kind;
     std::span<const std::uint32_t> body_slot;
     std::span<const Real> round_radius;
-    std::span<const Vec3> position;      // m, by node: where the impulses act
-    std::span<const Real> inverse_mass;  // 1/kg, by node
-    std::span<const Index> held;         // nodes
+    std::span<const Vec3> position;      // by node: points at which the impulses act [m]
+    std::span<const Real> inverse_mass;  // by node [1/kg]
+    std::span<const Index> held;         // nodes held by attachments
     std::span<const Index> core_nodes;   // BodyTable
     TouchPlaces touch;
 
@@ -87,9 +87,9 @@ struct ContactSumInputs {
     }
 };
 
-/// Sums of the contacts with an impulse, one row a pair, in the order of the contacts; moments about `moment_point`.
-/// `held_impulse`: N s, by node, what contacts gave to nodes that no impulse moves; elsewhere it means nothing.
-/// Sequential.
+/// Sums the contacts with an impulse, one row per pair, in contact order; moments are about `moment_point`.
+/// `held_impulse`: by node, impulse of the contacts on nodes that no impulse moves [N s]; only the rows of held nodes
+/// are valid. Sequential.
 void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_point, Column<PairSums>& pairs,
                           Column<Vec3>& held_impulse);
 

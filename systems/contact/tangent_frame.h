@@ -1,4 +1,4 @@
-// The two tangents of a contact, a function of its normal alone.
+// Tangents of a contact, computed from its normal alone.
 #pragma once
 
 #include <cmath>
@@ -11,9 +11,9 @@ struct TangentFrame {
     Vec3 first, second;
 };
 
-/// Unit tangents that make a right-handed frame with the unit normal (normal, first, second). Duff et al. 2017,
-/// "Building an orthonormal basis, revisited", eq. 1 of the errata form: no branch but the sign, continuous except at z
-/// = 0. For (0,0,1): x and y.
+/// Unit tangents that form a right-handed frame (normal, first, second) with the unit normal. Duff et al. 2017,
+/// "Building an orthonormal basis, revisited", eq. 1 of the errata form: no branch except the sign, continuous except
+/// at z = 0. For (0,0,1): x and y.
 inline TangentFrame tangent_frame(const Vec3& normal) {
     const Real sign = std::copysign(Real(1), normal.z());
     const Real a = -1 / (sign + normal.z());

@@ -1,5 +1,5 @@
-// The functions that take nearly all of a step's time, compiled once for each instruction set that a build is for
-// (docs/decisions/0018-instruction-sets.md). The engine calls them through one table, chosen once.
+// Kernels: the functions that take nearly all of a step's time, compiled once for each instruction set of a build
+// (docs/decisions/0018-instruction-sets.md). The engine calls them through one table, which it chooses once.
 #pragma once
 
 #include <span>
@@ -27,9 +27,10 @@
 
 namespace skerry {
 
-/// One such set of functions. What each does stands in the header that declares it; all sets give the same bits.
+/// Kernels compiled for one instruction set. Each function is documented in the header that declares it. All sets give
+/// the same bits.
 struct Kernels {
-    const char* instruction_set;  // as the compiler calls it: x86-64-v3
+    const char* instruction_set;  // the compiler's name, such as x86-64-v3
     decltype(&skerry::find_candidates) find_candidates;
     decltype(&skerry::find_contacts) find_contacts;
     decltype(&skerry::find_crossings) find_crossings;
@@ -62,14 +63,13 @@ struct Kernels {
     decltype(&skerry::solve_regions) solve_regions;
 };
 
-/// A set that was compiled, and whether this processor and its system can run it.
+/// A compiled set, and whether this processor and its operating system can run it.
 struct KernelSet {
     const Kernels* kernels;
     bool runs;
 };
 
-/// All that were compiled, the most demanding last. The first always runs: it is for what all other code is compiled
-/// for.
+/// All compiled sets, the most demanding last. The first always runs: it uses the instruction set of all other code.
 std::span<const KernelSet> kernel_sets();
 
 }  // namespace skerry

@@ -1,7 +1,8 @@
-// Compiled once for each instruction set: SKERRY_KERNELS is the name of its table, SKERRY_KERNELS_FOR its own.
+// Compiled once for each instruction set. SKERRY_KERNELS is the name of its table, SKERRY_KERNELS_FOR the name of the
+// set.
 #include "systems/kernels/kernels.h"
 
-// A name that is not mangled: the only one that the objects of a set show to the others (cmake/close.cmake).
+// An unmangled name: the only symbol that the objects of a set export (cmake/close.cmake).
 extern "C" {
 extern const skerry::Kernels SKERRY_KERNELS;
 

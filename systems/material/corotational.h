@@ -7,28 +7,29 @@
 
 namespace skerry {
 
-/// What a law has is said in systems/material/with_law.h.
+/// The members of a law are described in systems/material/with_law.h.
 struct Corotational {
     static constexpr bool has_frame = true;
     static constexpr bool stiffness_varies = false;
     static constexpr int stress_flops = 47;
 
-    /// Elastic energy per rest volume, J/m^3: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, R the rotation nearest to F.
+    /// Elastic energy per rest volume: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, with R the rotation nearest to F
+    /// [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress, Pa: 2 mu (F - R) + lambda (tr(R^T F) - 3) R (docs/methods/elasticity.md 2.2).
+    /// First Piola-Kirchhoff stress: 2 mu (F - R) + lambda (tr(R^T F) - 3) R (docs/methods/elasticity.md 2.2) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF, Pa: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), s the
-    /// singular values of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2). Infinite where the
-    /// nearest rotation is not unique.
+    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with s the
+    /// singular values of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2) [Pa]. Infinite if
+    /// the nearest rotation is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF: 2 mu 1 + lambda 1 1^T of the stretches, 2 mu of a flip, and of a twist what turning R adds, 2 mu +
-    /// (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j).
+    /// dP/dF [Pa]: 2 mu 1 + lambda 1 1^T on the stretches, 2 mu on a flip. On a twist the rotation of R is added: 2 mu
+    /// + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j).
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The same by lanes, with the rotation R nearest to F given.
+    /// Elastic energy per rest volume by lanes, for the given rotation R nearest to F [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         const LaneMat3<T> strain = F - R;
@@ -41,17 +42,17 @@ struct Corotational {
                                                         const LaneMat3<T>& R) {
         return stress(material, R, inner_product(R, F));
     }
-    /// The same by the trace of R^T F.
+    /// Stress by lanes, for a given trace of R^T F [Pa].
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // what cancels near rest is as large as the rounding of F and R
+        // the terms that cancel near rest are as large as the rounding of F and R
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};
     }
 
-    /// Above dP/dF: 2 mu X + lambda (R : X) R, and what turning the frame adds, kappa (X - R X^T R).
+    /// Upper bound of dP/dF: 2 mu X + lambda (R : X) R, plus kappa (X - R X^T R) for the rotation of the frame.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
         const T kappa = frame_stiffness(material, F, R);
@@ -61,10 +62,10 @@ struct Corotational {
     }
 
 private:
-    /// kappa, so that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 on the modes that turn R,
-    /// with G = tr(S) I - S. Compressed, the modes are softened, but not below zero: a negative eigenvalue bends the
-    /// path and bounds no step. The eigenvalues of G lie within its mean -+ 2 spread; s_i + s_j is not taken below
-    /// 1e-3, where the frame is about to jump.
+    /// Returns kappa such that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 on the modes that
+    /// turn R, with G = tr(S) I - S. Under compression these modes soften, but their stiffness stays non-negative: a
+    /// negative eigenvalue bends the path and does not limit the step. The eigenvalues of G lie within mean -+ 2
+    /// spread. s_i + s_j is bounded below by 1e-3, where the frame is about to jump.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

@@ -9,11 +9,11 @@ namespace {
 
 using Vector4 = std::array<Real, 4>;
 
-/// Eigenvalues and vectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5): plain loops, so
-/// that the bits do not depend on how a library vectorises it.
+/// Eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5). Plain
+/// loops, so that the bits do not depend on how a library vectorises them.
 struct Eigen4 {
     Vector4 value;
-    std::array<Vector4, 4> vector;  // vector[i]: of value[i]
+    std::array<Vector4, 4> vector;  // vector[i] belongs to value[i]
 };
 
 Eigen4 eigen_of(std::array<Vector4, 4> a) {
@@ -36,7 +36,7 @@ Eigen4 eigen_of(std::array<Vector4, 4> a) {
                     a[k][p] = c * kp - s * kq;
                     a[k][q] = s * kp + c * kq;
                 }
-                for (std::size_t k = 0; k < 4; ++k) {  // rows, and the vectors beside them
+                for (std::size_t k = 0; k < 4; ++k) {  // rows, and the eigenvectors
                     const Real pk = a[p][k], qk = a[q][k], vp = v[p][k], vq = v[q][k];
                     a[p][k] = c * pk - s * qk;
                     a[q][k] = s * pk + c * qk;
@@ -69,16 +69,16 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
                                     {wz, zx, yz, zz - xx - yy}}});
     const auto top =
         static_cast<std::size_t>(std::max_element(eigen.value.begin(), eigen.value.end()) - eigen.value.begin());
-    // Nearest to the start among the vectors of (nearly) the largest eigenvalue, so that a degenerate element does not
-    // spin.
-    constexpr Real tie = 1e-6;  // of the largest entry of F
+    // Takes the eigenvector of (nearly) the largest eigenvalue that is nearest to the start, so that a degenerate
+    // element does not spin.
+    constexpr Real tie = 1e-6;  // relative to the largest entry of F
     Vector4 q{};
     for (std::size_t i = 0; i < 4; ++i) {
         if (eigen.value[i] < eigen.value[top] - tie) continue;
         const Real share = dot4(eigen.vector[i], start);
         for (std::size_t k = 0; k < 4; ++k) q[k] += share * eigen.vector[i][k];
     }
-    if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];  // the start is orthogonal to all of them: any will do
+    if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];  // the start is orthogonal to all of them: take any
     const Real length = std::sqrt(dot4(q, q));
     return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }

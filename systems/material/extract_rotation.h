@@ -1,5 +1,5 @@
-// The rotation nearest to a deformation gradient, started from the last step's (the idea of Mueller 2016, with Newton's
-// step).
+// Extraction of the rotation nearest to a deformation gradient, started from that of the last step (the idea of Mueller
+// 2016, with Newton's step).
 #pragma once
 
 #include "components/element_table.h"
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// A quaternion of T.
+/// A quaternion with components of type T.
 template <class T>
 struct LaneQuaternion {
     T w, x, y, z;
@@ -24,13 +24,13 @@ template <class T>
 }
 
 /// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the
-/// axial vector of R^T F, it turns by G^-1 a. Mueller's a / tr(S) leaves a third of the error in every pass; this
-/// leaves its cube. Returns (by lane) whether that was the last pass needed: it started safely inside the basin of the
-/// maximum and turned by less than 2e-5. `trace`: tr(R^T F) of the new R, to the fourth order of the turn.
+/// axial vector of R^T F, it turns by G^-1 a. Mueller's step a / tr(S) leaves a third of the error in every pass; this
+/// step leaves its cube. Returns (by lane) whether no further pass is needed: the step started safely inside the basin
+/// of the maximum and turned by less than 2e-5 rad. `trace`: tr(R^T F) of the new R, to fourth order of the turn.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
-    constexpr Real settled_turn_squared = 4e-10;  // rad^2; its cube is below the rounding of F
-    constexpr Real least_curvature = 1e-3;        // det G over (tr S / 3)^3, 8 at rest
+    constexpr Real settled_turn_squared = 4e-10;  // its cube is below the rounding of F [rad^2]
+    constexpr Real least_curvature = 1e-3;        // of det G over (tr S / 3)^3, which is 8 at rest
     const LaneMat3<T> R = rotation_of(q);
     const T a00 = dot(R.c0, F.c0), a11 = dot(R.c1, F.c1), a22 = dot(R.c2, F.c2);
     const T a01 = dot(R.c0, F.c1), a10 = dot(R.c1, F.c0);
@@ -49,9 +49,10 @@ template <class T>
     const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
                         half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
                         half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
-    trace = before + dot(o, axial);  // half the slope along the turn, as of every quadratic
-    // q <- q (1, o), o half the turn. Its length is |q| sqrt(1 + |o|^2): known before the product is, which keeps the
-    // root and the division off the critical path. The first factor takes back what |q| has lost to rounding.
+    trace = before + dot(o, axial);  // half the slope along the turn, as for every quadratic
+    // q <- q (1, o) with o half the turn. The new length |q| sqrt(1 + |o|^2) is known before the product, which keeps
+    // the root and the division off the critical path. The first factor corrects the length that |q| has lost to
+    // rounding.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;
@@ -60,24 +61,25 @@ template <class T>
     return inside & (4.0 * o_squared <= settled_turn_squared);
 }
 
-/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. Where
-/// several do equally well (F of rank one or zero, a mirrored F) it is the one nearest to `start`. `start` itself when
-/// F is not finite.
+/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. If several
+/// do equally well (F of rank one or zero, a mirrored F), the one nearest to `start`. Returns `start` if F is not
+/// finite.
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
-/// The same in all lanes, from `start`; a lane without volume keeps its own. Out of line and slow: rarely needed.
+/// Applies nearest_rotation to all lanes, from `start`; a lane without volume keeps its own. Out of line and slow:
+/// rarely needed.
 template <class T>
 void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start);
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
-/// The rotations R nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. As many
-/// passes as the slowest of them all takes. Returns tr(R^T F).
+/// Finds the rotations R nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. All
+/// lanes take as many passes as the slowest one. Returns tr(R^T F).
 template <class T, std::size_t N>
 [[gnu::always_inline]] inline std::array<T, N> extract_rotations(const std::array<LaneMat3<T>, N>& F,
                                                                  const std::array<T, N>& volume,
                                                                  std::array<LaneQuaternion<T>, N>& q) {
-    constexpr int max_passes = 4;  // from a warm start two are enough; what needs more is solved lane by lane
+    constexpr int max_passes = 4;  // two are enough from a warm start; slower lanes are solved one by one
     const std::array<LaneQuaternion<T>, N> start = q;
     std::array<T, N> trace;
     for (int pass = 0; pass < max_passes; ++pass) {
@@ -94,7 +96,7 @@ template <class T, std::size_t N>
     return trace;
 }
 
-/// The same of one part.
+/// Applies extract_rotations to a single part.
 template <class T>
 [[gnu::always_inline]] inline T extract_rotation(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& q) {
     std::array<LaneQuaternion<T>, 1> of_part{q};

@@ -1,4 +1,4 @@
-// What keeps a tetrahedron from turning over: Psi = k/2 (J0 - J)^2 where J = det F is below J0, else nothing
+// Inversion barrier: keeps a tetrahedron from turning over. Psi = k/2 (J0 - J)^2 if J = det F is below J0, else zero
 // (docs/methods/elasticity.md 7.7).
 #pragma once
 
@@ -8,29 +8,29 @@
 
 namespace skerry {
 
-/// What a law has is said in systems/material/with_law.h. k is the constant lambda.
+/// The members of a law are described in systems/material/with_law.h. k is the constant lambda.
 struct Guard {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 36;
 
-    static constexpr Real intact = 0.5;  // J0, a share of the volume at rest
+    static constexpr Real intact = 0.5;  // J0, as a fraction of the volume at rest
 
-    /// Elastic energy per rest volume, J/m^3.
+    /// Elastic energy per rest volume [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress, Pa: -k (J0 - J) cof F.
+    /// First Piola-Kirchhoff stress: -k (J0 - J) cof F [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Bound on the largest eigenvalue of dP/dF, Pa: k |cof F|^2 + 2/sqrt(3) k (J0 - J) |F|
-    /// (docs/methods/stable_step.md 4.3).
+    /// Upper bound of the largest eigenvalue of dP/dF: k |cof F|^2 + 2/sqrt(3) k (J0 - J) |F|
+    /// (docs/methods/stable_step.md 4.3) [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF: with p = -k (J0 - J), c the stretches of cof F: k c c^T + p s_k of the stretches i, j, -p s_k of a flip,
-    /// p s_k of a twist.
+    /// dP/dF [Pa]. With p = -k (J0 - J) and c the stretches of cof F: k c c^T + p s_k on the stretches i, j, -p s_k on
+    /// a flip, p s_k on a twist.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The same by lanes.
+    /// The law by lanes.
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const T missing = missing_of(determinant(F));
@@ -52,7 +52,7 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Above that, of |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1.
+    /// Upper bound of stiffness_bound from |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const T missing = missing_of(J);
@@ -60,7 +60,7 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// dP/dF itself: k (cof F : X) cof F - k (J0 - J) d(cof F).
+    /// Adds the exact dP/dF: k (cof F : X) cof F - k (J0 - J) d(cof F).
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const LaneMat3<T> cof = cofactor(F);
@@ -73,7 +73,7 @@ private:
     template <class T>
     static T missing_of(const T& J) {
         const T missing = intact - J;
-        return missing < 0.0 ? T{} : missing;  // no number where J is none
+        return missing < 0.0 ? T{} : missing;  // NaN if J is NaN
     }
 };
 

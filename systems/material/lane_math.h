@@ -1,5 +1,5 @@
-// Arithmetic of the element kernels: the same source works on one element (T = Real) and on element_lanes of them side
-// by side (T = Real8).
+// Arithmetic of the element kernels. One source works on one element (T = Real) and on element_lanes of them side by
+// side (T = Real8).
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// log(1 + x). Lane by lane, so that a lane has the bits of its element alone: energies are reported, not stepped with.
+/// log(1 + x). Lane by lane, so that a lane gets the bits of its element alone. Speed does not matter: energies are
+/// reported, not used in the step.
 inline Real log_of_one_plus(Real x) {
     return std::log1p(x);
 }
@@ -36,8 +37,8 @@ bool all(const Mask& mask) {
     return both != 0;
 }
 
-/// A 3x3 matrix of T by columns. What the force kernel calls is inlined by order: gcc does not, and nine registers
-/// would go through memory.
+/// A 3x3 matrix of T by columns. Functions used by the force kernel are forced inline: gcc does not inline them by
+/// itself, and nine registers would go through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
@@ -77,8 +78,8 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress of_F F + of_other other, Pa: whoever multiplies F by more, or all of it by a number, does so at once. Laws
-/// without such parts give a matrix.
+/// A stress of_F F + of_other other [Pa]. The split form lets callers add multiples of F, or scale all of it, cheaply.
+/// Laws without such parts return a matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;
@@ -100,7 +101,7 @@ template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> scaled(const T& scale, const LaneMat3<T>& P) {
     return scale * P;
 }
-/// What there is beside of_F F.
+/// The part of the stress beside of_F F.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> rest_of(const SplitStress<T>& P) {
     return P.of_other * P.other;
@@ -119,14 +120,14 @@ template <class T>
     P = rest;
 }
 
-/// The identity, known when compiling: no arithmetic.
+/// The identity matrix as a compile-time constant: it needs no arithmetic.
 struct IdentityMatrix {};
 template <class T>
 [[gnu::always_inline]] inline const LaneMat3<T>& multiply(IdentityMatrix, const LaneMat3<T>& b) {
     return b;
 }
 
-/// One lane as a plain matrix, and back.
+/// Converts one lane to a plain matrix, and back.
 template <class T>
 Mat3 lane_of(const LaneMat3<T>& a, int l) {
     Mat3 m;

@@ -7,25 +7,25 @@
 
 namespace skerry {
 
-/// What a law has is said in systems/material/with_law.h.
+/// The members of a law are described in systems/material/with_law.h.
 struct Linear {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = false;
     static constexpr int stress_flops = 18;
 
-    /// Elastic energy per rest volume, J/m^3: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I.
+    /// Elastic energy per rest volume: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress dPsi/dF, Pa (docs/methods/elasticity.md 2.1).
+    /// First Piola-Kirchhoff stress dPsi/dF (docs/methods/elasticity.md 2.1) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF, Pa: that of the rest shape, whatever the deformation.
+    /// Largest eigenvalue of dP/dF: that of the rest shape for every deformation [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF, whatever F is.
+    /// dP/dF, which does not depend on F [Pa].
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The same by lanes.
+    /// The law by lanes.
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;

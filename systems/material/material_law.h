@@ -1,4 +1,4 @@
-// A material of any law: its constants, and the laws one element at a time.
+// Material laws: the constants of a material of any law, and the laws for one element at a time.
 #pragma once
 
 #include "components/material_table.h"
@@ -7,15 +7,16 @@
 
 namespace skerry {
 
-/// Energy density (J/m^3), first Piola-Kirchhoff stress (Pa) and a bound on the largest eigenvalue of dP/dF (Pa) of a
-/// material at F. One element at a time: the plain twin of the kernels, for tests and implicit bodies of large strain.
+/// Energy density [J/m^3], first Piola-Kirchhoff stress [Pa] and a bound on the largest eigenvalue of dP/dF [Pa] of a
+/// material at F. For one element at a time: the simple reference for the kernels, for tests and implicit bodies of
+/// large strain.
 Real energy_density(const MaterialConstants& material, const Mat3& F);
 Mat3 stress(const MaterialConstants& material, const Mat3& F);
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
-/// dP/dF (Pa) for Newton steps.
+/// dP/dF for Newton steps [Pa].
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-/// The constants from what users give: E > 0 (Pa), -1 < nu < 0.5, rho > 0 (kg/m^3).
+/// Converts user parameters to constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0 [kg/m^3].
 MaterialConstants material_constants(MaterialModel model, Real young_modulus, Real poisson_ratio, Real density);
 
 }  // namespace skerry

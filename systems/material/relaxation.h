@@ -1,5 +1,5 @@
-// The part of the stress that relaxes: losses that hardly depend on frequency, and bulk viscosity
-// (docs/methods/elasticity.md 6).
+// Relaxing part of the stress: losses that hardly depend on frequency, and bulk viscosity (docs/methods/elasticity.md
+// 6).
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ template <class T>
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
 }
 
-/// Twice Green's strain, F^T F - I: rotations do not change it. Strains of what relaxes are all kept twice, which saves
+/// Twice Green's strain, F^T F - I, which rotations do not change. All viscous strains are stored doubled, which saves
 /// halving them.
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> twice_green_strain(const LaneMat3<T>& F) {
@@ -46,7 +46,7 @@ template <class T>
             S.zx * F.c0 + S.yz * F.c1 + S.zz * F.c2};
 }
 
-/// F S + P, of a law's stress P.
+/// F S + P, with P the stress of a law.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> multiply_and_add(const LaneMat3<T>& F, const LaneSymmetric<T>& S,
                                                            const LaneMat3<T>& P) {
@@ -61,30 +61,31 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// What stretches the springs of the two viscous parts, twice: the strain less what the dashpots have taken.
+/// Twice the strain of the springs of the two Maxwell elements: the total strain less that of the dashpots.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
     T volume;
 };
 
-/// Stiffness of the two viscous parts, Pa: those of the law times a share, and on the change of volume alone.
+/// Spring stiffness of the two viscous parts: those of the law times a share, and one on the change of volume alone
+/// [Pa].
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// The lowest rate of relaxation is the lowest frequency of a body, as a free one, over this: a held end makes a beam
-/// six times slower.
+/// The lowest relaxation rate is the lowest frequency of the body, taken as free, over this number: a held end makes a
+/// beam six times slower.
 inline constexpr Real rates_below = 20;
 
-/// Stiffness of what relaxes, over that of the law, for a loss factor at the lowest frequency of a body. Rates are
-/// spread evenly on a logarithmic scale, the highest `span` times the lowest, so that a share s is behind by
-/// (pi / 2) s / log(span) and adds s log(rates_below) / log(span) to the stiffness there.
+/// Stiffness of the relaxing part over that of the law, for a loss factor at the lowest frequency of a body. Relaxation
+/// rates are spread evenly on a logarithmic scale, the highest `span` times the lowest. A share s then lags by (pi / 2)
+/// s / log(span) and adds s log(rates_below) / log(span) to the stiffness there.
 inline Real relaxing_share(Real loss_factor, Real span) {
     return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
 }
 
-/// The bulk viscosity is that of a spring and a dashpot whose time is this over the element's own frequency.
+/// Relaxation time of the spring and dashpot of the bulk viscosity, times the element's own frequency.
 inline constexpr Real bulk_time = 0.5;
 
 inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {
@@ -92,7 +93,7 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
             2 * material.bulk_viscosity / bulk_time * (material.lame_lambda + 2 * material.shear_modulus)};
 }
 
-/// J/m^3, of all springs.
+/// Elastic energy density of all springs [J/m^3].
 template <class T>
 [[gnu::always_inline]] inline T energy_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
     const T trace = stretch.strain.trace();
@@ -100,7 +101,7 @@ template <class T>
                     moduli.bulk * (stretch.volume * stretch.volume));
 }
 
-/// Second Piola-Kirchhoff stress, Pa, times a scale.
+/// Second Piola-Kirchhoff stress of the springs, times a scale [Pa].
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
                                                       const T& scale) {

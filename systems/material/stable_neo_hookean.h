@@ -8,15 +8,15 @@
 
 namespace skerry {
 
-/// What a law has is said in systems/material/with_law.h.
+/// The members of a law are described in systems/material/with_law.h.
 struct StableNeoHookean {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 82;
 
-    /// The model's mu and lambda, Pa, that give the small-strain moduli (Smith 2018, section 3.4;
-    /// docs/methods/elasticity.md 2.3). For every Poisson ratio above -1 la > mu / 8, so that alpha lies between 1 and
-    /// 7.
+    /// Parameters mu and lambda of the model that give the small-strain moduli (Smith 2018, section 3.4;
+    /// docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above -1 la > mu / 8, so that alpha lies between 1
+    /// and 7.
     struct ModelModuli {
         Real mu, la;
     };
@@ -24,28 +24,28 @@ struct StableNeoHookean {
         return {4.0 / 3 * material.shear_modulus, material.lame_lambda + 5.0 / 6 * material.shear_modulus};
     }
 
-    /// Elastic energy per rest volume, J/m^3: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J - 1) + la/2 (J - 1)^2; 0 at
-    /// rest.
+    /// Elastic energy per rest volume: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J - 1) + la/2 (J - 1)^2; 0 at rest
+    /// [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress, Pa: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof F.
+    /// First Piola-Kirchhoff stress: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof F [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Bound on the largest eigenvalue of dP/dF, Pa: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|
-    /// (docs/methods/stable_step.md 4.3). The first term is the most that mu (1 - 1 / (Ic + 1)) + 2 mu Ic / (Ic + 1)^2
-    /// comes to, at Ic = 3.
+    /// Upper bound of the largest eigenvalue of dP/dF: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|
+    /// (docs/methods/stable_step.md 4.3) [Pa]. The first term is the maximum of mu (1 - 1 / (Ic + 1)) + 2 mu Ic / (Ic +
+    /// 1)^2, at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF: with a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu, c the stretches of cof F: a 1 + 2 mu/(Ic + 1)^2 s
-    /// s^T + la c c^T + p s_k of the stretches i, j, a - p s_k of a flip, a + p s_k of a twist.
+    /// dP/dF [Pa]. With a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu and c the stretches of cof F: a 1 + 2 mu/(Ic +
+    /// 1)^2 s s^T + la c c^T + p s_k on the stretches i, j, a - p s_k on a flip, a + p s_k on a twist.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The same by lanes.
+    /// The law by lanes.
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const auto [mu, la] = model_moduli(material);
-        // By e = F - 1, and without the parts of first order, which cancel: else a body at rest would have the energy
-        // of their rounding.
+        // Computed from e = F - 1 without the first-order terms, which cancel: otherwise a body at rest would have the
+        // energy of their rounding.
         const T xx = F.c0.x - 1.0, yy = F.c1.y - 1.0, zz = F.c2.z - 1.0;
         const T trace = xx + yy + zz;
         const LaneMat3<T> e{{xx, F.c0.y, F.c0.z}, {F.c1.x, yy, F.c1.z}, {F.c2.x, F.c2.y, zz}};
@@ -75,7 +75,8 @@ struct StableNeoHookean {
                two_over_root_three * square_root(slope * slope * inner_product(F, F));
     }
 
-    /// Above that, of |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1. Equal at rest.
+    /// Upper bound of stiffness_bound from |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1. Equal
+    /// at rest.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const auto [mu, la] = model_moduli(material);
@@ -83,9 +84,9 @@ struct StableNeoHookean {
         return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
     }
 
-    /// Above dP/dF: mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4
-    /// mu) d(cof F). An element pressed together resists shear less than at rest, and at F = 0 not at all: a step that
-    /// bounds nothing would be wrong as soon as it opens, so that it counts as stiff as at rest.
+    /// Upper bound of dP/dF: mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1)
+    /// - 3/4 mu) d(cof F). A compressed element resists shear less than at rest, and not at all at F = 0. A step
+    /// without a bound would be wrong as soon as the element opens, so the shear stiffness is at least that at rest.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

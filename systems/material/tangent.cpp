@@ -8,8 +8,8 @@
 namespace skerry {
 
 Stretches::Stretches(const Mat3& F) {
-    // By F^T F, in a third of the time of the singular values, where no stretch is so small that its square is lost.
-    constexpr Real flat = 1e-4;  // of the largest squared stretch
+    // Uses F^T F, which takes a third of the time of the SVD, unless a stretch is so small that its square is lost.
+    constexpr Real flat = 1e-4;  // relative to the largest squared stretch
     const Eigen::SelfAdjointEigenSolver<Mat3> squares(F.transpose() * F);
     const Vec3& squared = squares.eigenvalues();
     if (squared[0] > flat * squared[2]) {

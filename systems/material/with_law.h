@@ -1,4 +1,4 @@
-// Every constitutive law, in one list.
+// List of all constitutive laws.
 #pragma once
 
 #include "components/options.h"
@@ -9,21 +9,22 @@
 
 namespace skerry {
 
-/// Calls visit(law) with the law of a model, an empty object: what visits it is compiled once for each law. A law is a
-/// struct in a file of its own, with
+/// Calls visit(law) with the law of a model, an empty object; visit is compiled once for each law. A law is a struct in
+/// a file of its own, with
 ///
-///     has_frame           whether it turns with the element: then all by lanes below take R, the rotation nearest to F
-///     stiffness_varies    whether nodes share the step of an element by its stiffness_bound in its present shape, by
-///                         lanes; else as if it had the one of its rest shape
-///     stress_flops        of stress by lanes, a tetrahedron: what profile_elements compares times with
-///     energy_density, stress, stiffness_bound (material, F)     one element, the plain twin of the kernels
-///     tangent (material, F)                                     one element, for Newton steps
+///     has_frame           whether it turns with the element: then all functions by lanes take R, the rotation nearest
+///                         to F
+///     stiffness_varies    whether nodes share the step of an element by the stiffness_bound of its present shape, by
+///                         lanes; otherwise by that of its rest shape
+///     stress_flops        operations of stress by lanes per tetrahedron; profile_elements relates times to it
+///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
+///     tangent (material, F)                                     for one element, for Newton steps
 ///     energy_density, stress (material, F[, R])                 by lanes; the stress may be a SplitStress
-///     rough_stiffness_bound (material, |F|^2, det F)            by lanes, where stiffness_varies: not below the other
-///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or something above it, as terms
+///     rough_stiffness_bound (material, |F|^2, det F)            by lanes, if stiffness_varies: >= stiffness_bound
+///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or an upper bound, as terms
 ///                                                               (dynamics/stability/element_stiffness.cpp)
 ///
-/// and an entry here and, where materials can have it, in EnumNames<MaterialModel>.
+/// and an entry here and, if materials can use it, in EnumNames<MaterialModel>.
 template <class Visit>
 [[gnu::always_inline]] inline decltype(auto) with_law(MaterialModel model, Visit&& visit) {
     switch (model) {
