@@ -345,7 +345,7 @@ int run_command_line(int argc, char** argv) {
 void keep_freed_memory() {
 #ifdef __GLIBC__
     constexpr int largest_kept = 32 << 20,
-                  most_kept = 64 << 20;  // [bytes]; the library's own later values
+                  most_kept = 64 << 20;  // malloc reaches these by itself, but later [bytes]
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);
 #endif
