@@ -12,8 +12,7 @@ constexpr int sectors = 48;      // around the axis: 7.5 degrees each, no visibl
 constexpr int arc_steps = 12;    // per quarter circle of a profile, also 7.5 degrees each
 constexpr int plane_cells = 10;  // per edge of a patch; their edges appear as a grid
 
-using Profile =
-    std::vector<std::array<Real, 2>>;  // (radius, z); the outside is to the right of the direction of travel
+using Profile = std::vector<std::array<Real, 2>>;  // (radius, z); the outside is to the right when following it
 
 Mat3 rotation_of(const Vec3& axis_angle) {
     const Real angle = axis_angle.norm();

@@ -34,8 +34,7 @@ struct StepWithout {
 struct StepBound {
     Real step = 0;  // [s]
     ElementKind element{};
-    std::vector<CostlyTetrahedron>
-        worst;  // first the one that bounds the step, then the flattest that allow hardly more
+    std::vector<CostlyTetrahedron> worst;  // the one that bounds the step, then the flattest with hardly more
     std::vector<StepWithout> without;
 };
 

@@ -31,11 +31,11 @@ struct PageRow {
 
 /// Packs frames as they arrive into one stream, compressed as a whole (docs/decisions/0016-page-stream.md). Counts and
 /// changes are encoded as in pack.h, all other numbers are little-endian. A frame consists of
-/// counts of bodies, colliders, contacts
-/// changes from zero: exponents e of the tops 4^e of speed, stress, strain and force (ValueScale)
-/// per body: count: its number; its shape if it is new; then positions, then values of each field (BodyStream)
-/// per collider: count: its number; f32 position[3] [m], rotation[3] (axis times angle)
-/// contacts (ContactStream)
+///   counts of bodies, colliders, contacts
+///   changes from zero: exponents e of the tops 4^e of speed, stress, strain and force (ValueScale)
+///   per body: count: its number; its shape if it is new; then positions, then values of each field (BodyStream)
+///   per collider: count: its number; f32 position[3] [m], rotation[3] (axis times angle)
+///   contacts (ContactStream)
 class PageData {
 public:
     void add(const Frame& frame);

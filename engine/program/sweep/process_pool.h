@@ -20,8 +20,7 @@ struct PoolEnd {
 struct PoolCalls {
     FunctionRef<int(int)> run;            // called in a new process; takes the job, returns its exit code
     FunctionRef<bool(int, int)> goes_on;  // called with job and exit code; returns whether further jobs may start
-    FunctionRef<void(int, int)>
-        show;  // called with the numbers of finished and running jobs, after each change and twice a second
+    FunctionRef<void(int, int)> show;     // jobs done and running, after each change and twice a second
 };
 
 /// Runs jobs 0 to `count` - 1 in order, `at_once` at a time. SIGINT and SIGTERM are passed on to the running jobs; a

@@ -50,8 +50,7 @@ BodyStream::BodyStream(const BodyFrame& body) {
     triangles_.reserve(body.surface.size());
     for (const auto& [a, b, c] : body.surface) triangles_.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
     lattice_ = Lattice::around(points);
-    now_.resize(std::max<std::size_t>(
-        node_.size(), 1));  // one entry at least: first_code() of a body without a surface is the origin
+    now_.resize(std::max<std::size_t>(node_.size(), 1));  // without a surface first_code() is the origin
     before_ = now_;
     for (Values& values : values_) values.code.resize(node_.size());
 }

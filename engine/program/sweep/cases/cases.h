@@ -17,8 +17,7 @@ struct Parameter {
 
 struct Cases {
     std::vector<Parameter> parameters;
-    std::vector<std::vector<std::optional<Json>>>
-        values;  // indexed by case and parameter; cases of a list may lack some
+    std::vector<std::vector<std::optional<Json>>> values;  // by case and parameter; a list may lack some
 
     int count() const { return static_cast<int>(values.size()); }
 };

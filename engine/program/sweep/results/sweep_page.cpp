@@ -52,8 +52,7 @@ std::string table_page(const SweepTable& table) {
                        {"figures", figure_names(table)},
                        {"rows", rows_json(table)}};
     std::string page(sweep_page_html);
-    put_in("@DATA@", script_text(data),
-           page);  // @DATA@ comes after @TITLE@: even if the data contain "@TITLE@", the first one is the real mark
+    put_in("@DATA@", script_text(data), page);  // first: it follows @TITLE@, so the next search finds the mark
     put_in("@TITLE@", escape_markup(table.sweep.name), page);
     return page;
 }
