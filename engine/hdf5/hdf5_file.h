@@ -49,7 +49,7 @@ private:
     void* data_ = nullptr;
 };
 
-/// HDF5 type of such numbers in memory and in files.
+/// HDF5 type for a kind of numbers, in memory and in files.
 hid_t hdf5_type(NumberType type);
 
 /// An open file. Paths are absolute, "/group/field". All functions that read throw SceneError if an object is missing

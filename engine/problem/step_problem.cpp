@@ -68,7 +68,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// For a cylinder: sets the touched place of each contact of the problem. `rows` are their rows in the step.
+/// For a cylinder: sets where each contact of the problem touches it. `rows`: their rows in the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();

@@ -21,7 +21,7 @@ namespace {
 using Problems = std::vector<std::string>;
 
 constexpr Real poor_quality = 0.1;        // below it a tetrahedron is a sliver that costs steps and accuracy
-constexpr Real expensive_step_ratio = 4;  // a ratio of stable steps between kinds of bodies worth a message
+constexpr Real expensive_step_ratio = 4;  // a stable step this many times below that of the next kind is reported
 constexpr Real hardly_longer = 1.03;      // ratio of steps below which the gain is called small
 constexpr int timed_steps = 20;
 constexpr std::size_t longest_list = 300;  // longest list of names in a message [characters]
@@ -168,7 +168,7 @@ struct BodyKindReport {
     std::size_t body = 0;  // index in ScenePlan::bodies of the first one
     MeshReport mesh;
     BodyDynamics dynamics;
-    StepBound bound;  // for a body that does not bound the step: empty, with an infinite step
+    StepBound bound;  // for a rigid or implicit body: empty, with an infinite step
 
     bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
@@ -285,7 +285,7 @@ struct SceneCost {
     double seconds_per_second = 0;  // wall time per simulated second, measured in the first steps
     Real overlap = 0;               // deepest overlap at the start [m]
     Real into_shell = 0;            // depth of surfaces in each other's contact distance at the start [m]
-    Index contacts = 0;             // at the start
+    Index contacts = 0;             // number of contacts at the start
     std::string failure{}, turning{};
 };
 

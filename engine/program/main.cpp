@@ -344,7 +344,7 @@ int run_command_line(int argc, char** argv) {
 /// each time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // bytes; the library itself adapts to these later
+    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // [bytes]; the library adapts to these, but late
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);
 #endif

@@ -14,12 +14,12 @@ struct ProbeRecord {
     Real stick_time = 0, slide_time = 0, open_time = 0;  // [s]
     Real slide_alone_time = 0;                           // time during which no other probe slides [s]
     int changes = 0;                                     // changes between sticking and sliding
-    Real max_slip = 0;                                   // mean over the probe's closed contacts [m/s]
+    Real max_slip = 0;                                   // largest mean over the probe's closed contacts [m/s]
     Real slip_distance = 0;                              // time integral of that mean slip [m]
     Real max_von_mises = 0;                              // largest stress at the probe's nodes [Pa]
     std::vector<Real> time;                              // times of the samples [s]
     std::vector<int> sticking, sliding;                  // numbers of contacts
-    std::vector<Real> slip;                              // [m/s]
+    std::vector<Real> slip;                              // mean over closed contacts [m/s]
     std::vector<Real> von_mises;                         // largest value at the probe's nodes [Pa]
 };
 

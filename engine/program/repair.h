@@ -29,10 +29,10 @@ struct RepairedMesh {
 };
 
 /// Fills the mesh's surface with new tetrahedra and returns the mesh with the longest stable step. The surface is
-/// tried as it is and without its knots. Removing knots moves it by at most `tolerance`, a share of the bounding box's
-/// diagonal; 0: only as it is. First, nodes whose tetrahedra share no face there are split (part_fans.h); a mesh with
-/// split nodes is accepted even with its old tetrahedra. `progress` is called with the current activity many times a
-/// second. Throws SceneError for a mesh whose surface cannot be filled.
+/// tried as it is and without its knots (needles and caps). Removing them moves it by at most `tolerance`, a share of
+/// the bounding box's diagonal; 0: only as it is. First, nodes whose tetrahedra share no face there are split
+/// (part_fans.h); a mesh with split nodes is accepted even with its old tetrahedra. `progress` is called with the
+/// current activity many times a second. Throws SceneError for a mesh whose surface cannot be filled.
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 

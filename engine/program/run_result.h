@@ -22,7 +22,7 @@ struct RunResult {
     double seconds_simulated = 0;
     double seconds_wall = 0;    // wall time of the steps alone
     double seconds_load = 0;    // wall time for reading and building the scene
-    double seconds_output = 0;  // wall time for writing frames
+    double seconds_output = 0;  // wall time for writing outputs and checkpoints
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
     int checkpoints = 0, checkpoints_failed = 0;  // written and failed in this part of the run

@@ -13,7 +13,7 @@ namespace {
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {
-        // The poles are on z, with a vertical fivefold axis: a ball stands on a node and is symmetric about z.
+        // The poles are on z, with a vertical fivefold axis: a ball stands on a node and is fivefold about z.
         const Real height = 1 / std::sqrt(Real{5}), wide = 2 * height, fifth = 2 * std::acos(Real{-1}) / 5;
         corner_[0] = Vec3(0, 0, -1);
         corner_[11] = Vec3(0, 0, 1);
@@ -83,8 +83,8 @@ private:
                     }
     }
 
-    /// Adds four tetrahedra around the shortest of the three diagonals; diagonal d has its ends at places 2 d and 2 d
-    /// + 1. Of equal diagonals the first is used.
+    /// Adds four tetrahedra around the shortest of the three diagonals, or the first of equal ones. The ends of
+    /// diagonal d are at places 2 d and 2 d + 1.
     void split_octahedron(const std::array<Index, 6>& n) {
         std::size_t best = 0;
         Real shortest = 0;

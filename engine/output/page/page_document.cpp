@@ -125,7 +125,7 @@ std::string escape_html(const std::string& text) {
     return escape_markup(clean);
 }
 
-/// Compresses three.js to a fifth of its size, still as text.
+/// Compressed three.js, about a fifth of the size of its text.
 std::string packed_three_js() {
     Deflater deflater;
     deflater.add(three_js);

@@ -17,7 +17,7 @@ bool is_series_file(std::string_view file_name, std::string_view name);
 /// Writes NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, if a collider was added, removed or moved,
 /// NAME_colliders_0000.vtp. NAME.pvd lists them by time. Bodies and colliders are numbered in the order of their first
 /// appearance and keep their number. The first frame removes all files of an earlier series with the same name, as far
-/// as they have the above names, and nothing else. Throws SceneError if these cannot be replaced. A frame that cannot
+/// as they have the above names, and nothing else. Throws SceneError if they cannot be replaced. A frame that cannot
 /// be written completely leaves no files.
 class VtkSeries {
 public:

@@ -1,6 +1,7 @@
 // skerry-fill: reads a closed surface from standard input and writes tetrahedra inside it to a file. It is a separate
 // program for two reasons. Netgen (LGPL), and the CAD libraries, Tcl, Python and MPI that Debian's build of it loads,
-// stay out of `skerry`. A crash on a bad surface ends this process alone. `skerry inspect --repair` calls it.
+// stay out of `skerry`. A failure on some surface ends this process alone. `skerry inspect --repair` calls it.
+//
 // Input: "NODES TRIANGLES LARGEST_EDGE", lines "x y z", lines "a b c" counted from 0. Output, to file descriptor 3:
 // "NODES TETRAHEDRA", lines "x y z", lines "a b c d" counted from 0.
 #include <cstdio>

@@ -43,7 +43,7 @@ std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
 std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
     std::vector<int> left;
     int others = 0;
-    std::string first;  // first such file
+    std::string first;  // description of the first such file
     for (const int index : mine) {
         const CaseFile file = plan.read(index);
         if (file.state == CaseFileState::other && others++ == 0)

@@ -16,7 +16,7 @@ public:
     Deflater& operator=(Deflater&&) noexcept;
 
     void add(std::string_view bytes);
-    /// All bytes so far, packed, with the end that makes them whole. More can be added afterwards.
+    /// Returns all bytes so far as a complete compressed stream. More bytes can be added afterwards.
     std::string packed() const;
 
 private:
