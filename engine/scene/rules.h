@@ -149,7 +149,7 @@ private:
 /// Returns the complete JSON schema of files that hold one object of a rule.
 std::string schema_document(const std::string& title, const RuleTable& rule);
 
-/// Returns the rule of a type; declarations of specialisations: scene_rules.h.
+/// Returns the rule of a type. scene_rules.h declares most specialisations.
 template <class T>
 const Rule<T>& rule_of();
 
