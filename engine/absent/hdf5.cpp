@@ -1,4 +1,4 @@
-// Instead of engine/hdf5, of files of contact problems and series and of engine/world/save, with SKERRY_HDF5=OFF.
+// Replaces engine/hdf5, the files of contact problems and series, and engine/world/save if SKERRY_HDF5=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/problem.h"
 #include "skerry/recorder.h"

@@ -1,4 +1,4 @@
-// Instead of engine/output/page with SKERRY_PAGES=OFF.
+// Replaces engine/output/page if SKERRY_PAGES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/output.h"
 

@@ -1,4 +1,4 @@
-// What a build without a part says where that part is called.
+// Error of calls to a part that this build does not have.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// `option` is that of CMake which leaves the part out.
+/// Throws SceneError. `option` is the CMake option that disabled the part.
 [[noreturn]] inline void refuse_absent(const char* call, const char* option) {
     Complaint{.file = {},
               .object = call,

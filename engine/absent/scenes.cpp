@@ -1,4 +1,4 @@
-// Instead of engine/scene with SKERRY_SCENES=OFF.
+// Replaces engine/scene if SKERRY_SCENES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/scene.h"
 

@@ -1,5 +1,5 @@
-// Reads named numbers from an HDF5 file, with complaints that say which. Nothing is printed: HDF5's own messages are
-// switched off while it is read.
+// Reads named numbers from an HDF5 file. Error messages name the object. Nothing is printed: HDF5's own messages are
+// disabled while the file is read.
 #pragma once
 
 #include <hdf5.h>
@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// Something of HDF5's that has to be closed.
+/// Owns an HDF5 identifier and closes it.
 class Hdf5Handle {
 public:
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -33,7 +33,7 @@ private:
     herr_t (*close_)(hid_t);
 };
 
-/// Keeps HDF5 from printing, as long as it lives; the host's own handler comes back afterwards.
+/// Disables HDF5's own messages during its lifetime; then restores the previous handler.
 class QuietHdf5 {
 public:
     QuietHdf5() {
@@ -49,14 +49,14 @@ private:
     void* data_ = nullptr;
 };
 
-/// The type of HDF5 that such numbers have in memory and in files.
+/// HDF5 type for a kind of numbers, in memory and in files.
 hid_t hdf5_type(NumberType type);
 
-/// An open file. Paths are absolute, "/group/field". All reading throws SceneError on what is missing or of another
-/// kind.
+/// An open file. Paths are absolute, "/group/field". All functions that read throw SceneError if an object is missing
+/// or of another kind.
 class Hdf5File {
 public:
-    /// `expected`: what a complaint about the file as a whole says that it ought to be.
+    /// `expected`: description of the expected file in error messages.
     Hdf5File(const std::filesystem::path& path, const std::string& expected);
 
     bool has(const std::string& path) const;
@@ -64,18 +64,18 @@ public:
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all finite
-    /// A column of numbers of exactly this type, so that they keep their bits, in rows of `width`: two dimensions if
-    /// that is more than one. `place` makes room for so many rows and says where.
+    /// Reads rows of `width` numbers, bitwise unchanged; the file must have exactly this type. The data set has two
+    /// dimensions if `width` is more than one. `place` allocates the given number of rows and returns their address.
     void read_rows(const std::string& path, hid_t memory_type, std::size_t width,
                    FunctionRef<void*(std::size_t)> place) const;
-    /// Text that a file may have: empty when it has none.
+    /// Reads an optional text; empty if the file does not have it.
     std::string text_or_nothing(const std::string& path) const;
 
     [[noreturn]] void complain(const std::string& path, const std::string& found, const std::string& expected,
                                const std::string& hint = {}) const;
 
 private:
-    /// Whether so much can come out of the file: a few bytes of it may claim any size.
+    /// True if the file is large enough for that many values: a few of its bytes may claim any size.
     bool can_hold(hsize_t bytes) const;
     template <class T>
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;

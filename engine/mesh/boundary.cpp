@@ -11,7 +11,7 @@ SurfaceMesh boundary(const Mesh& mesh) {
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     for (const BoundaryTriangle& t : triangles)
         for (const Index n : t.node) row[static_cast<std::size_t>(n)] = 0;
-    // Node order, not order of discovery: a boundary node keeps its place among the others.
+    // Surface nodes keep the order of the mesh's nodes, not the order in which triangles mention them.
     for (std::size_t n = 0; n < row.size(); ++n) {
         if (row[n] == no_index) continue;
         row[n] = static_cast<Index>(surface.nodes.size());

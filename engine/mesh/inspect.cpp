@@ -26,7 +26,7 @@ std::vector<Edge> unique_edges(const Mesh& mesh) {
     return edges;
 }
 
-/// Pieces that hang together by nodes; a node that nothing uses is not a piece.
+/// Number of pieces connected by nodes. Unused nodes do not count as pieces.
 std::size_t count_components(const Mesh& mesh) {
     std::vector<Index> parent(mesh.nodes.size());
     std::iota(parent.begin(), parent.end(), 0);
@@ -64,7 +64,7 @@ void measure_edges(const Mesh& mesh, MeshReport& report) {
     report.mean_edge = sum / static_cast<Real>(edges.size());
 }
 
-/// 12 (3 V)^(2/3) / sum of squared edges, with the sign of the volume: 1 is regular, 0 flat.
+/// Quality of a tetrahedron: 12 (3 V)^(2/3) / sum of squared edges, with the sign of the volume. 1 is regular, 0 flat.
 Real quality(Real six_volumes, const std::array<Real, 6>& edges) {
     Real squares = 0;
     for (const Real length : edges) squares += length * length;

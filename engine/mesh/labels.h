@@ -8,10 +8,10 @@
 
 namespace skerry::mesh {
 
-/// Tetrahedra with each label.
+/// Number of tetrahedra with each label.
 std::map<int, std::size_t> count_labels(const Mesh& mesh);
 
-/// "one of the labels of the mesh: 1, 2, 5", or that it has none; of many the first.
+/// Text for messages: "one of the labels of the mesh: 1, 2, 5" (the first 20), or "a mesh with labels" if it has none.
 std::string expected_label(const Mesh& mesh);
 
 }  // namespace skerry::mesh

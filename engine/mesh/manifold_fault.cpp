@@ -11,7 +11,7 @@ namespace skerry::mesh {
 
 namespace {
 
-/// An edge of a triangle, and which corners of the triangle its ends are: three a triangle.
+/// An edge of a triangle, with the corners (three per triangle) at its ends.
 struct Side {
     std::array<Index, 2> node;    // ascending
     std::array<Index, 2> corner;  // in the same order
@@ -51,7 +51,7 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
         for (std::size_t end = 0; end < 2; ++end) rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
         first = last;
     }
-    // of each node the first corner; all others are in its ring
+    // compares each corner with the first one at its node: all must be in one ring
     std::vector<std::pair<Index, Index>> corners;
     for (std::size_t c = 0; c < 3 * boundary.size(); ++c)
         corners.emplace_back(boundary[c / 3].node[c % 3], rings.root(static_cast<Index>(c)));

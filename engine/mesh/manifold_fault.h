@@ -1,4 +1,4 @@
-// What keeps the boundary of a mesh from being a closed manifold.
+// Checks that the boundary of a mesh is a closed manifold.
 #pragma once
 
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace skerry::mesh {
 
-/// Each edge has two triangles, and those around each node follow each other in one ring. Says where it is not so, in
-/// the nodes of the mesh: "node 3 joins parts that share no edge there"; empty where it is.
+/// In a closed manifold each edge has two triangles, and the triangles around each node form one ring. Describes the
+/// first violation with the mesh's node numbers: "node 3 joins parts that share no edge there". Empty if there is
+/// none.
 std::string manifold_fault(std::span<const BoundaryTriangle> boundary);
 
 }  // namespace skerry::mesh

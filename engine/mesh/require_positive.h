@@ -1,4 +1,4 @@
-// The check of a mesh that becomes a body.
+// Checks a mesh that is to become a body.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace skerry::mesh {
 
-/// Throws SceneError unless the mesh has tetrahedra, all nodes are finite, every tetrahedron names four different nodes
-/// that exist and has a positive rest volume. The message names `what` (the file or the body), the first bad
-/// tetrahedron and how many there are.
+/// Throws SceneError unless the mesh has tetrahedra, all nodes are finite, and every tetrahedron has four different
+/// existing nodes and a positive rest volume. The message names `what` (the file or the body), the first bad
+/// tetrahedron and the number of bad ones.
 void require_positive(const Mesh& mesh, const std::string& what);
 
 }  // namespace skerry::mesh

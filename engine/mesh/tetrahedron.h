@@ -1,4 +1,4 @@
-// Measures of one tetrahedron, and what counts as flat.
+// Measures and orientation of one tetrahedron.
 #pragma once
 
 #include <array>
@@ -8,23 +8,23 @@
 
 namespace skerry::mesh {
 
-/// Six times the rest volume (m^3): det(n1 - n0, n2 - n0, n3 - n0).
+/// Six times the rest volume: det(n1 - n0, n2 - n0, n3 - n0) [m^3].
 Real six_volumes(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
-/// The six edge lengths (m).
+/// Lengths of the six edges [m].
 std::array<Real, 6> edge_lengths(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
-/// (2 A)^2 with A the area of the largest face (m^4): the smallest altitude is six volumes over 2 A.
+/// (2 A)^2 with A the area of the largest face [m^4]. The smallest altitude is six_volumes / (2 A).
 Real largest_face_squared(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
 enum class Orientation { positive, flat, inverted };
 
-/// Flat: six volumes are at most 1e-12 of the cube of the longest edge, which is what rounding of the coordinates
-/// leaves of none.
+/// A tetrahedron is flat if six_volumes is at most 1e-12 of the cube of its longest edge: coordinates of a flat one
+/// give that much by rounding.
 Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedron);
 
-/// Throws SceneError unless every tetrahedron names four different nodes that exist and every node is finite. `what` is
-/// the file or the body that is complained about.
+/// Throws SceneError unless every tetrahedron has four different existing nodes and every node is finite. `what` names
+/// the file or the body in the message.
 void require_valid(const Mesh& mesh, const std::string& what);
 
 }  // namespace skerry::mesh

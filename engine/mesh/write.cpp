@@ -23,7 +23,7 @@ void write(const std::string& path, const Mesh& mesh) {
         out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << '\n';
         for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
             const int label = mesh.label.empty() ? 1 : mesh.label[e];
-            out << e + 1 << " 4 2 " << label << ' ' << label;  // a tetrahedron with two tags: its group, its volume
+            out << e + 1 << " 4 2 " << label << ' ' << label;  // type 4: tetrahedron; two tags: group, volume
             for (const Index n : mesh.tetrahedra[e]) out << ' ' << n + 1;
             out << '\n';
         }

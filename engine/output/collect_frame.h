@@ -1,4 +1,4 @@
-// A frame of output from a world.
+// Collects a frame of output from a world.
 #pragma once
 
 #include "engine/output/frame.h"

@@ -1,4 +1,4 @@
-// Text within XML and HTML.
+// Escapes text for XML and HTML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// The text as it may stand in an attribute or between two tags.
+/// Returns the text in a form that is valid in an attribute or between two tags.
 std::string escape_markup(std::string_view text);
 
 }  // namespace skerry

@@ -1,5 +1,4 @@
-// One frame of output as plain data: what the writers format. Collected from a World in collect_frame.cpp and nowhere
-// else.
+// One frame of output as plain data, the input of the writers. Only collect_frame.cpp collects it from a World.
 #pragma once
 
 #include <array>
@@ -12,17 +11,17 @@
 
 namespace skerry {
 
-/// A body as the output shows it. The spans borrow from the world: valid until it changes.
+/// A body in the output. The spans refer to the world and are valid until it changes.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;
-    std::span<const Vec3> position;                    // m, by node
-    std::span<const Vec3> velocity;                    // m/s, by node
-    std::span<const std::array<Index, 3>> surface;     // boundary triangles, rows of position
-    std::span<const std::array<Index, 4>> tetrahedra;  // rows of position
-    std::vector<Mat3> stress, strain;                  // Cauchy's in Pa and Green's, by tetrahedron
-    std::vector<Mat3> node_stress, node_strain;        // the same by node
-    std::vector<Index> material{};                     // by tetrahedron: in the order in which materials were added
+    std::span<const Vec3> position;                    // by node [m]
+    std::span<const Vec3> velocity;                    // by node [m/s]
+    std::span<const std::array<Index, 3>> surface;     // boundary triangles, as rows of position
+    std::span<const std::array<Index, 4>> tetrahedra;  // corners, as rows of position
+    std::vector<Mat3> stress, strain;                  // by tetrahedron: Cauchy stress [Pa] and Green strain
+    std::vector<Mat3> node_stress, node_strain;        // by node
+    std::vector<Index> material{};  // by tetrahedron; materials are numbered in the order in which they were added
 };
 
 struct ColliderFrame {
@@ -33,15 +32,15 @@ struct ColliderFrame {
 };
 
 struct Frame {
-    Real time = 0;                // s
-    Vec3 gravity = Vec3::Zero();  // m/s^2
+    Real time = 0;                // [s]
+    Vec3 gravity = Vec3::Zero();  // [m/s^2]
     Energy energy;
     std::vector<BodyFrame> bodies;
     std::vector<ColliderFrame> colliders;
     std::span<const Contact> contacts;
 };
 
-/// Regions are numbered by row, so the last number counts them; -1 marks contacts without a moving node.
+/// Number of contact regions. Regions are numbered consecutively from 0; -1 marks contacts without a moving node.
 inline Index count_regions(std::span<const Contact> contacts) {
     Index count = 0;
     for (const Contact& contact : contacts) count = contact.region >= count ? contact.region + 1 : count;

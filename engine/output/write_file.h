@@ -1,4 +1,4 @@
-// Files that appear complete or not at all.
+// Writes files that appear complete or not at all.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace skerry {
 
-/// Makes the folder if needed. Throws SceneError that names it when it cannot be made or is no folder.
+/// Creates the folder if needed. Throws SceneError that names it if this fails or if it is not a folder.
 void make_folder(const std::filesystem::path& folder);
 
-/// Throws SceneError where write_file would not replace what is there: anything but a file that may be written, and
-/// what takes bytes as they come (a pipe, a terminal). Symbolic links stand for what they lead to.
+/// Throws SceneError if write_file would refuse to replace an existing object. It accepts writable regular files and
+/// streams such as pipes and terminals. Symbolic links are followed.
 void require_replaceable(const std::filesystem::path& file);
 
-/// Writes to a temporary name beside `file` and renames it: a reader never sees half a file, and a failure leaves the
-/// old one alone; the new one has its permissions. A symbolic link stays, and what it leads to is replaced; a pipe or a
-/// terminal gets the bytes. Makes the folder. Throws SceneError that names the file and what stood in the way.
+/// Writes to a temporary name beside `file`, then renames it. A reader never sees an incomplete file; a failure leaves
+/// the old file unchanged. The new file gets the old permissions. A symbolic link stays and its target is replaced;
+/// pipes and terminals receive the bytes. Creates the folder. Throws SceneError that names the file and the cause.
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write);
 
 }  // namespace skerry

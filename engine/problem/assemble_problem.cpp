@@ -8,7 +8,7 @@
 namespace skerry {
 namespace {
 
-/// Columns: normal, tangent 1, tangent 2.
+/// Contact frame; columns: normal, tangent 1, tangent 2.
 Mat3 frame_of(const Vec3& normal) {
     const TangentFrame tangents = tangent_frame(normal);
     Mat3 frame;
@@ -16,13 +16,13 @@ Mat3 frame_of(const Vec3& normal) {
     return frame;
 }
 
-/// A contact at a node.
+/// Contribution of a node to a contact.
 struct Touch {
     Index node, contact;
     Real weight;
 };
 
-/// By node, contacts in their order.
+/// Lists contributions of free, uncoupled nodes, sorted by node, then by contact.
 std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
     for (const CoupledNodes& group : contacts.coupled)
@@ -41,7 +41,7 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     return touches;
 }
 
-/// Where contacts touch one of a group of nodes; Touch::node is its place in the group.
+/// Finds the contributions of a group of nodes to contacts. Touch::node is the place in the group.
 class GroupTouches {
 public:
     explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
@@ -93,7 +93,7 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
     }
 }
 
-/// Adds what contacts on one implicit body do to each other by what they deform.
+/// Adds the blocks between contacts on one implicit body, due to its deformation.
 void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     for (const StrainedPoints& body : contacts.strained) {
@@ -150,8 +150,7 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // S_ij of docs/methods/contact.md 2.1, symmetric to the last bit; a block of the diagonal is the same
-                // in every frame
+                // S_ij of docs/methods/contact.md 2.1, bitwise symmetric; a diagonal block is the same in every frame
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

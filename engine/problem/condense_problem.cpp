@@ -13,9 +13,9 @@ namespace {
 using SparseMatrix = Eigen::SparseMatrix<Real>;
 using Factors = Eigen::SimplicialLDLT<SparseMatrix>;
 
-/// Freedoms by part of M, ascending; `place` of each freedom in its part.
+/// Parts of M: for each degree of freedom its part, and its place in the part, ascending.
 struct MassParts {
-    std::vector<Index> part, place;  // by freedom
+    std::vector<Index> part, place;  // by degree of freedom
     std::vector<Index> size;         // by part
 };
 
@@ -34,7 +34,7 @@ MassParts separate(const MatrixEntries& mass) {
     return parts;
 }
 
-/// Entries of a matrix by the part that their row belongs to.
+/// Entries of a matrix, grouped by the part of their row.
 std::vector<std::vector<MatrixEntry>> by_part(const MassParts& parts, const MatrixEntries& matrix) {
     std::vector<std::vector<MatrixEntry>> entries(parts.size.size());
     for (const MatrixEntry& e : matrix.entry) entries[parts.part[e.row]].push_back(e);
@@ -57,7 +57,7 @@ std::string freedom_text(const MassParts& parts, Index part, Index place) {
 }
 
 MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass) {
-    constexpr Real rounding = 1e-9;  // of an assembled matrix, generously: what is meant to be unsymmetric is far above
+    constexpr Real rounding = 1e-9;  // generous for an assembled matrix; a truly unsymmetric one is far above
     const SparseMatrix difference = mass - SparseMatrix(mass.transpose());
     const Eigen::VectorXd diagonal = mass.diagonal();
     for (Index column = 0; column < difference.outerSize(); ++column)
@@ -77,7 +77,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
         if (!(diagonal[i] > 0))
             return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
     factors.compute(mass);
-    // a pivot that is nothing but rounding belongs to a singular matrix
+    // a pivot at rounding level indicates a singular matrix
     constexpr Real rounding = 1e-14;
     const Eigen::VectorXd in_order = factors.permutationP() * diagonal;
     bool definite = factors.info() == Eigen::Success;
@@ -87,11 +87,11 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
             expected};
 }
 
-/// What one part of M adds to W and q.
+/// Adds the contributions of one part of M to W and q.
 void condense_part(const MassParts& parts, Index part, const Factors& factors,
                    const std::vector<MatrixEntry>& directions, const std::vector<Real>& force,
                    std::vector<BlockPart>& blocks, ContactProblem& problem) {
-    std::vector<Index> contact;  // that move this part, ascending
+    std::vector<Index> contact;  // contacts that move this part, ascending
     for (const MatrixEntry& e : directions) contact.push_back(e.column / 3);
     std::sort(contact.begin(), contact.end());
     contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
@@ -106,7 +106,7 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
     const Eigen::VectorXd free = factors.solve(Eigen::Map<const Eigen::VectorXd>(force.data(), parts.size[part]));
     const Eigen::VectorXd velocity = h.transpose() * free;
     for (Index i = 0; i < count; ++i) problem.q[contact[i]] += velocity.segment<3>(3 * i);
-    // contacts in batches: a large body with many contacts would need the whole of M^-1 H at once
+    // processes contacts in batches: all of M^-1 H at once would be too large for a big body with many contacts
     constexpr Index batch = 32;
     for (Index begin = 0; begin < count; begin += batch) {
         const Index end = std::min(count, begin + batch);
@@ -115,7 +115,7 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
         pushed = h.middleCols(3 * begin, 3 * (end - begin));
         const Eigen::MatrixXd moved = factors.solve(pushed);
         const Eigen::MatrixXd w = h.transpose() * moved;
-        // one half, mirrored: W is symmetric to the last bit
+        // computes one half and mirrors it: W is bitwise symmetric
         for (Index j = begin; j < end; ++j)
             for (Index i = 0; i <= j; ++i) {
                 Mat3 block = w.block<3, 3>(3 * i, 3 * (j - begin));
@@ -126,7 +126,7 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
     }
 }
 
-/// Drops blocks that are rounding beside the diagonal blocks of their two contacts.
+/// Drops blocks that are at rounding level relative to the diagonal blocks of their two contacts.
 void drop_rounding(ContactProblem& problem) {
     constexpr Real rounding = 1e-14;
     const std::size_t count = problem.q.size();

@@ -1,4 +1,4 @@
-// From the global form of a contact problem to the local one: W = H^T M^-1 H, q = H^T M^-1 f + w.
+// Converts the global form of a contact problem to the local one: W = H^T M^-1 H, q = H^T M^-1 f + w.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace skerry {
 
-/// M v = H r + f, u = H^T v + w.
+/// Global form: M v = H r + f, u = H^T v + w.
 struct GlobalProblem {
     MatrixEntries mass;        // M, symmetric positive definite
-    MatrixEntries directions;  // H, three columns a contact
+    MatrixEntries directions;  // H, three columns per contact
     std::vector<Real> force;   // f
 };
 
-/// Why M cannot be used. Empty: it can.
+/// Reason why M cannot be used; empty if it can.
 struct MassFault {
     std::string found, expected;
 };
 
-/// Fills blocks, q and freedoms of `problem`, whose q holds w. M falls into parts that no entry joins (the bodies):
-/// each is factorised on its own, so that only contacts on the same part are coupled. Blocks that rounding alone keeps
-/// from being zero are left out.
+/// Fills blocks, q and freedoms of `problem`; on input its q holds w. M is divided into parts that no entry connects
+/// (the bodies). Each part is factorised separately, so only contacts on the same part are coupled. Blocks that are
+/// zero up to rounding are omitted.
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem);
 
 }  // namespace skerry

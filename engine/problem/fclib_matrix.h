@@ -1,4 +1,4 @@
-// The matrices of FCLIB (fclib.h of the FCLIB library, struct fclib_matrix), read into entries.
+// Reads the matrices of FCLIB (fclib.h of the FCLIB library, struct fclib_matrix) as entries.
 #pragma once
 
 #include <string>
@@ -13,23 +13,23 @@ struct MatrixEntry {
     Real value;
 };
 
-/// Entries named twice add up.
+/// A matrix as a list of entries. Repeated entries are summed.
 struct MatrixEntries {
     Index rows = 0, columns = 0;
     std::vector<MatrixEntry> entry;
 };
 
-/// m and n of the matrix in a group.
+/// Size m x n of the matrix in a group.
 struct MatrixSize {
     Index rows, columns;
 };
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group);
 
-/// All entries, in whichever storage the group has them: compressed columns (nz = -1), compressed rows (nz = -2), or nz
-/// triplets. Throws SceneError.
+/// Reads all entries, stored as compressed columns (nz = -1), compressed rows (nz = -2) or nz triplets. Throws
+/// SceneError.
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group);
 
-/// Complains unless `found` is `expected`, which `of` explains.
+/// Throws SceneError unless `found` equals `expected`; `of` describes the expected number.
 void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
                  const std::string& of);
 

@@ -1,4 +1,4 @@
-// The block rows of a ContactProblem, put together from parts in any order.
+// Assembles the block rows of a ContactProblem from parts in any order.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace skerry {
 
-/// A part of the block of two contacts; parts of the same block add up, in the order given.
+/// A contribution to the block of two contacts. Contributions to the same block are summed in the given order.
 struct BlockPart {
     Index row, column;  // contacts
     Mat3 value;
 };
 
-/// Fills row_offset, column and block of a problem whose q says how many contacts it has. A block of exact zeros
-/// couples nothing and is left out; the diagonal is always there.
+/// Fills row_offset, column and block of a problem; the size of its q gives the number of contacts. Blocks of exact
+/// zeros are omitted, except on the diagonal.
 void gather_blocks(std::vector<BlockPart> parts, ContactProblem& problem);
 
 }  // namespace skerry

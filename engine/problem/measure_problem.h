@@ -1,4 +1,4 @@
-// How far reactions are from solving a problem (docs/methods/errors.md 3).
+// Measures the error of reactions as a solution of a problem (docs/methods/errors.md 3).
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// With Friction::pyramid the measures are those of the pyramid: tangential components are bounded one by one.
+/// With Friction::pyramid the measures are those of the pyramid: each tangential component has its own bound.
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Solves a problem region by region with any method for general blocks: those of the library, and those that profiling
-// compares with them.
+// Solves a problem region by region with any method for general blocks: methods of the library, or others that
+// profiling compares with them.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Solves one region from the operator's present impulse.
+/// Solves one region, starting from the operator's present impulse.
 using BlockMethod = std::function<SolveResult(BlockOperator&, const SolveLimits&)>;
 
 /// Solves a problem like solve_problem, with `method` in place of settings.method.

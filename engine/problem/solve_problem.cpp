@@ -19,10 +19,10 @@ BlockSystem view(const ContactProblem& problem) {
     return {problem.row_offset, problem.column, problem.block, problem.q, problem.mu};
 }
 
-/// Contacts by region: joined by a block. Regions are numbered by their first contact.
+/// Contacts grouped by region, where blocks connect contacts. Regions are numbered by their first contact.
 struct ProblemRegions {
     std::vector<Index> offset, contact;
-    UnionFind joined;  // contacts
+    UnionFind joined;  // connects contacts
 
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
     std::span<const Index> operator[](Index region) const {
@@ -37,7 +37,7 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     for (std::size_t i = 0; i < count; ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             joined.join(static_cast<Index>(i), problem.column[k]);
-    // one pass numbers the regions and counts their contacts, one sorts the contacts by them
+    // the first pass numbers the regions and counts their contacts, the second sorts the contacts by region
     regions.offset.assign(1, 0);
     for (Index i = 0; i < static_cast<Index>(count); ++i) {
         const Index region = joined.number(i);
@@ -51,16 +51,16 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     regions.offset[0] = 0;
 }
 
-/// Everything that a solve writes, kept from one repetition to the next.
+/// All data written by a solve; reused by its repetitions.
 struct Work {
     ProblemRegions regions;
     BlockMemory memory;
     std::vector<Index> used;  // iterations by region
 };
 
-/// Solves all regions. The error is one of all regions together, so none is asked for more than its share of it; since
-/// the sizes that it is measured against are known at the end only, the regions may have to go on from where they are,
-/// asked for half.
+/// Solves all regions. The error is measured over all regions together, so each region gets its share of the
+/// tolerance. The reference sizes are only known at the end: if the total error is too large then, the regions
+/// continue with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
@@ -87,7 +87,7 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
     }
 }
 
-/// The impulses in the order of the problem.
+/// Returns the impulses in the order of the problem.
 std::vector<Vec3> reactions(const Work& work) {
     std::vector<Vec3> reaction(work.regions.contact.size());
     for (std::size_t i = 0; i < reaction.size(); ++i)
@@ -126,7 +126,7 @@ ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSett
     check(problem, settings);
     Work work;
     const double first = seconds_of(problem, settings, method, work);
-    // a short solve is repeated: the first pays for memory and cold caches, and the clock is coarse
+    // a short solve is repeated, because the first one pays for memory and cold caches and the clock is coarse
     constexpr double long_enough = 5e-3, budget = 20e-3;
     std::vector<double> seconds{first};
     while (first < long_enough && seconds.size() < 1001 &&

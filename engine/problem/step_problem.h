@@ -1,4 +1,4 @@
-// The contact problem that a step hands to its solver, in the form that other solvers read.
+// Exports the contact problem of a step in the form that other solvers read.
 #pragma once
 
 #include <span>
@@ -9,17 +9,17 @@
 
 namespace skerry {
 
-/// What the contacts of a step saw and became. `contacts.velocity` and `free_velocity` are those before the solve.
+/// Input and result of a step's contacts. `contacts.velocity` and `free_velocity` are those before the solve.
 struct StepContacts {
     RegionInputs contacts;
-    std::span<const Vec3> free_velocity;  // m/s, by node: predicted
-    std::span<const Vec3> impulse;        // N s, world frame, by contact: after the solve
+    std::span<const Vec3> free_velocity;  // predicted velocity by node [m/s]
+    std::span<const Vec3> impulse;        // after the solve, world frame, by contact [N s]
     std::span<const Index> region;        // by contact
 };
 
-/// W from stencils and inverse masses, q from the predicted velocity and the bias of the gap, both in contact frames:
-/// what solve_regions solves, but for friction coefficients that differ (mu is the dynamic one). Fills problem (but for
-/// its name and the start of its description), impulse, contact and region of the result.
+/// Computes W from stencils and inverse masses, and q from the predicted velocity and the bias of the gap, both in
+/// contact frames. This is the problem of solve_regions, except where friction coefficients differ (mu is the dynamic
+/// one). Fills problem (without its name and the start of its description), impulse, contact and region of the result.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// The local form of FCLIB, in the order and with the kinds of data of its own writer.
+// Writes the local form of FCLIB, with the order and the data types of FCLIB's own writer.
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace skerry {
 namespace {
 
-/// Compressed columns (nz = -1) of the entries that are not zero, rows ascending in a column.
+/// Compressed columns (nz = -1) of the nonzero entries, with ascending rows in each column.
 struct CompressedColumns {
     std::vector<Index> begin, row;
     std::vector<Real> value;
@@ -21,7 +21,7 @@ CompressedColumns compress(const ContactProblem& problem) {
     const std::size_t contacts = problem.q.size();
     CompressedColumns w;
     w.begin.assign(3 * contacts + 1, 0);
-    // block rows in order hand every column its rows in order: once to count, once to fill
+    // visiting block rows in order gives every column its rows in order: one pass counts, one fills
     const auto for_each_entry = [&](auto&& visit) {
         for (std::size_t i = 0; i < contacts; ++i)
             for (int a = 0; a < 3; ++a)

@@ -58,7 +58,7 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
     return memory;
 }
 
-constexpr double slack = 1e-9;  // of the time between two: times are sums of frames
+constexpr double slack = 1e-9;  // share of the interval; times are sums of frames and carry rounding
 
 double multiple_after(double time, double every) {
     return (std::floor(time / every + slack) + 1) * every;
@@ -75,7 +75,7 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what;
 }
 
-/// The same bodies, colliders and attachments in a world of another number.
+/// Points the handles of a probe to the same bodies, colliders and attachments in the world with another number.
 void rename_world(RecordedProbe& probe, std::uint32_t number) {
     const auto rename = [number](auto& handle) { handle.world = number; };
     std::visit(
@@ -121,7 +121,7 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
         if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
             refuse(file, "collider \"" + world.name(colliders[c]) + "\"",
                    "\"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
-    for (Probe& probe : scene.probes)  // handles know their world
+    for (Probe& probe : scene.probes)  // handles store the number of their world
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
     const std::uint32_t number = bodies.empty() && colliders.empty() ? 0
                                  : bodies.empty()                    ? colliders.front().world

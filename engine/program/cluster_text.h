@@ -1,4 +1,4 @@
-// What the program says of clusters.
+// Text about clusters for the program's output.
 #pragma once
 
 #include <string>

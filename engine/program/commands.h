@@ -1,4 +1,4 @@
-// What the program can do. Every command returns its exit code.
+// The commands of the program. Each of them returns its exit code.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ namespace skerry {
 
 enum ExitCode : int {
     exit_ok = 0,
-    exit_failed = 1,     // a step could not be committed, a problem did not converge, a strict run is doubted
-    exit_bad_input = 2,  // a file or the command line
-    exit_output = 3,     // all is well but an output, which could not be written
+    exit_failed = 1,     // a step could not be committed, a problem did not converge, or a strict run has warnings
+    exit_bad_input = 2,  // error in a file or on the command line
+    exit_output = 3,     // the computation succeeded but an output could not be written
 };
-inline constexpr int exit_signal = 128;  // plus the number of the signal
+inline constexpr int exit_signal = 128;  // the signal's number is added
 
-/// What one file of exported contact problems holds.
+/// Content of one file of exported contact problems.
 enum class ProblemsOf { step, region };
 template <>
 struct EnumNames<ProblemsOf> {
@@ -32,29 +32,29 @@ struct EnumNames<ProblemsOf> {
 };
 
 struct RunOptions {
-    std::filesystem::path scene;  // may be empty with `restart`, which names it
+    std::filesystem::path scene;  // may be empty with `restart`, which names the scene
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
     std::filesystem::path out, stats, page, trace, problems, probes;  // empty: not written
     ProblemsOf problems_of = ProblemsOf::step;
-    std::optional<int> problems_every;  // steps
+    std::optional<int> problems_every;  // export interval [steps]
     bool quiet = false;
-    bool strict = false;               // what speaks against relying on the run is a failure
+    bool strict = false;               // warnings make the run fail
     std::filesystem::path checkpoint;  // empty: not written
-    std::optional<Real> every;         // s, simulated, between two checkpoints
-    std::filesystem::path restart;     // a checkpoint to go on from; empty: from the scene's beginning
+    std::optional<Real> every;         // simulated time between two checkpoints [s]
+    std::filesystem::path restart;     // checkpoint to resume from; empty: start from the scene's beginning
 };
 int run(const RunOptions& options);
 
 struct InspectOptions {
     std::filesystem::path file;
-    std::vector<std::string> assignments;  // PLACE=VALUE, of a scene
+    std::vector<std::string> assignments;  // PLACE=VALUE, for a scene
     bool json = false;
-    std::filesystem::path repair;  // where a better mesh goes; empty: none is made
-    Real tolerance = 2e-3;         // of the bounding box's diagonal: how far its surface may be from the old one
-    std::string body;              // of a scene, whose mesh is mended; empty: that which bounds the step
-    bool overwrite = false;        // the repaired mesh may take the place of the file it comes from
+    std::filesystem::path repair;  // file for the repaired mesh; empty: no repair
+    Real tolerance = 2e-3;   // largest distance between new and old surface, as a share of the bounding box's diagonal
+    std::string body;        // body of the scene whose mesh is repaired; empty: the body that bounds the step
+    bool overwrite = false;  // the repaired mesh may replace the file it was read from
 };
 int inspect(const InspectOptions& options);
 
@@ -67,14 +67,14 @@ int solve(const SolveOptions& options);
 
 struct SweepOptions {
     std::filesystem::path cases;
-    std::filesystem::path out;    // folder of the results; empty: out/NAME of the file of cases
-    std::optional<int> jobs;      // cases at a time
-    std::optional<int> rank, of;  // of several processes that share the cases
-    bool probes = false;          // the series of each case, beside its result
+    std::filesystem::path out;    // folder of the results; empty: out/NAME for the file NAME.json of cases
+    std::optional<int> jobs;      // number of cases that run at a time
+    std::optional<int> rank, of;  // rank of this process and number of processes that share the cases
+    bool probes = false;          // also write the probe series of each case
     bool redo = false;            // results of other cases may be replaced
     bool dry_run = false;         // only lists the cases
-    bool table = false;           // only makes the table of what is there
-    bool strict = false;          // cases that fail, are refused or doubted are a failure
+    bool table = false;           // only write the table of the existing results
+    bool strict = false;          // cases that fail, are refused or have warnings make the sweep fail
     bool quiet = false;
 };
 int sweep(const SweepOptions& options);

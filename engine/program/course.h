@@ -1,4 +1,4 @@
-// How a run is cut into frames of output, frames into calls of advance, and how many steps they are likely to take.
+// Division of a run into output frames and of frames into calls of advance; estimate of the number of steps.
 #pragma once
 
 #include "engine/program/checkpoint.h"
@@ -7,27 +7,29 @@
 namespace skerry {
 
 struct Course {
-    static constexpr double slack = 1e-9;  // of a frame: 0.1 s are six frames of 1/60 s, not seven
+    static constexpr double slack = 1e-9;  // share of a frame: 0.1 s are six frames of 1/60 s, not seven
 
-    double seconds = 0, frame_step = 0;  // s
-    int samples = 1;                     // of the probes in a frame
+    double seconds = 0, frame_step = 0;  // [s]
+    int samples = 1;                     // probe samples per frame, each one call of advance
 
     long frames() const;
-    /// s, from the end of the frame before to that of this one: the last may be shorter.
+    /// Time from the end of the previous frame to the end of this one; the last frame may be shorter [s].
     double length_of(long frame) const;
-    /// s, what no step of the world as it is exceeds, a sample neither.
+    /// Upper bound of the step size in the current state of the world, also bounded by the length of a sample [s].
     double longest_step(const World& world) const;
-    /// About how many steps are left: samples are cut into equal steps.
+    /// Estimate of the number of remaining steps. Each sample is divided into equal steps.
     double steps(const World& world) const;
 };
 
-/// What the scene says, unless the command line says something else. Throws SceneError for counts without end.
+/// Course of a new run: options of the command line override values of the scene. Throws SceneError for more than 1e9
+/// frames or samples per frame.
 Course course_of(const Scene& scene, const RunOptions& options);
-/// Of a run that is taken up at `time`: frames and samples are those that it had, since calls of advance have to be the
-/// same. Throws SceneError when nothing of it is left.
+/// Course of a run that is resumed at `time`. It keeps the frames and samples of the first part, because the calls of
+/// advance have to be the same. Throws SceneError if nothing is left to simulate.
 Course course_of(const RunOptions& options, const RunMemory& memory, double time);
 
-/// Whether a run that was to end after `planned` seconds ends within a frame, which this one makes longer.
+/// True if a run planned for `planned` seconds would have ended within this frame, and `course` makes the frame longer
+/// or shorter.
 bool cut_short(const Course& course, long frame, double planned);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// What speaks against relying on a run, and what would help.
+// Warnings: reasons not to rely on a run, with remedies.
 #include <algorithm>
 
 #include "engine/program/number_text.h"
@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// How it began. Returns whether that explains what is wrong later.
+/// Adds warnings about the start. Returns true if these explain later errors.
 bool doubt_start(const RunResult& result, std::vector<std::string>& doubts) {
     const WorldReport& r = result.report;
     constexpr std::size_t most_named = 5;
@@ -52,7 +52,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     const std::string shorter = bad_start ? "begin as said above"
                                           : "shorten the step (settings.step_safety below " +
                                                 short_number(result.settings.step_safety) + ", or --step)";
-    constexpr double small_share = 0.02;  // of the energy: at the stable step what is resolved stays below 1 %
+    constexpr double small_share = 0.02;  // of the energy; at the stable step this error stays below 1 %
     if (r.unconverged > 0)
         doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                          " contact regions ended above the tolerance, the worst at " + short_number(r.worst_error) +
@@ -60,7 +60,7 @@ std::vector<std::string> doubts_of(const RunResult& result) {
                          std::to_string(result.settings.max_iterations));
     if (r.energy_error_share > small_share)
         doubts.push_back("energy does not add up by " + percent(r.energy_error_share) + ": " + shorter);
-    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below
+    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below this
     if (r.momentum_error_share > rounding)
         doubts.push_back("momentum does not add up by " + percent(r.momentum_error_share));
     if (r.crossed > 0) doubts.push_back(grouped(r.crossed) + " features went through each other: " + shorter);

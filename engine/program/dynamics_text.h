@@ -1,4 +1,4 @@
-// What the program says of bodies whose dynamics were chosen.
+// Text and JSON about the automatic choice of dynamics of bodies.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,10 @@
 
 namespace skerry {
 
-/// One text for each kind of choice, with the first body that it was made for and how many more; the numbers are those
-/// of the first.
+/// One text for each kind of choice: the first body of this kind with its numbers, and the count of the others.
 inline std::vector<std::string> choice_texts(const WorldReport& report) {
     std::vector<std::string> texts;
-    std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;  // the first, and how many
+    std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;  // first choice of the kind, count
     for (const DynamicsChoice& choice : report.dynamics_choices) {
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {
             return kind.first->dynamics == choice.dynamics && kind.first->estimate.reason == choice.estimate.reason;

@@ -20,9 +20,9 @@ namespace skerry {
 
 namespace {
 
-constexpr useconds_t poll_interval = 20000;  // us
+constexpr useconds_t poll_interval = 20000;  // [us]
 
-/// Has no name: nothing stays of it, however this program ends.
+/// Temporary file without a name: the system removes it however this program ends.
 using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 NamelessFile nameless_file() {
@@ -31,7 +31,7 @@ NamelessFile nameless_file() {
     return file;
 }
 
-/// Beside this program, where the build and an installation put it.
+/// Path of skerry-fill: the folder of this program, where the build and an installation put it.
 std::filesystem::path fill_program() {
     std::error_code ignored;
     return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "skerry-fill";
@@ -63,13 +63,13 @@ Mesh read_mesh(std::FILE* in) {
     return mesh;
 }
 
-/// Which of its files a child gets as what.
+/// Mapping of files to the file descriptors of a child process.
 struct FileActions {
     posix_spawn_file_actions_t actions;
 
     FileActions(int in, int out) {
         posix_spawn_file_actions_init(&actions);
-        // By way of high numbers: one of the two may be the number that the other one is to have.
+        // First to high numbers: `in` or `out` may already have the number that the other one is to get.
         posix_spawn_file_actions_adddup2(&actions, in, 100);
         posix_spawn_file_actions_adddup2(&actions, out, 101);
         posix_spawn_file_actions_adddup2(&actions, 100, STDIN_FILENO);
@@ -84,7 +84,7 @@ struct FileActions {
     FileActions& operator=(const FileActions&) = delete;
 };
 
-/// The child's exit status.
+/// Returns the exit status of the child process.
 int run_fill(std::FILE* in, std::FILE* out, const std::function<void()>& wait) {
     const std::string program = fill_program().string();
     char* arguments[] = {const_cast<char*>(program.c_str()), nullptr};
@@ -119,7 +119,7 @@ Mesh fill_surface(const SurfaceMesh& surface, Real largest_edge, const std::func
     const int status = run_fill(in.get(), out.get(), wait);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {};
     Mesh mesh = read_mesh(out.get());
-    // Netgen numbers corners the other way round.
+    // Netgen orders the corners of a tetrahedron with the opposite orientation.
     if (!mesh.tetrahedra.empty() && inspect(mesh).volume < 0)
         for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
     return mesh;

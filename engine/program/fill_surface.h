@@ -1,4 +1,4 @@
-// Tetrahedra inside a surface, by the program skerry-fill.
+// Fills a surface with tetrahedra by running the program skerry-fill.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,11 @@
 
 namespace skerry {
 
-/// Throws SceneError that says what to install unless skerry-fill is beside this program.
+/// Throws SceneError with installation instructions unless skerry-fill is in the folder of this program.
 void require_fill();
 
-/// Tetrahedra of about the given largest edge (m) inside a closed surface, which stays as it is to the last bit. `wait`
-/// is called about ten times a second. Without tetrahedra when skerry-fill finds none.
+/// Fills a closed surface with tetrahedra whose largest edge is about `largest_edge` [m]. The surface is kept bitwise.
+/// `wait` is called about 50 times a second. Returns a mesh without tetrahedra if skerry-fill fails.
 Mesh fill_surface(const SurfaceMesh& surface, Real largest_edge, const std::function<void()>& wait);
 
 }  // namespace skerry

@@ -21,10 +21,10 @@ namespace {
 using Problems = std::vector<std::string>;
 
 constexpr Real poor_quality = 0.1;        // below it a tetrahedron is a sliver that costs steps and accuracy
-constexpr Real expensive_step_ratio = 4;  // a body that bounds the step this much below the next one is worth a word
-constexpr Real hardly_longer = 1.03;      // times a step
+constexpr Real expensive_step_ratio = 4;  // a stable step this many times below that of the next kind is reported
+constexpr Real hardly_longer = 1.03;      // ratio of steps below which the gain is called small
 constexpr int timed_steps = 20;
-constexpr std::size_t longest_list = 300;  // characters of names in a message
+constexpr std::size_t longest_list = 300;  // longest list of names in a message [characters]
 
 Problems problems_of(const MeshReport& r) {
     Problems problems;
@@ -75,14 +75,15 @@ Json bound_json(const StepBound& bound) {
     return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
 }
 
-/// A step beside the one that there is. Without some tetrahedra the others carry less mass: it may be shorter.
+/// Comparison of a step with the present one. The ratio may be below 1: without some tetrahedra the others carry less
+/// mass.
 std::string compared(Real ratio) {
     if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter";
     if (ratio < 1) return "hardly shorter";
     return ratio < hardly_longer ? "hardly longer" : short_number(ratio) + " times as long";
 }
 
-/// Which tetrahedra bound the step, and what it would be without the worst.
+/// Prints the tetrahedra that bound the step, and the step without the worst of them.
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
         std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
@@ -95,7 +96,7 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << compared(w.step / bound.step) << "\n";
 }
 
-/// "1: 300, 2: 20 tetrahedra"; of many the first.
+/// Returns, for example, "1: 300, 2: 20 tetrahedra". A long list is cut after the first 20 labels.
 std::string labels_text(const MeshReport& report) {
     constexpr std::size_t most = 20;
     std::string text;
@@ -126,7 +127,7 @@ int inspect_mesh(const InspectOptions& options) {
                               options);
     const MeshReport report = inspect(mesh);
     const Problems problems = problems_of(report);
-    // A mesh that no world takes has no step.
+    // A mesh that cannot be added to a world has no stable step.
     const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
     const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
     if (options.json) {
@@ -159,20 +160,20 @@ int inspect_mesh(const InspectOptions& options) {
     return exit_ok;
 }
 
-/// Bodies that share mesh and materials, and so a stable step.
+/// Report on bodies that share mesh and materials, and therefore a stable step.
 struct BodyKindReport {
     std::string first_name;
-    std::vector<std::pair<std::string, std::size_t>> materials;  // and how many tetrahedra have each; more than 0
+    std::vector<std::pair<std::string, std::size_t>> materials;  // material and number of its tetrahedra, above 0
     std::size_t count = 0;
-    std::size_t body = 0;  // of ScenePlan::bodies: the first
+    std::size_t body = 0;  // index in ScenePlan::bodies of the first one
     MeshReport mesh;
     BodyDynamics dynamics;
-    StepBound bound;  // of one that sets no step: none, and a step without end
+    StepBound bound;  // for a rigid or implicit body: empty, with an infinite step
 
     bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
 
-/// The body as one that deforms, whatever it is: what its mesh would allow.
+/// Treats the body as explicit and elastic, whatever its dynamics: its mesh then has a stable step.
 StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
     StepCase of{.settings = plan.settings,
                 .material = plan.materials[body.material].second,
@@ -183,7 +184,7 @@ StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
     return of;
 }
 
-/// The body's own material first, then those of its labels.
+/// Number of tetrahedra per material: the body's own material first, then those of its labels.
 std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan& plan, const BodyPlan& body,
                                                                  const MeshReport& mesh) {
     std::vector<std::pair<std::size_t, std::size_t>> count{{body.material, mesh.tetrahedra}};
@@ -203,8 +204,8 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Each kind of body in a world of its own: that is the step it would allow. `became`: what each body of the plan is in
-/// the world; empty: what the plan says.
+/// Groups bodies by mesh, materials and dynamics. Each kind is put into a world of its own, which gives the step it
+/// would allow. `became`: dynamics of each body in the world; empty: those of the plan.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
@@ -232,7 +233,7 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
     return kinds;
 }
 
-/// "192 tetrahedra (smoothed), mean edge 0.05 m", or "a sphere of 0.1 m (rigid)".
+/// Returns, for example, "192 tetrahedra (smoothed), mean edge 0.05 m" or "a sphere of 0.1 m (rigid)".
 std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
     const std::string how(kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics));
     if (const auto& sphere = body.shape.sphere)
@@ -247,7 +248,7 @@ std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
            with_unit(kind.mesh.mean_edge, "m");
 }
 
-/// "steel", or "steel 300, rubber 20".
+/// Returns, for example, "steel" or "steel 300, rubber 20".
 std::string materials_text(const BodyKindReport& kind) {
     if (kind.materials.size() == 1) return kind.materials.front().first;
     std::string text;
@@ -256,11 +257,11 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene as a run begins it, and what overlaps before that.
+/// A scene at the start of a run, and its overlaps before the run resolves them.
 struct SceneStart {
     Scene scene;
-    WorldReport as_written;  // where nothing is moved
-    std::string outcome;     // what a run does about overlaps; empty without any
+    WorldReport as_written;  // report of the world in which no body is moved
+    std::string outcome;     // treatment of overlaps by a run; empty if there are none
 };
 
 SceneStart start_of(const ScenePlan& plan) {
@@ -281,17 +282,17 @@ SceneStart start_of(const ScenePlan& plan) {
 }
 
 struct SceneCost {
-    double seconds_per_second = 0;  // wall time of a simulated second as the scene starts
-    Real overlap = 0;               // m, at the start
-    Real into_shell = 0;            // m, pressed into the contact distance at the start
-    Index contacts = 0;             // at the start
+    double seconds_per_second = 0;  // wall time per simulated second, measured in the first steps
+    Real overlap = 0;               // deepest overlap at the start [m]
+    Real into_shell = 0;            // depth of surfaces in each other's contact distance at the start [m]
+    Index contacts = 0;             // number of contacts at the start
     std::string failure{}, turning{};
 };
 
-/// `overlap`: m, the deepest that was found before.
+/// `overlap`: deepest overlap found before [m].
 SceneCost try_steps(World& world, Real overlap) {
     SceneCost cost{.overlap = overlap};
-    constexpr Real hardly = 1e-9;  // s: finds contacts, moves nothing that matters
+    constexpr Real hardly = 1e-9;  // [s]; long enough to find contacts, too short to move anything noticeably
     const StepReport first = world.advance(hardly);
     cost.overlap = std::max(overlap, first.max_penetration);
     cost.into_shell = first.max_gap_violation - first.max_penetration;
@@ -337,7 +338,7 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
     return problems;
 }
 
-/// The body whose mesh is to be mended: that of the given name, or of the kind that bounds the step.
+/// Returns the body whose mesh is to be repaired: the named one, or one of the kind that bounds the step.
 const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& options) {
     const auto refuse = [&](const std::string& object, const std::string& found, const std::string& expected) {
         Complaint{options.file.string(), object, {}, found, expected, {}}.raise();

@@ -16,7 +16,7 @@ namespace skerry {
 
 namespace {
 
-/// One line on a terminal, with the seconds; nothing anywhere else.
+/// Status line with elapsed seconds on a terminal; prints nothing if standard error is not a terminal.
 class DoingLine {
 public:
     explicit DoingLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}

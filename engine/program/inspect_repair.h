@@ -1,4 +1,4 @@
-// `skerry inspect --repair`.
+// The command `skerry inspect --repair`.
 #pragma once
 
 #include "engine/program/commands.h"
@@ -6,19 +6,19 @@
 
 namespace skerry {
 
-/// A mesh that is to be mended, and what it is for.
+/// A mesh to repair and its use.
 struct RepairTask {
     const Mesh& mesh;
     std::string what;  // the file, or the body of a scene
     StepCase of;
-    std::string step_of;  // what the steps that are printed are of
-    bool scaled = false;  // by a scene: the file that is written is not to be scaled again
+    std::string step_of;  // description of the body whose steps are printed
+    bool scaled = false;  // the scene has scaled the mesh: the written file must not be scaled again
 };
 
-/// Says before any work what stands in the way: the name of the file, skerry-fill, the input itself. Throws SceneError.
+/// Checks before any work starts: the file name, skerry-fill and the input. Throws SceneError.
 void check_repair(const InspectOptions& options);
 
-/// Mends the mesh, prints both sides, writes the new one if it is better. Returns the exit code.
+/// Repairs the mesh, prints the figures of both meshes and writes the new one if it is better. Returns the exit code.
 int inspect_repair(const RepairTask& task, const InspectOptions& options);
 
 }  // namespace skerry

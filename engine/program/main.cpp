@@ -1,4 +1,4 @@
-// The program: reads the command line, calls a command, turns what goes wrong into a message and an exit code.
+// The program: reads the command line, calls a command, turns exceptions into messages and exit codes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -90,7 +90,7 @@ fails is a result, too; one that was killed is none, and is run again.
 Exit codes: 0 all cases of this process have a result, 1 one of them has none (--strict: or one failed, was refused or
 is doubted), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
-/// Numbers that make sense as a length, a time or a tolerance.
+/// Accepts finite numbers above 0, as needed for a length, a time or a tolerance.
 const CLI::Validator positive_number(
     [](std::string& text) {
         double value = 0;
@@ -116,7 +116,7 @@ std::vector<std::string> names_of_all() {
     return names;
 }
 
-/// An option whose values are the names of an enum. A removed name is refused with the hint of RemovedNames.
+/// Adds an option whose values are the names of an enum. A removed name is refused with the hint of RemovedNames.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& flag, Target& target, const std::string& meaning) {
     app.add_option_function<std::string>(
@@ -130,7 +130,7 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const st
         ->check(CLI::IsMember(names_of_all<Enum>()));
 }
 
-/// An option that stays unset unless given.
+/// Adds an option whose target stays empty unless the option is given.
 CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Real>& target,
                         const std::string& meaning) {
     return app
@@ -259,7 +259,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
 }
 
-/// A whole number that stays unset unless given.
+/// Adds an option for a whole number. Its target stays empty unless the option is given.
 void add_count(CLI::App& app, const std::string& flag, std::optional<int>& target, int least,
                const std::string& meaning) {
     constexpr int most = 2147483647;
@@ -286,7 +286,7 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--quiet", options.quiet, "no progress, no table");
 }
 
-/// CLI11 asks for a command, but does not say which one it does not know.
+/// CLI11 requires a command but does not name an unknown one in its message. This function does.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     const std::string found = argv[1];
@@ -302,7 +302,7 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
         .raise();
 }
 
-/// The version, and the instructions that kernels use here.
+/// Returns the version and the instruction set used by the kernels on this machine.
 std::string version_text() {
     std::string sets;
     for (const std::string_view set : instruction_sets()) sets += (sets.empty() ? "" : ", ") + std::string(set);
@@ -340,10 +340,11 @@ int run_command_line(int argc, char** argv) {
     return exit_ok;
 }
 
-/// What is given back while a scene is loaded is had again soon: the system would clear its pages each time.
+/// Keeps freed memory in the process. Loading a scene soon allocates it again, and the system would clear its pages
+/// each time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // bytes; the library comes to these by itself, later
+    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // [bytes]; the library adapts to these, but late
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);
 #endif

@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Formats numbers for people.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// As printf's %.*g.
+/// Formats like printf with %.*g.
 inline std::string short_number(double value, int digits = 3) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
@@ -18,7 +18,7 @@ inline std::string percent(double share) {
     return short_number(100 * share) + " %";
 }
 
-/// 1,234,567
+/// Groups digits by thousands: 1,234,567.
 inline std::string grouped(std::uint64_t value) {
     std::string digits = std::to_string(value);
     for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
@@ -26,13 +26,13 @@ inline std::string grouped(std::uint64_t value) {
     return digits;
 }
 
-/// A count that was estimated, as a double.
+/// Formats an estimated count, given as a double.
 inline std::string count_text(double count) {
-    constexpr double most_written_out = 1e15;  // beyond it a number says less than its power
+    constexpr double most_written_out = 1e15;  // larger counts are written as powers of ten
     return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_number(count);
 }
 
-/// With the prefix that leaves one to three digits before the point: 0.00031, "s" is 310 us.
+/// Chooses the prefix that leaves one to three digits before the point: (0.00031, "s") gives "310 us".
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;
@@ -45,14 +45,14 @@ inline std::string with_unit(double value, const char* unit) {
     return short_number(value) + " " + unit;
 }
 
-/// "40 s", "12 min", "3.5 h", "20 days"
+/// Returns, for example, "40 s", "12 min", "3.5 h" or "20 days".
 inline std::string duration_text(double seconds) {
     struct Unit {
         double seconds;
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    constexpr double enough = 2;  // of a unit
+    constexpr double enough = 2;  // smallest number of units for which a unit is used
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");

@@ -13,10 +13,10 @@ namespace {
 
 struct Sample {
     int sticking = 0, sliding = 0;
-    Real slip = 0;  // m/s, sum, then mean
+    Real slip = 0;  // sum over contacts, later their mean [m/s]
 };
 
-/// Whether one of the nodes that a contact presses on is inside.
+/// True if the contact presses on a node that is inside the probe.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
         const bool ours =
@@ -26,7 +26,7 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
     return false;
 }
 
-/// Pa, of these of the nodes that `stress` is of.
+/// Largest stress among the given entries of `stress` [Pa].
 Real largest_von_mises(std::span<const Mat3> stress, std::span<const std::size_t> nodes) {
     Real largest = 0;
     for (const std::size_t n : nodes) largest = std::max(largest, von_mises(stress[n]));
@@ -66,7 +66,7 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         }
         const int closed = sample.sticking + sample.sliding;
         if (closed > 0) sample.slip /= closed;
-        // A part slides when at least half of what touches does.
+        // A part slides if at least half of its closed contacts slide.
         const State state = closed == 0 ? State::open : (2 * sample.sliding >= closed ? State::slide : State::stick);
         states.push_back(state);
 

@@ -19,10 +19,10 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
     return text;
 }
 
-/// Every how many of the steps about `file_count` of them come out.
+/// Returns the export interval [steps] for which about `file_count` steps are written.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    // a run may be without end
+    // a run may have infinitely many steps
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
@@ -51,7 +51,7 @@ void ProblemExport::write_step(const StepProblem& step) {
     if (options_.problems_of == ProblemsOf::step) {
         write(step.problem, step, name + numbered("contacts", 1, step.problem.contacts()), step.impulse);
     } else {
-        // contacts by region, regions by number
+        // sorts contacts by region, and regions by number
         std::vector<std::pair<Index, Index>> order;
         for (std::size_t i = 0; i < step.region.size(); ++i) order.emplace_back(step.region[i], static_cast<Index>(i));
         std::sort(order.begin(), order.end());

@@ -1,4 +1,4 @@
-// Writes contact problems of a run as files that other solvers read.
+// Exports the contact problems of a run as files that other solvers can read.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace skerry {
 
 class ProblemExport {
 public:
-    /// Throws SceneError when the scene's name is no file name.
+    /// Throws SceneError if problems are exported and the scene's name is not a valid file name.
     ProblemExport(const RunOptions& options, std::string scene);
 
-    /// Every how many steps; unless the options say so, that follows from how many are to come.
+    /// Export interval [steps]: as given in the options, otherwise derived from the number of steps to come.
     std::uint64_t every(double steps_to_come) const;
     void write_step(const StepProblem& step);
     long files() const { return files_; }
     long steps() const { return steps_; }
-    double seconds() const { return seconds_; }  // spent on it
+    double seconds() const { return seconds_; }  // time spent on the export [s]
 
 private:
     void write(ContactProblem problem, const StepProblem& step, const std::string& name, std::span<const Vec3> impulse);

@@ -11,10 +11,10 @@ namespace skerry {
 
 namespace {
 
-constexpr double refresh_interval = 0.1;  // s, of the bar
-constexpr double first_line = 1;          // s; by then the speed is known well enough
-constexpr double longest_silence = 600;   // s, between two lines
-constexpr int bar_width = 24;             // characters
+constexpr double refresh_interval = 0.1;  // interval of the bar [s]
+constexpr double first_line = 1;          // [s]; by then the speed is known well enough
+constexpr double longest_silence = 600;   // longest time between two lines [s]
+constexpr int bar_width = 24;             // [characters]
 
 double share_of(double time, double seconds) {
     return time < seconds ? time / seconds : 1;

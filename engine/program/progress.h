@@ -1,4 +1,4 @@
-// How far a run is and how long it will take: a bar on a terminal, lines now and then anywhere else.
+// Displays the progress of a run and the time left: a bar on a terminal, otherwise occasional lines.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Seconds of wall time since it was made.
+/// Measures wall time since its construction [s].
 class Stopwatch {
 public:
     double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -16,24 +16,23 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// [######..................]
+/// Returns, for example, [######..................].
 std::string bar_text(double share);
 
-/// Takes a bar away for what is to be said; does nothing where there is none.
+/// Erases the bar before a message is printed; does nothing if standard error is not a terminal.
 void clear_bar();
 
 class Progress {
 public:
-    /// Of a run of so many seconds, in about so many steps of `step` seconds. All goes to standard error; `wanted`
-    /// false: nothing is ever shown.
+    /// Progress of a run of `seconds` with about `steps` steps of size `step` [s]. Everything goes to standard error.
+    /// With `wanted` false nothing is ever shown.
     Progress(bool wanted, double seconds, double steps, double step);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// What there is to do, once, and where the run is now, as often as anyone wants to read it: a bar ten times a
-    /// second, lines after 1, 2, 4, ... s and in the end every ten minutes. Cheap enough to be called before every
-    /// step.
+    /// Prints a summary of the run once, then its progress at limited intervals: the bar ten times a second, lines
+    /// after 1, 2, 4, ... s and finally every ten minutes. Cheap enough to be called before every step.
     void show(double time, std::uint64_t steps);
 
 private:
@@ -45,7 +44,7 @@ private:
     double seconds_, steps_, step_;
     bool begun_ = false;
     Stopwatch watch_;
-    double next_;  // s of wall time, when to show something again
+    double next_;  // wall time of the next display [s]
 };
 
 }  // namespace skerry

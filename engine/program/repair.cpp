@@ -17,11 +17,11 @@ namespace skerry {
 
 namespace {
 
-constexpr Real least_gain = 1.05;                // of the step: below it a new mesh is not worth having
+constexpr Real least_gain = 1.05;                // of the step: a smaller gain does not justify a new mesh
 constexpr Real knot_altitude = 0.4;              // of the surface's mean edge (measured: docs/decisions/0012)
-constexpr Real least_count = 0.7;                // of the tetrahedra: fewer would be a coarser body, not a better mesh
-constexpr Real largest_edges[] = {1.5, 1, 0.7};  // of the mesh's mean edge, where the surface does not ask for less
-constexpr Real volume_rounding = 1e-6;           // of the volume: between a surface and what it was filled with
+constexpr Real least_count = 0.7;                // of the tetrahedra: with fewer the mesh would be coarser, not better
+constexpr Real largest_edges[] = {1.5, 1, 0.7};  // of the mesh's mean edge; a finer surface enforces smaller ones
+constexpr Real volume_rounding = 1e-6;           // relative volume difference of a surface and its filling
 
 using Corners = std::array<Vec3, 3>;
 
@@ -39,7 +39,7 @@ Real area_of(const SurfaceMesh& surface) {
     return area;
 }
 
-/// By the divergence theorem, about a point of the surface: rounding then is that of its size.
+/// Volume by the divergence theorem, relative to a point of the surface: the rounding error then scales with its size.
 Real volume_inside(const SurfaceMesh& surface) {
     Real volume = 0;
     for (const auto& t : surface.triangles) {
@@ -59,7 +59,7 @@ Real mean_edge_of(const SurfaceMesh& surface) {
     return sum / static_cast<Real>(3 * surface.triangles.size());
 }
 
-/// The smallest step by which something of a mesh that is no body could go is none.
+/// Returns the stable step [s], or 0 for a mesh that is not a valid body.
 Real step_of(const Mesh& mesh, const MeshReport& report, const StepCase& of) {
     return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, of, false).step : 0;
 }
@@ -70,11 +70,11 @@ MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const StepC
     return figures;
 }
 
-/// A new mesh of the body, and what became of the surface.
+/// A new mesh of the body, with the changes of its surface.
 struct Candidate {
     Mesh mesh;
     SurfaceMesh surface;
-    MeshFigures figures;  // a step of 0: there is none
+    MeshFigures figures;  // step 0: no candidate found
     std::size_t collapsed = 0, flipped = 0;
 };
 
@@ -138,7 +138,8 @@ public:
     }
 
 private:
-    /// While the surface changes, few points of it are looked at; what they let pass is tried again with less.
+    /// Thinning checks the distance at few points of the surface only. If the full check fails, it is repeated with a
+    /// smaller tolerance.
     mesh::ThinnedSurface thinned_within_tolerance() const {
         constexpr int tries = 4;
         constexpr Real less = 0.75;
@@ -151,8 +152,8 @@ private:
         return {};
     }
 
-    /// The surface filled with tetrahedra of several sizes: `best` becomes the mesh whose step is longest. The finest
-    /// only where the others have too few.
+    /// Fills the surface with tetrahedra of several sizes. `best` becomes the mesh with the longest step. The finest
+    /// size is only tried if no coarser one was accepted.
     void try_fill(const SurfaceMesh& surface, const std::string& which, Candidate& best) {
         const Real volume = volume_inside(surface);
         for (const Real size : largest_edges) {
@@ -187,7 +188,7 @@ private:
         result_.collapsed = result_.flipped = 0;
     }
 
-    /// Says why what is in the result is not to be written, if it is not.
+    /// Sets the refusal if the mesh in the result is not to be written.
     void judge(const SurfaceMesh& surface) {
         if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
             result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"
@@ -196,7 +197,7 @@ private:
         }
         progress_("measuring how far the surface moved");
         result_.distance = mesh::surface_distance(surface_, surface);
-        // What was not to move at all is the same to rounding.
+        // With tolerance 0 the surfaces must agree up to rounding.
         const Real rounding = 1e-9 * (result_.before.mesh.upper - result_.before.mesh.lower).norm();
         if (result_.distance.greatest() > std::max(result_.tolerance, rounding))
             result_.refusal = "the surface would move by " + with_unit(result_.distance.greatest(), "m") +
@@ -208,7 +209,7 @@ private:
     }
 
     mesh::PartedMesh parted_;
-    const Mesh& mesh_;  // that
+    const Mesh& mesh_;  // the mesh in parted_
     const StepCase& of_;
     const std::function<void(const std::string&)>& progress_;
     SurfaceMesh surface_;

@@ -1,4 +1,4 @@
-// A better mesh of the same body.
+// Computes a better mesh of the same body.
 #pragma once
 
 #include <filesystem>
@@ -10,29 +10,29 @@
 
 namespace skerry {
 
-/// One side of the table that a repair prints.
+/// Figures of one mesh in the table that a repair prints.
 struct MeshFigures {
     MeshReport mesh;
-    Real surface_area = 0;  // m^2
-    Real step = 0;          // s
+    Real surface_area = 0;  // [m^2]
+    Real step = 0;          // stable step [s]
 };
 
 struct RepairedMesh {
     Mesh mesh;
     MeshFigures before, after;
     mesh::SurfaceDistance distance;          // from the old surface to the new one, and back
-    Real tolerance = 0;                      // m
-    std::size_t collapsed = 0, flipped = 0;  // edges of the surface
-    std::size_t parted = 0;                  // nodes that joined tetrahedra which share no face there
-    std::string kept;                        // why the tetrahedra are those that there were, but for parted nodes
-    std::string refusal;                     // why nothing is to be written; empty: it is better
+    Real tolerance = 0;                      // [m]
+    std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges
+    std::size_t parted = 0;                  // number of nodes split because their tetrahedra share no face there
+    std::string kept;                        // reason why the old tetrahedra are kept, apart from split nodes
+    std::string refusal;                     // reason why the mesh is not to be written; empty: it is better
 };
 
-/// Fills the mesh's surface with new tetrahedra, once as it is and once without its knots, as far as that moves it by
-/// at most `tolerance` (a share of the bounding box's diagonal; 0: once as it is), and takes the one with the longer
-/// step. Nodes that join tetrahedra which share no face there are parted before (part_fans.h); such a mesh is worth
-/// having with the tetrahedra that it has, too. `progress` is told what is going on, many times a second. Throws
-/// SceneError for a mesh whose surface cannot be filled.
+/// Fills the mesh's surface with new tetrahedra and returns the mesh with the longest stable step. The surface is
+/// tried as it is and without its knots (needles and caps). Removing them moves it by at most `tolerance`, a share of
+/// the bounding box's diagonal; 0: only as it is. First, nodes whose tetrahedra share no face there are split
+/// (part_fans.h); a mesh with split nodes is accepted even with its old tetrahedra. `progress` is called with the
+/// current activity many times a second. Throws SceneError for a mesh whose surface cannot be filled.
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 

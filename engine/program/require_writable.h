@@ -1,4 +1,4 @@
-// Whether output can be written, asked before anything is computed.
+// Checks before any computation that output can be written.
 #pragma once
 
 #include <filesystem>
@@ -6,17 +6,18 @@
 
 namespace skerry {
 
-/// A file that can be made or replaced, its folders made where they are missing. Leaves no trace. Throws SceneError.
+/// Requires that a file can be created or replaced; missing folders are created later. Leaves no trace. Throws
+/// SceneError.
 void require_writable_file(const std::filesystem::path& file);
-/// A folder that can be made, or written into. Leaves no trace. Throws SceneError.
+/// Requires that a folder can be created or written into. Leaves no trace. Throws SceneError.
 void require_writable_folder(const std::filesystem::path& folder);
 
-/// What a person calls a file, and the file; an empty one is none.
+/// A file and its name in messages; an empty path stands for no file.
 struct NamedFile {
     const char* name;
     std::filesystem::path file;
 };
-/// No output takes the place of another one, or of what is read. Throws SceneError that names both.
+/// Requires that no output replaces another one or an input. Throws SceneError that names both.
 void require_distinct(std::span<const NamedFile> files);
 
 }  // namespace skerry

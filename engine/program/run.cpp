@@ -23,8 +23,8 @@ namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
 
-/// Ctrl-C and polite kills end the run between two steps; a second one ends it at once. A file that would get too large
-/// is an error like any other.
+/// SIGINT and SIGTERM end the run between two steps; a second one kills the process. Exceeding the file size limit
+/// becomes an ordinary write error.
 class SignalGuard {
 public:
     SignalGuard() {
@@ -51,8 +51,9 @@ private:
 const char* const advice =
     "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
 
-/// Runs frame after frame, from where `memory` is. What went wrong is in result.status. A run that is stopped within a
-/// frame leaves the checkpoint before: calls of advance are cut into equal steps, and the rest of one is another call.
+/// Runs all frames from the state in `memory`. result.status holds the error, if any. A run stopped within a frame
+/// keeps the previous checkpoint: advance() divides its duration into equal steps, and the rest of a call would be
+/// another call.
 class FrameLoop {
 public:
     FrameLoop(Scene& scene, const Course& course, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
@@ -83,7 +84,7 @@ public:
                 if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
                 advance(duration);
             }
-            if (result_.status != "ok" && !(world_.time() > begin)) break;  // the frame before shows all there is
+            if (result_.status != "ok" && !(world_.time() > begin)) break;  // no progress since the previous frame
             add_frame();
             const bool whole = length >= (1 - Course::slack) * course_.frame_step;
             const bool due = frame + 1 == course_.frames() || checkpoints_.due(world_.time());
@@ -149,7 +150,8 @@ private:
     std::uint64_t steps_ = 0;  // in this part of the run
 };
 
-/// One of each mesh. Contacts find the way out of a body by its surface: where that has no two sides they may not.
+/// Lists meshes whose boundary is not a closed manifold, one body per mesh. Contacts find the way out of a body by its
+/// surface, which fails where the surface does not have two sides.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
     const std::vector<BodyHandle> bodies = world.bodies();  // in the order of the plan

@@ -16,7 +16,7 @@ namespace skerry {
 
 namespace {
 
-/// A file among the frames would be replaced by one of them, or replace one.
+/// Refuses a file that could be replaced by a frame of --out, or could replace one.
 void require_no_frame(const NamedFile& file, const RunOptions& options, const std::string& scene) {
     if (file.file.empty() || options.out.empty()) return;
     std::error_code error;
@@ -41,7 +41,7 @@ void check_places(const RunOptions& options, const std::string& scene) {
         if (!folder->empty()) require_writable_folder(*folder);
     for (const auto* file : {&options.stats, &options.page, &options.trace, &options.probes, &options.checkpoint})
         if (!file->empty()) require_writable_file(*file);
-    // a checkpoint may take the place of the one that the run goes on from
+    // a checkpoint may replace the one that the run resumes from
     std::error_code error;
     const bool goes_on = std::filesystem::equivalent(options.restart, options.checkpoint, error);
     const std::array<NamedFile, 7> files{{{"the scene", options.scene},
@@ -138,7 +138,7 @@ void RunOutputs::add_frame(const World& world) {
     attempt(out_, [&] { vtk_->write_frame(world); });
     if (vtk_ && !out_.open()) {
         try {
-            vtk_->close();  // the frames so far can be opened, if there is room for that
+            vtk_->close();  // makes the frames so far readable if there is space for the index
         } catch (const SceneError&) {
         }
         vtk_.reset();

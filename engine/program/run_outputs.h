@@ -1,4 +1,4 @@
-// What a run writes. Each output fails on its own: the others go on.
+// Outputs of a run. If one of them fails, the others continue.
 #pragma once
 
 #include <memory>
@@ -17,37 +17,38 @@ namespace skerry {
 
 class RunOutputs {
 public:
-    /// Throws SceneError where an output could not be written, or would be in the place of another or of the scene.
+    /// Throws SceneError if an output cannot be written, or would replace another one or the scene.
     RunOutputs(const RunOptions& options, const Scene& scene);
 
-    /// Writes exported problems from now on, while the world advances.
+    /// Exports contact problems from now on, while the world advances.
     void watch(World& world, double steps_to_come);
-    /// Opens the series of probes, whose handles are of the world as it is; `go_on`: with what their file has so far.
+    /// Opens the series of probes. Their handles must be valid in the current world. `go_on`: keep the content of an
+    /// existing file.
     void record(Scene& scene, bool go_on);
-    /// After every call of advance.
+    /// Call this after every call of advance.
     void sample(const World& world);
     void add_frame(const World& world);
-    /// Of a run that is taken up: frames for ParaView go on, those of the first part being there; a page begins.
+    /// Resumes output: ParaView frames continue after those of the first part; a page begins anew.
     void go_on(const World& world, const RunMemory& memory);
-    /// Writes what takes the whole run, the figures last: they tell what could not be written.
+    /// Writes the outputs that need the whole run. The figures come last: they report the outputs that failed.
     void finish(const World& world, RunResult& result);
 
-    /// Outputs were asked for, and none is left that could be written.
+    /// True if outputs were requested and none of them is still usable.
     bool all_failed() const;
-    /// A line each for what was written.
+    /// One line for each written output.
     std::string summary() const;
     int frames() const { return frames_; }
-    /// Spent within the steps, on problems.
+    /// Wall time spent within the steps on exported problems [s].
     double seconds_in_steps() const { return problems_.seconds(); }
 
 private:
     struct Output {
         const char* option;
-        std::filesystem::path place;  // empty: not asked for
+        std::filesystem::path place;  // empty: not requested
         std::string failure = {};
         bool open() const { return !place.empty() && failure.empty(); }
     };
-    /// Does what may fail, unless the output has failed before; says so at once.
+    /// Calls `write` unless the output has failed before; reports a failure at once.
     void attempt(Output& output, FunctionRef<void()> write);
     std::vector<Output*> all() { return {&out_, &page_file_, &probes_, &trace_, &problem_folder_, &stats_}; }
     std::vector<const Output*> all() const {

@@ -1,4 +1,4 @@
-// What the program says of overlaps at the start.
+// Text and JSON about overlaps at the start.
 #pragma once
 
 #include "engine/program/number_text.h"
@@ -22,7 +22,7 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// Of the mean edge: what is less is not worth a word.
+/// Smallest depth worth a warning, as a share of the mean edge.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
@@ -30,7 +30,8 @@ inline std::string into_shell_text(Real depth) {
            " too deep in each other's contact distance: start further apart, or lower contact_distance";
 }
 
-/// Rad, in a step: a surface is then 3 % of its arm beside where contacts take it to go.
+/// Rotation per step from which a warning is given [rad]. Contacts assume straight motion; the error of a surface's
+/// place is then 3 % of its lever arm.
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
@@ -39,7 +40,7 @@ inline std::string turning_text(const WorldReport& report) {
            short_number(visible_turn / report.collider_turn) + " of that";
 }
 
-/// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm"
+/// Returns, for example, "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm".
 inline std::string moves_text(const WorldReport& report) {
     const StartMove* furthest = nullptr;
     for (const StartMove& move : report.start_moves)

@@ -21,7 +21,7 @@ Json number_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-/// Estimates of the errors of the run. `doubts` says in words which of them are too large to rely on it.
+/// Error estimates of the run. `doubts` lists in words those that are too large to rely on it.
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
     return {

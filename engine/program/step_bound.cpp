@@ -23,7 +23,7 @@ struct Body {
 Body body_of(const Mesh& mesh, const StepCase& of) {
     Settings settings = of.settings;
     settings.step_size.reset();
-    settings.clusters = false;  // what the elements stand on their own
+    settings.clusters = false;  // measures the stable step of the elements alone
     settings.backend = Backend::serial;
     World world(settings);
     BodySettings body = of.body;
@@ -49,8 +49,8 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
     return found;
 }
 
-/// All tetrahedra. Masses are shared so that what is beside a bad one allows hardly more than that one does: among
-/// those that allow about the least, the flattest come first.
+/// Orders all tetrahedra, worst first. Nodal masses are shared, so neighbours of a bad tetrahedron allow hardly more
+/// than it does. Among those near the smallest step the flattest therefore come first.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());
@@ -65,7 +65,7 @@ std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     return order;
 }
 
-/// Without those of `gone`, and without nodes that then have none.
+/// Copy of the mesh without the tetrahedra `gone` and without nodes that then belong to none.
 Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     std::vector<bool> stays(mesh.tetrahedra.size(), true);
     for (const Index t : gone) stays[static_cast<std::size_t>(t)] = false;
@@ -88,10 +88,10 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
-/// What the step is when the worst are not there. They are taken out in fact, some at a time: what was beside them has
-/// its masses for itself then. `order`: worst first, of the whole mesh.
+/// Stable step without the worst tetrahedra. They are removed in several rounds, because the neighbours of a removed
+/// one then have different masses. `order`: all tetrahedra of the mesh, worst first.
 std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
-    constexpr std::size_t rounds = 3;  // for all that are taken out between two shares
+    constexpr std::size_t rounds = 3;  // per share
     std::vector<StepWithout> without;
     Mesh rest = mesh;
     std::size_t gone = 0;

@@ -60,7 +60,7 @@ std::string stage_table(const RunResult& result) {
     return text;
 }
 
-/// What kept steps from being longer, down to a hundredth of them.
+/// Limits that shortened the steps, listed down to a hundredth of the steps.
 std::string limit_lines(const WorldReport& r) {
     const auto why = [](const StepLimitReport& of) -> std::string {
         switch (of.limit) {
@@ -103,7 +103,7 @@ std::string probe_lines(const RunResult& result) {
     return text;
 }
 
-/// How far energy and momentum add up, and what speaks against relying on the run.
+/// Errors of the energy and momentum balance, and the warnings.
 std::string trust_lines(const RunResult& result) {
     const WorldReport& r = result.report;
     std::string text = line(

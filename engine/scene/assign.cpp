@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// One step of a place: a key of an object, or an item of a list.
+/// One component of a place: a key of an object, or an item of a list.
 struct Step {
     std::string key;
     std::size_t item = 0;
@@ -43,7 +43,7 @@ private:
             .raise();
     }
 
-    /// The first "=" that is not within quotes.
+    /// Position of the first "=" outside quotes.
     std::size_t end_of_place() const {
         bool quoted = false;
         for (std::size_t i = 0; i < text_.size(); ++i) {
@@ -53,7 +53,7 @@ private:
         refuse("no \"=\"", "a place, \"=\" and a value");
     }
 
-    /// Takes a step off the place that is left.
+    /// Removes the next component from the remaining place.
     Step next_step() {
         if (place_.front() == '.') place_.remove_prefix(1);
         if (!place_.empty() && place_.front() == '[') return next_in_brackets();
@@ -98,7 +98,7 @@ private:
 
     const std::string& text_;
     const std::filesystem::path& file_;
-    std::string_view place_;  // what is left of it
+    std::string_view place_;  // remaining part
     std::string value_;
 };
 

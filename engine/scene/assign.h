@@ -1,4 +1,4 @@
-// Changes of a scene on its way in: bodies[0].position=[0,0,1].
+// Changes to a scene while it is read, such as bodies[0].position=[0,0,1].
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace skerry {
 
-/// Carries out PLACE=VALUE on what a scene file holds. PLACE is written as messages write it:
-/// bodies[3].mesh.ball.radius, materials["soft rubber"].E; objects that are not there are made, items of lists must be
-/// there. VALUE is JSON, or the text that it is. Throws SceneError that names `file` and the assignment.
+/// Applies PLACE=VALUE to the content of a scene file. PLACE is written as in messages: bodies[3].mesh.ball.radius,
+/// materials["soft rubber"].E. Missing objects are created; list items must exist. VALUE is JSON, or otherwise a plain
+/// text. Throws SceneError that names `file` and the assignment.
 void assign(const std::string& assignment, const std::filesystem::path& file, Json& scene);
 
 }  // namespace skerry

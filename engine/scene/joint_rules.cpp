@@ -1,4 +1,4 @@
-// The keys of joints.
+// Keys of joints.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {

@@ -9,7 +9,7 @@ struct Built {
     const World& world;
     const std::vector<BodyHandle>& bodies;
     const std::vector<ColliderHandle>& colliders;
-    const std::vector<std::vector<AttachmentHandle>>& pins;  // by body
+    const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -70,7 +70,7 @@ Scene build_scene(const ScenePlan& plan) {
         materials.push_back(called_at(top.key("materials").key(name),
                                       [&, &settings = material] { return world.add_material(settings); }));
     std::vector<BodyHandle> bodies;
-    std::vector<std::vector<AttachmentHandle>> pins;  // by body
+    std::vector<std::vector<AttachmentHandle>> pins;  // indexed by body
     std::vector<ColliderHandle> colliders;
     for (const BodyPlan& body : plan.bodies) {
         BodySettings settings = body.settings;

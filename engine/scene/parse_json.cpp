@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Bytes above ASCII as \xNN: what a message cites may be no UTF-8.
+/// Writes bytes above ASCII as \xNN: text cited in a message may be invalid UTF-8.
 std::string printable(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -21,7 +21,7 @@ std::string printable(const std::string& text) {
     return result;
 }
 
-/// Builds the document and watches what nlohmann's own builder lets pass: keys given twice.
+/// Builds the document and refuses duplicate keys, which nlohmann's own builder accepts.
 class StrictBuilder : public nlohmann::json_sax<Json> {
 public:
     StrictBuilder(const std::string& text, const std::filesystem::path& file) : text_(text), file_(file) {}
@@ -73,7 +73,7 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // an open child is in its list already
+            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // an open child is already in its list
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);
             else if (!level.key.empty())
@@ -92,7 +92,7 @@ private:
     }
 
     bool open(Json value) {
-        // scenes need fewer than ten; what walks values by recursion would use up the stack on a file of brackets
+        // scenes need fewer than ten levels; recursive functions would overflow the stack on a file full of brackets
         constexpr std::size_t deepest = 100;
         if (open_.size() == deepest)
             Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
@@ -115,7 +115,7 @@ private:
         return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column);
     }
 
-    /// The library's message without its own prefix and place.
+    /// Returns the library's message without its prefix and position.
     static std::string reason(const std::string& what) {
         const std::size_t start = what.find(": ");
         return start == std::string::npos ? what : what.substr(start + 2);
@@ -141,7 +141,7 @@ Json read_json(const std::filesystem::path& file, const std::string& expected) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", expected, {}}.raise();
     if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", expected, {}}.raise();
-    // such as /dev/zero, which has no end; a pipe has one
+    // refuses devices such as /dev/zero, which is endless; a pipe ends
     if (std::filesystem::is_character_file(file, error))
         Complaint{file.string(), {}, {}, "a device", expected, {}}.raise();
     std::ifstream stream(file, std::ios::binary);

@@ -1,4 +1,4 @@
-// Text to JSON, strictly.
+// Strict conversion of text to JSON.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Parses plain JSON (RFC 8259): comments, trailing commas, keys given twice and numbers that are not finite are
-/// refused. Throws SceneError with line and column; `expected` is what the file is to be, for messages.
+/// Parses plain JSON (RFC 8259). Comments, trailing commas, duplicate keys and non-finite numbers are refused. Throws
+/// SceneError with line and column. `expected` describes the expected content in messages.
 Json parse_json(const std::string& text, const std::filesystem::path& file,
                 const std::string& expected = "a scene in JSON");
 

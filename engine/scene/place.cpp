@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// Optimal string alignment: as Levenshtein, and two swapped letters count as one change.
+/// Optimal string alignment distance: Levenshtein distance in which two swapped letters count as one change.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;
@@ -73,7 +73,7 @@ std::string listed(std::span<const std::string> names) {
 }
 
 std::string described(const Json& value) {
-    constexpr std::size_t longest = 60;  // characters of a value that a message repeats
+    constexpr std::size_t longest = 60;  // longest value repeated in a message [characters]
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (value.is_object())
         return text.size() <= longest ? "the object " + text
@@ -95,7 +95,7 @@ std::string nearest_name(std::string_view text, std::span<const std::string> nam
 
 std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
     const std::string nearest = nearest_name(text, names);
-    constexpr std::size_t letters_per_slip = 3;  // with more slips than that it is another word
+    constexpr std::size_t letters_per_slip = 3;  // with more differences it is a different word
     const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
     return nearest.empty() || edit_distance(text, nearest) > most ? std::string()
                                                                   : "the nearest known one is " + in_quotes(nearest);

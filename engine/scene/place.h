@@ -1,4 +1,4 @@
-// Where in a scene file something stands, and complaints about it.
+// Places in a scene file, and error messages about them.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-/// Keeps the order of keys: that of a file when reading, that of the tables in the schema.
+/// JSON that keeps the order of keys: the file's order when reading, the tables' order in the schema.
 using Json = nlohmann::ordered_json;
 
 /// A place in a file, written like bodies[3].mesh.ball, and the named object it belongs to.
@@ -24,13 +24,13 @@ public:
 
     Place key(std::string_view name) const;
     Place item(std::size_t index) const;
-    /// The same place, said to belong to an object such as: body "ball".
+    /// Returns this place with the name of its object, such as: body "ball".
     Place of(std::string object) const;
 
     const std::filesystem::path& file() const { return file_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Says what went wrong further inside, where files and keys are not known.
+    /// Reports an error from an inner function that does not know files and keys.
     [[noreturn]] void refuse_inner(const std::string& message) const;
 
 private:
@@ -39,7 +39,7 @@ private:
     std::string object_;
 };
 
-/// Calls function() and says of what it complains about where that stands.
+/// Calls function() and adds the place to its error messages.
 template <class Function>
 auto called_at(const Place& place, Function function) {
     try {
@@ -52,14 +52,14 @@ auto called_at(const Place& place, Function function) {
 }
 
 std::string in_quotes(std::string_view text);
-/// "a", "b", "c"
+/// Returns, for example, "a", "b", "c".
 std::string listed(std::span<const std::string> names);
-/// A value as a message calls it: the text "x", the number 3, a list of 2 values, ...
+/// Describes a value for messages: the text "x", the number 3, a list of 2 values, ...
 std::string described(const Json& value);
-/// The name that `text` was probably meant to be: the fewest changed, missing, added or swapped letters. Empty without
-/// names.
+/// Returns the name closest to `text`, with the fewest changed, missing, added or swapped letters. Empty if there are
+/// no names.
 std::string nearest_name(std::string_view text, std::span<const std::string> names);
-/// A hint with the nearest name, or nothing when none is near: more than a third of the letters are others.
+/// Returns a hint with the nearest name. Empty if more than a third of the letters differ.
 std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 }  // namespace skerry

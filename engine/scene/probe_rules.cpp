@@ -1,4 +1,4 @@
-// The keys of probes, and which of them each quantity has.
+// Keys of probes, and the subset that each quantity accepts.
 #include <algorithm>
 
 #include "engine/scene/scene_rules.h"

@@ -6,14 +6,14 @@ namespace skerry {
 
 namespace {
 
-/// `open` lists the files that are being read, outermost first.
+/// Reads a file and the files it includes. `open` lists the files being read, outermost first.
 void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<const std::string> assignments,
                std::vector<std::filesystem::path>& open) {
     Json json = read_json(file);
     for (const std::string& assignment : assignments) assign(assignment, file, json);
     const Place place(file);
 
-    // A first reading for what it includes; a second one on top of that.
+    // The first reading finds the included files. The second one adds this file's content on top of theirs.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
     open.push_back(std::filesystem::weakly_canonical(file));

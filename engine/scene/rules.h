@@ -1,5 +1,5 @@
-// The keys of an object in a scene file, described once. Reading, the check for unknown keys and the schema all come
-// from that description.
+// Describes the keys of an object in a scene file once. Reading, the check for unknown keys and the schema all use
+// that description.
 #pragma once
 
 #include <functional>
@@ -29,42 +29,42 @@ inline Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
-/// What is said of a key; texts that live as long as the program.
+/// Documentation of a key. The texts must live as long as the program.
 struct KeyDoc {
     std::string_view meaning;
-    std::string_view unit = {};   // SI
-    std::string_view alias = {};  // a second name
+    std::string_view unit = {};   // SI unit
+    std::string_view alias = {};  // alternative name
     Limits limits = {};
     bool required = false;
 };
 
-/// Definitions of a schema, by name, in the order met.
+/// Definitions of a schema by name, in order of first use.
 using SchemaBook = Json;
 
-/// How a C++ type is read from JSON and described in a schema. Specialised in values.h; anything else is an object that
-/// has a Rule.
+/// Reads a C++ type from JSON and describes it in a schema. Specialised in values.h; all other types are objects with
+/// a Rule.
 template <class T>
 struct Value;
 
-/// A key of earlier versions, and a hint that names its replacement.
+/// A removed key of earlier versions, and a hint that names its replacement.
 struct Withdrawn {
     std::string_view key, instead;
 };
 
-/// What keys of an object have to do with each other.
+/// A condition on the presence of several keys of an object.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
     std::vector<std::string> keys;
 };
 
-/// What a rule does whatever type its objects have: compiled once, in rules.cpp.
+/// Part of a rule that does not depend on the object's type; compiled once, in rules.cpp.
 class RuleTable {
 public:
     const std::string& name() const { return name_; }
     Json schema(SchemaBook& book) const;
 
 protected:
-    /// Functions that read and describe the value of a key of any type.
+    /// Functions that read the value of a key and describe its type, for any type.
     struct ValueFunctions {
         void (*read)(const Json&, const Place&, const KeyDoc&, void* value);
         Json (*describe)(SchemaBook&, const KeyDoc&);
@@ -72,7 +72,7 @@ protected:
     struct Key {
         std::string name;
         KeyDoc doc;
-        std::size_t offset;  // of the value in the object [bytes]
+        std::size_t offset;  // offset of the value in the object [bytes]
         ValueFunctions value;
     };
 
@@ -83,9 +83,9 @@ protected:
     void add_key(std::string_view name, const KeyDoc& doc, std::size_t offset, const ValueFunctions& value);
     void add_group(KeyGroup::Kind kind, std::vector<std::string> keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
-    /// Where the object stands, called by its own name if it has one.
+    /// Returns the place of the object, with the object's own name if it has one.
     Place place_of(const Json& json, const Place& outer) const;
-    /// Refuses what is no object of these keys, then reads them.
+    /// Reads the keys. Refuses a JSON value that is not an object with these keys.
     void read_keys(const Json& json, const Place& place, void* object) const;
 
 private:
@@ -104,11 +104,11 @@ void read_value(const Json& json, const Place& place, const KeyDoc& doc, void* v
     Value<V>::read(json, place, doc, *static_cast<V*>(value));
 }
 
-/// The keys of objects of type T.
+/// Rule for objects of type T.
 template <class T>
 class Rule : public RuleTable {
 public:
-    /// `name` heads the definition in the schema and, with the object's own name, messages.
+    /// `name` is the title of the definition in the schema. In messages it precedes the object's own name.
     Rule(std::string name, std::string meaning) : RuleTable(std::move(name), std::move(meaning)) {}
 
     template <class V>
@@ -119,12 +119,12 @@ public:
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
     Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
-    /// Refuses a key of earlier versions with a hint that names its replacement.
+    /// Declares a removed key. Reading refuses it with a hint that names its replacement.
     Rule& withdrawn(std::string_view key, std::string_view instead) {
         add_withdrawn({key, instead});
         return *this;
     }
-    /// A condition between values; it refuses by itself.
+    /// Adds a condition on the values. The function itself refuses invalid ones.
     Rule& check(std::function<void(const Place&, const T&)> check) {
         checks_.push_back(std::move(check));
         return *this;
@@ -146,10 +146,10 @@ private:
     std::vector<std::function<void(const Place&, const T&)>> checks_;
 };
 
-/// The whole JSON schema of files that hold one object of a rule.
+/// Returns the complete JSON schema of files that hold one object of a rule.
 std::string schema_document(const std::string& title, const RuleTable& rule);
 
-/// The rule of a type; specialised in scene_rules.cpp.
+/// Returns the rule of a type. scene_rules.h declares most specialisations.
 template <class T>
 const Rule<T>& rule_of();
 

@@ -1,4 +1,4 @@
-// What a scene file says, key by key, before anything is built from it.
+// Content of a scene file, key by key, before anything is built from it.
 #pragma once
 
 #include <optional>
@@ -14,27 +14,27 @@
 namespace skerry {
 
 struct BoxMesh {
-    Vec3 size = {1, 1, 1};  // m
+    Vec3 size = {1, 1, 1};  // [m]
     std::array<int, 3> cells{1, 1, 1};
 };
 struct BallMesh {
-    Real radius = 1;  // m
+    Real radius = 1;  // [m]
     int resolution = 4;
 };
 struct CylinderMesh {
-    Real radius = 1;  // m
-    Real height = 1;  // m
+    Real radius = 1;  // [m]
+    Real height = 1;  // [m]
     int resolution = 4;
 };
 struct LatheMesh {
-    std::vector<std::array<Real, 2>> profile;  // m, (radius, z)
+    std::vector<std::array<Real, 2>> profile;  // (radius, z) [m]
     int resolution = 4;
 };
 struct SkittleMesh {
-    Real height = 1;  // m
+    Real height = 1;  // [m]
     int resolution = 4;
 };
-/// Exactly one of the shapes, or a file.
+/// Exactly one of the shapes or the file is set.
 struct MeshEntry {
     std::optional<BoxMesh> box;
     std::optional<BallMesh> ball;
@@ -48,7 +48,7 @@ struct MeshEntry {
 };
 
 struct RestBox {
-    Vec3 lower = Vec3::Zero();  // m, in the mesh's own frame
+    Vec3 lower = Vec3::Zero();  // in the mesh's own frame [m]
     Vec3 upper = Vec3::Zero();
 };
 struct KeyEntry {
@@ -68,11 +68,11 @@ struct PinEntry {
     Vec3 pivot = Vec3::Zero();
     Place place;
 };
-/// A grid of copies.
+/// A grid of copies of a body.
 struct RepeatEntry {
     std::array<int, 3> count{1, 1, 1};
-    Vec3 spacing = Vec3::Zero();  // m
-    Real jitter = 0;              // m
+    Vec3 spacing = Vec3::Zero();  // [m]
+    Real jitter = 0;              // [m]
     int seed = 1;
 };
 struct BodyShapeEntry {
@@ -137,7 +137,7 @@ struct JointEntry {
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };
-/// contacts: of a part of a body, what sticks and slides, in the report; all others are series of numbers in a file.
+/// contacts: sticking and sliding of a part of a body, in the report. All others are time series of numbers in a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, energy, stress, volume };
 template <>
 struct EnumNames<ProbeQuantity> {
@@ -156,13 +156,13 @@ struct ProbeEntry {
     ProbeQuantity quantity = ProbeQuantity::contacts;
     std::optional<std::string> body, collider, by;
     std::optional<RestBox> box;
-    std::optional<Vec3> point;  // m, in the mesh's own frame
+    std::optional<Vec3> point;  // in the mesh's own frame [m]
     std::optional<int> pin;
     Place place;
 };
 
 struct SceneFile {
-    std::string schema;  // for editors, otherwise unused
+    std::string schema;  // used by editors only
     std::string name;
     std::string description;
     Real seconds = 2;
@@ -177,7 +177,7 @@ struct SceneFile {
     std::optional<Real> probe_step;
 };
 
-/// Reads a scene file, with all that it includes, after `assignments` (assign.h) to it. Throws SceneError.
+/// Reads a scene file and all files it includes. `assignments` (assign.h) are applied to it first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
 }  // namespace skerry

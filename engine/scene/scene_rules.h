@@ -1,4 +1,4 @@
-// Which keys scene files know: declarations of the tables in scene_rules.cpp and shape_rules.cpp.
+// Keys of scene files: declarations of the rules in scene_, shape_, joint_ and probe_rules.cpp.
 #pragma once
 
 #include "engine/scene/scene_file.h"

@@ -1,11 +1,11 @@
-// The keys of meshes, collider shapes and motions.
+// Keys of meshes, collider shapes and motions.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
 
 namespace {
 
-// More would not fit into any memory; a typing mistake is likelier.
+// More cells would not fit into memory and are probably a typing mistake.
 const Limits cell_count = within(1, 1000);
 const Limits positive = above(0);
 

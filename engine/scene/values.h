@@ -1,4 +1,4 @@
-// How values of each type are read from JSON and described in the schema.
+// Reads values of each type from JSON and describes them in the schema.
 #pragma once
 
 #include <array>
@@ -14,20 +14,20 @@
 
 namespace skerry {
 
-/// A path in a scene file; what is relative starts from the folder of that file.
+/// A path in a scene file. Relative paths start at the folder of that file.
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation in any of its three spellings, as axis times angle.
+/// A rotation, stored as axis times angle. A scene file may write it in three ways.
 struct Rotation {
-    Vec3 value = Vec3::Zero();  // rad
+    Vec3 value = Vec3::Zero();  // [rad]
 };
 /// Objects by name, in the order of the file.
 template <class T>
 struct Named {
     std::vector<std::pair<std::string, T>> items;
 };
-/// Objects by number: keys are whole numbers, written as text, since those of JSON are.
+/// Objects by number. JSON keys are text, so the whole numbers are written as text.
 template <class T>
 struct ByNumber {
     std::vector<std::pair<int, T>> items;
@@ -37,9 +37,9 @@ template <class T>
 struct OneOrMore {
     std::vector<T> items;
 };
-/// A 3 x 3 rotation matrix by rows.
+/// A 3 x 3 rotation matrix, given by its rows.
 struct RotationRows {
-    Vec3 value = Vec3::Zero();  // rad, axis times angle
+    Vec3 value = Vec3::Zero();  // axis times angle [rad]
 };
 
 Real read_number(const Json& json, const Place& place, const KeyDoc& doc);
@@ -52,7 +52,7 @@ Json list_schema(Json items, std::size_t count);
 Json named_schema(Json value);
 Json numbered_schema(Json value);
 Json either_schema(Json one, Json other);
-/// A reference to the definition of a rule, which is put into the book if it is not there.
+/// Returns a reference to the definition of a rule, and adds the definition to the book if it is missing.
 Json rule_schema(SchemaBook& book, const RuleTable& rule);
 
 template <>
@@ -118,11 +118,11 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Which of the names a text is.
+/// Returns the index of the name that equals the text.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 
-/// An enum by one of its names.
+/// Reads an enum from one of its names.
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Value<Enum> {
@@ -147,7 +147,7 @@ struct Value<std::optional<T>> {
 /// Calls item(value, place) for each value of a list.
 void read_items(const Json& json, const Place& place, FunctionRef<void(const Json&, const Place&)> item);
 
-/// Appends: the lists of an included scene come first.
+/// Appends to `out`: the lists of an included scene come first.
 template <class T>
 struct Value<std::vector<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::vector<T>& out) {
@@ -168,7 +168,7 @@ struct Value<OneOrMore<T>> {
         return either_schema(Value<T>::schema(book, doc), Value<std::vector<T>>::schema(book, doc));
     }
 };
-/// Calls item(name, value, place) for each key of an object. `has` says which names there are already.
+/// Calls item(name, value, place) for each key of an object. `has` tells whether a name already exists.
 void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
                 FunctionRef<void(const std::string&, const Json&, const Place&)> item);
 
@@ -189,8 +189,8 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Calls item(number, value, place) for each key of an object. Keys are numbers and nothing else: no sign but minus, no
-/// leading zeros, 32 bits.
+/// Calls item(number, value, place) for each key of an object. Keys must be plain 32-bit whole numbers: no sign except
+/// minus, no leading zeros.
 void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
 
 template <class T>
@@ -203,7 +203,7 @@ struct Value<ByNumber<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return numbered_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Everything else is an object with a rule.
+/// All other types are objects with a rule.
 template <class T>
 struct Value {
     static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {

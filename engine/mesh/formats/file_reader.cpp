@@ -103,13 +103,13 @@ std::string_view FileReader::word(const char* expected) {
 
 Real FileReader::parse_real(std::string_view text, const char* field) const {
     std::string_view digits = text;
-    // from_chars knows no plus sign
+    // from_chars does not accept a plus sign
     if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     Real value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
         complain(field, in_quotes(text), "a number");
-    // Out of range: too small is as good as zero, too large is not finite. strtod tells them apart.
+    // Out of range: tiny numbers may become zero, huge ones infinite. strtod distinguishes them.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
     return value;
 }

@@ -1,4 +1,4 @@
-// A file in memory, read front to back: lines, words, numbers and binary numbers, and complaints that say where.
+// Reads a file from memory, front to back: lines, words, numbers and binary numbers. Errors name their position.
 #pragma once
 
 #include <bit>
@@ -14,38 +14,38 @@ namespace skerry::mesh {
 
 class FileReader {
 public:
-    /// Reads the whole file. Throws SceneError when there is no such regular file or it cannot be read.
+    /// Reads the whole file. Throws SceneError if it does not exist, is not a regular file or cannot be read.
     explicit FileReader(const std::string& path);
 
     const std::string& path() const { return path_; }
     std::size_t remaining() const { return data_.size() - position_; }
     std::string_view rest() const { return std::string_view(data_).substr(position_); }
 
-    /// What the next complaints are about, for example "$Nodes".
+    /// Sets the section named in the following error messages, for example "$Nodes".
     void set_section(std::string section) {
         section_ = std::move(section);
         row_kind_ = nullptr;
     }
-    /// A row of the section, for example "node 3 of 14"; forgotten by set_section.
+    /// Sets the row of the section for error messages, for example "node 3 of 14". set_section clears it.
     void set_row(const char* kind, std::size_t number, std::size_t count);
 
     // Lines.
     // -----------------------------------------------------------------------------------------------------------------
-    /// True when nothing but white space is left.
+    /// True if only white space is left.
     bool at_end() const;
-    /// The next line, without its end and white space at both sides.
+    /// Returns the next line, without its line end and surrounding white space.
     std::string_view line();
-    /// The next line that is not empty. At the end of the file: complains that `expected` is missing.
+    /// Returns the next line that is not empty. At the end of the file: throws SceneError that `expected` is missing.
     std::string_view filled_line(const char* expected);
-    /// Words of a line. Valid until the next call.
+    /// Splits a line into words. The result is valid until the next call.
     const std::vector<std::string_view>& words_of(std::string_view line);
 
     // Words and numbers of text.
     // ---------------------------------------------------------------------------------------------------
-    /// The next word after white space, which may be on a later line. At the end of the file: complains that `expected`
-    /// is missing.
+    /// Returns the next word after white space, possibly on a later line. At the end of the file: throws SceneError
+    /// that `expected` is missing.
     std::string_view word(const char* expected);
-    /// The word that word() would give, empty at the end.
+    /// Returns the word that word() would return; empty at the end.
     std::string_view peek_word() const;
     Real parse_real(std::string_view text, const char* field) const;
     std::int64_t parse_integer(std::string_view text, const char* field) const;
@@ -65,19 +65,19 @@ public:
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Goes behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end.
-    /// False, and nothing moves, when there is none.
+    /// Moves behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end.
+    /// Returns false and does not move if there is none.
     bool skip_behind(std::string_view mark);
 
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
-    /// A count as read: not negative, and so many rows of at least `bytes` bytes must fit into what is left of the
-    /// file, so that a false count cannot ask for more memory than a small multiple of the file.
+    /// Checks a count that was read: not negative, and so many rows of at least `bytes` bytes must fit into the rest
+    /// of the file. A wrong count therefore cannot allocate more than a small multiple of the file's size.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
-    /// Complains unless the number is finite.
+    /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;
 
-    /// Throws SceneError: file, section, row and line (or byte), field, found, expected.
+    /// Throws SceneError with file, section, row and line (or byte), field, found, expected.
     [[noreturn]] void complain(std::string field, std::string found, std::string expected, std::string hint = {}) const;
 
 private:
@@ -88,13 +88,13 @@ private:
     const char* row_kind_ = nullptr;
     std::size_t row_number_ = 0, row_count_ = 0;
     std::size_t position_ = 0;
-    std::size_t start_ = 0;  // of what was read last, for complaints
+    std::size_t start_ = 0;  // start of the item read last, for error messages
     bool last_was_binary_ = false;
     bool foreign_bytes_ = false;
     std::vector<std::string_view> words_;
 };
 
-/// A word of the file, fit for a message: quoted, short, printable.
+/// Returns a word of the file in a form suitable for a message: quoted, short, printable.
 std::string in_quotes(std::string_view text);
 
 }  // namespace skerry::mesh

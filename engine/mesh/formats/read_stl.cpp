@@ -2,8 +2,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// STL repeats the corners of each triangle: equal positions become one node, and triangles of which that leaves no
-// three are dropped.
+// STL repeats the corners of each triangle. Equal positions become one node; triangles left with fewer than three
+// different nodes are dropped.
 namespace skerry::mesh {
 namespace {
 
@@ -22,7 +22,7 @@ public:
 
 private:
     Index node(const Vec3& x) {
-        // -0 equals 0
+        // keys with -0 and 0 are equal
         const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
         if (added) mesh_.nodes.push_back(x);
         return place->second;
@@ -66,7 +66,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
             reader.set_section("facet " + std::to_string(i));
             if (key != "facet") reader.complain({}, in_quotes(key), "facet or endsolid");
             require_word(reader, "normal");
-            for (int a = 0; a < 3; ++a) reader.word("a normal");  // not needed, and often zero or wrong
+            for (int a = 0; a < 3; ++a) reader.word("a normal");  // normals are not needed, and often zero or wrong
             require_word(reader, "outer");
             require_word(reader, "loop");
             std::array<Vec3, 3> corners;
@@ -79,7 +79,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
             require_word(reader, "endfacet");
             welder.add(corners);
         }
-        reader.line();  // the name again
+        reader.line();  // rest of the line, which repeats the name
     }
 }
 
@@ -88,7 +88,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
 RawMesh read_stl(FileReader& reader) {
     RawMesh mesh;
     Welder welder(mesh);
-    // A binary header may begin with "solid", too. The size tells: it is exact in a binary file.
+    // A binary header may begin with "solid", too. The file size decides: it is exact in a binary file.
     const std::string_view bytes = reader.rest();
     bool binary = false;
     if (bytes.size() >= header_bytes + 4) {

@@ -7,7 +7,7 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Legacy VTK. Format: "VTK File Formats", VTK user's guide; version 5.1 of the files brought OFFSETS and CONNECTIVITY.
+// Legacy VTK. Format: "VTK File Formats", VTK user's guide. File version 5.1 introduced OFFSETS and CONNECTIVITY.
 namespace skerry::mesh {
 namespace {
 
@@ -15,7 +15,7 @@ enum class Kind { int8, uint8, int16, uint16, int32, uint32, int64, uint64, floa
 
 struct NumberType {
     Kind kind;
-    std::size_t size;  // bytes
+    std::size_t size;  // [bytes]
 };
 
 class VtkReader {
@@ -54,7 +54,7 @@ private:
             reader_.complain("DATASET", in_quotes(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
     }
 
-    /// One section behind its name. False when nothing of the mesh follows.
+    /// Reads the section with the given name. Returns false if the rest of the file does not belong to the mesh.
     bool read_section(const std::string& name) {
         reader_.set_section(name);
         if (name == "POINT_DATA" || name == "CELL_DATA") return read_data(name == "CELL_DATA");
@@ -78,9 +78,9 @@ private:
         return true;
     }
 
-    /// Lines up to an empty one or the end.
+    /// Skips lines up to an empty one or the end of the file.
     void skip_metadata() {
-        reader_.line();  // the rest of the word's own
+        reader_.line();  // rest of the line with the keyword
         while (reader_.remaining() > 0 && !reader_.line().empty()) {
         }
     }
@@ -121,7 +121,7 @@ private:
         return found->type;
     }
 
-    /// The line end behind the counts, before binary rows.
+    /// Skips the line end after the counts, before binary rows.
     void begin_rows() {
         if (binary_) reader_.line();
     }
@@ -180,7 +180,8 @@ private:
         return static_cast<Index>(node);
     }
 
-    /// Rows of nodes of CELLS or POLYGONS, old (count and nodes of each cell) or new (offsets, then all nodes).
+    /// Reads the nodes of CELLS or POLYGONS: old form (count and nodes of each cell) or new form (offsets, then all
+    /// nodes).
     void read_cells(bool& has_rows) {
         if (!has_points_) reader_.complain({}, "cells before points", "the points first");
         if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of its name", "one");
@@ -196,7 +197,7 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = read_integer(type, "node count");
-            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);  // without the counts so far
+            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);  // minus the counts read
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
                                  "what the size in the header leaves");
@@ -269,7 +270,7 @@ private:
         offsets_.assign(1, 0);
     }
 
-    /// Triangles that fan out from the first corner.
+    /// Divides a polygon into triangles that share its first corner.
     void take_polygon(std::size_t begin, std::size_t end) {
         if (end - begin < 3) reader_.complain("node count", std::to_string(end - begin), "at least 3");
         for (std::size_t a = begin + 1; a + 1 < end; ++a) {
@@ -305,8 +306,8 @@ private:
         }
     }
 
-    /// Data of points or of cells, array by array, of which only labels are kept. False at the end, and at what is not
-    /// known: a mesh can do without.
+    /// Reads data of points or cells, array by array, and keeps only labels. Returns false at the end of the file and
+    /// at unknown content, which a mesh does not need.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? types_.size() : mesh_.nodes.size();
@@ -322,7 +323,7 @@ private:
         return false;
     }
 
-    /// One array, or a field of several, behind its keyword. False when it is not known.
+    /// Reads one array, or a field of several, after its keyword. Returns false for an unknown keyword or type.
     bool read_attribute(const std::string& keyword, std::size_t rows, bool of_cells) {
         reader_.set_section(keyword);
         if (keyword == "METADATA") {
@@ -350,7 +351,7 @@ private:
         return false;
     }
 
-    /// Behind "SCALARS name type": how many a row, and which table of colours, may be left out.
+    /// Continues after "SCALARS name type". The number of components and the colour table are optional.
     bool read_scalars(const std::string& name, std::size_t rows, bool of_cells, const NumberType& type) {
         std::size_t components = 1;
         if (const std::string_view rest = reader_.line(); !rest.empty())
@@ -368,7 +369,7 @@ private:
         for (std::size_t i = 0; i < arrays; ++i) {
             reader_.set_row("array", i + 1, arrays);
             const std::string name(reader_.word("the name of the array"));
-            if (name == "METADATA") {  // of the array before
+            if (name == "METADATA") {  // belongs to the previous array
                 skip_metadata();
                 --i;
                 continue;
@@ -382,7 +383,7 @@ private:
         return true;
     }
 
-    /// Keeps the array if it is the first with labels.
+    /// Keeps the array if it is the first one with labels.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
         constexpr std::array<std::string_view, 4> known{"region", "gmsh:physical", "medit:ref", "CellEntityIds"};
@@ -416,7 +417,7 @@ private:
         return true;
     }
 
-    /// "FIELD name arrays", then arrays "name components rows type" and their numbers.
+    /// Skips "FIELD name arrays" with its arrays "name components rows type" and their numbers.
     void skip_field() {
         reader_.word("the name of the field");
         const std::size_t arrays = read_count("arrays", 4);

@@ -11,7 +11,7 @@ namespace skerry::mesh {
 
 namespace {
 
-/// A face, by its nodes in ascending order and the corners of its tetrahedron that these are: 4 a tetrahedron.
+/// A face: its nodes in ascending order, and their corners (4 per tetrahedron).
 struct Face {
     std::array<Index, 3> node, corner;
 };
@@ -34,7 +34,7 @@ std::vector<Face> faces_of(const Mesh& mesh) {
     return faces;
 }
 
-/// Sets of tetrahedra, once by faces that they share and once by nodes.
+/// Number of connected components, where tetrahedra that share a node are connected.
 std::size_t count_parts(const Mesh& mesh) {
     UnionFind parts;
     parts.start(mesh.nodes.size());
@@ -61,7 +61,7 @@ PartedMesh part_fans(const Mesh& mesh) {
         if (faces[f].node == faces[f - 1].node)
             for (std::size_t i = 0; i < 3; ++i) fans.join(faces[f].corner[i], faces[f - 1].corner[i]);
     std::vector<Index> first_fan(mesh.nodes.size(), no_index);         // by node
-    std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);  // by root, the first corner of its fan
+    std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);  // by root, which is the first corner of its fan
     std::vector<bool> has_more(mesh.nodes.size());
     for (std::size_t c = 0; c < node_of.size(); ++c) {
         const auto root = static_cast<std::size_t>(fans.root(static_cast<Index>(c)));

@@ -1,4 +1,4 @@
-// A mesh whose tetrahedra hang together by faces, not by corners alone.
+// Makes a mesh whose tetrahedra are connected by faces, not by nodes alone.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@ namespace skerry::mesh {
 
 struct PartedMesh {
     Mesh mesh;
-    std::size_t parted = 0;  // nodes that there were of them only one before
-    std::size_t parts = 1;   // in which the tetrahedra fall apart then, beside those in which they did before
+    std::size_t parted = 0;  // number of original nodes that were split
+    std::size_t parts = 1;   // 1 plus the increase in the number of connected components
 };
 
-/// Tetrahedra around a node that hang together by faces with this node are a fan. Of several at one node all but the
-/// first get a node of their own, in the same place, so that the boundary has one ring of triangles at each node; it
-/// touches itself there. The tetrahedra stay what they were, and nodes keep their rows: new ones come behind. An edge
-/// around which tetrahedra have a gap stays one where both of its ends have a single fan.
+/// A fan is a set of tetrahedra around a node, connected by faces with this node. If a node has several fans, all but
+/// the first get a new node at the same position. The boundary then has one ring of triangles at each node and touches
+/// itself there. The shape of the tetrahedra is unchanged, and nodes keep their rows; new ones are appended. An edge
+/// around which the tetrahedra leave gaps stays unsplit if both of its ends have a single fan.
 PartedMesh part_fans(const Mesh& mesh);
 
 }  // namespace skerry::mesh

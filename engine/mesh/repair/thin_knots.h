@@ -1,4 +1,4 @@
-// A surface without its needles and caps: no tetrahedron behind a flat triangle is much thicker than that.
+// Removes needles and caps from a surface: a tetrahedron behind a flat triangle is hardly thicker than the triangle.
 #pragma once
 
 #include "skerry/mesh.h"
@@ -6,22 +6,21 @@
 namespace skerry::mesh {
 
 struct KnotSettings {
-    Real tolerance = 0;  // m, > 0: how far the surface may move
-    Real altitude = 0;   // m: triangles whose smallest altitude is less are mended
+    Real tolerance = 0;  // distance the surface may move; above 0 [m]
+    Real altitude = 0;   // triangles with a smaller altitude than this are repaired [m]
 };
 
 struct ThinnedSurface {
     SurfaceMesh surface;
-    std::size_t collapsed = 0, flipped = 0;  // edges
+    std::size_t collapsed = 0, flipped = 0;  // numbers of edges
 };
 
-/// Takes the flattest triangle again and again, and collapses or flips that edge of it which makes the smallest
-/// altitude around it largest, as long as there are triangles below `altitude` for which that helps. The surface stays
-/// as it is elsewhere. Every change keeps points of the old surface within the tolerance of the new one and the other
-/// way round, keeps what side triangles look to, and the topology (link condition: Dey, Edelsbrunner, Guha, Nekhayev,
-/// Topology preserving edge contraction, 1999). The surface is closed, and every edge has two triangles. It does not
-/// look for triangles that come to cut each other, which within a tolerance below the thickness of the body they do
-/// not. Deterministic.
+/// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips the edge of it
+/// that makes the smallest altitude around it largest. Triangles that no change improves are left. The surface is
+/// unchanged elsewhere. Every change keeps the topology (link condition: Dey, Edelsbrunner, Guha, Nekhayev, Topology
+/// preserving edge contraction, 1999), the orientation of triangles, and both surfaces within the tolerance of each
+/// other. The surface must be closed, with two triangles at every edge. Self-intersections are not checked: they do
+/// not occur with a tolerance below the thickness of the body. Deterministic.
 ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings);
 
 }  // namespace skerry::mesh

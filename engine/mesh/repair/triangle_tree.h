@@ -1,4 +1,4 @@
-// How far points are from a surface.
+// Distances of points from a surface.
 #pragma once
 
 #include <limits>
@@ -8,13 +8,13 @@
 
 namespace skerry::mesh {
 
-/// A surface that stays as it is, and a tree over its triangles.
+/// A constant surface, with a tree over its triangles.
 class TriangleTree {
 public:
-    /// At least one triangle.
+    /// The surface must have at least one triangle.
     explicit TriangleTree(SurfaceMesh surface);
 
-    /// m^2, to the nearest triangle, exact; `limit` (m^2) when nothing is nearer than that.
+    /// Exact squared distance to the nearest triangle, or `limit` if none is nearer than that [m^2].
     Real distance_squared(const Vec3& point, Real limit = std::numeric_limits<Real>::infinity()) const;
 
 private:

@@ -1,4 +1,4 @@
-// What the built-in shapes share: checks of what was asked for, and a tetrahedron the right way round.
+// Helpers of the built-in shapes: checks of parameters, and tetrahedra with positive orientation.
 #pragma once
 
 #include <array>
@@ -7,14 +7,14 @@
 
 namespace skerry::mesh {
 
-/// Appends a tetrahedron of the given nodes, in an order that makes it positive.
+/// Appends a tetrahedron with the given nodes, ordered so that its volume is positive.
 void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes);
 
-/// Throw std::invalid_argument that names what is wrong. A size has to be finite and positive, a count at least 1.
+/// Throw std::invalid_argument that names the parameter. A size must be finite and positive, a count at least 1.
 void require_size(const char* name, Real value);
 void require_count(const char* name, int value);
 
-/// Throws std::invalid_argument when so many tetrahedra would not fit a 32-bit index (four a tetrahedron).
+/// Throws std::invalid_argument if the corners of so many tetrahedra (four each) do not fit a 32-bit index.
 void require_fits(const char* name, double tetrahedra);
 
 }  // namespace skerry::mesh

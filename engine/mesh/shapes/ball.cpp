@@ -8,12 +8,12 @@
 namespace skerry::mesh {
 namespace {
 
-/// An icosahedron cut from its centre into 20 nearly regular tetrahedra, each of them into n^3, with the shells rounded
-/// to spheres. Every shell s has 10 s^2 + 2 nodes; six fivefold axes and no direction that a grid would prefer.
+/// Divides an icosahedron from its centre into 20 nearly regular tetrahedra, and each of them into n^3, for n shells.
+/// Shells are rounded to spheres; shell s has 10 s^2 + 2 nodes. Six fivefold axes leave no preferred grid direction.
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {
-        // Poles on z: a fivefold axis upright, so that a ball stands on a node and turns about z into itself.
+        // The poles are on z, with a vertical fivefold axis: a ball stands on a node and is fivefold about z.
         const Real height = 1 / std::sqrt(Real{5}), wide = 2 * height, fifth = 2 * std::acos(Real{-1}) / 5;
         corner_[0] = Vec3(0, 0, -1);
         corner_[11] = Vec3(0, 0, 1);
@@ -39,9 +39,9 @@ public:
     }
 
 private:
-    // barycentric: towards the three corners of the sector and (last) towards the centre
+    // barycentric steps: towards the three corners of the sector and (last) towards the centre
     using Steps = std::array<int, 4>;
-    // (corner, steps), sorted: the same from every sector that has the node
+    // (corner, steps), sorted: identical for all sectors that share the node
     using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
@@ -52,7 +52,7 @@ private:
         std::sort(key.begin(), key.end());
         const auto [place, added] = row_.try_emplace(key, static_cast<Index>(mesh_.nodes.size()));
         if (added) {
-            // On an edge this is exactly an even division of the arc; inside it stays close to even.
+            // On an edge this divides the arc evenly; inside a sector the spacing is nearly even.
             Vec3 direction = Vec3::Zero();
             for (const auto& [corner, count] : key)
                 if (count > 0)
@@ -83,8 +83,8 @@ private:
                     }
     }
 
-    /// Four tetrahedra about the shortest of the three diagonals (ends at places 2 d and 2 d + 1; of equal ones the
-    /// first).
+    /// Adds four tetrahedra around the shortest of the three diagonals, or the first of equal ones. The ends of
+    /// diagonal d are at places 2 d and 2 d + 1.
     void split_octahedron(const std::array<Index, 6>& n) {
         std::size_t best = 0;
         Real shortest = 0;
@@ -92,7 +92,7 @@ private:
             const Real length =
                 (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])])
                     .norm();
-            // Symmetric sectors have equal diagonals up to rounding: the margin makes the choice the same everywhere.
+            // Diagonals of symmetric sectors are equal up to rounding: the margin gives the same choice everywhere.
             if (d == 0 || length < shortest * (1 - 1e-9)) {
                 best = d;
                 shortest = length;
@@ -125,7 +125,7 @@ Mesh ball(Real radius, int resolution) {
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
     const SurfaceMesh skin = boundary(ball(radius, resolution));
-    // the corners of the icosahedron are where five faces meet, and not six
+    // corners of the icosahedron have five faces instead of six; they come first
     std::vector<int> faces(skin.nodes.size(), 0);
     for (const auto& triangle : skin.triangles)
         for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];

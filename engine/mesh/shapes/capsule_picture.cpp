@@ -6,16 +6,16 @@
 namespace skerry::mesh {
 namespace {
 
-constexpr int around = 16, caps = 4;  // nodes around the axis; rings of a round end, its rim included
+constexpr int around = 16, caps = 4;  // nodes around the axis; rings of a round end including its rim
 
-/// Two round ends, each cut from the middle of its ball, and wedges of the straight part between.
+/// Builds two round ends, each divided from the centre of its ball, and wedges for the straight part between them.
 class CapsuleBuilder {
 public:
     CapsuleBuilder(Real radius, Real length) : radius_(radius), half_(length / 2) {}
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // what tells how the body spins comes first: a pole and four places of the rim of either end
+        // nodes that show the rotation of the body come first: the pole and four places on the rim of both ends
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);
@@ -46,7 +46,8 @@ private:
                 add_tetrahedron(mesh_, {end, row(end, ring, k + 1), row(end, ring + 1, k), row(end, ring + 1, k + 1)});
         }
     }
-    /// Neighbours have the same diagonal of the side between them: from the lower end of the axis to the upper rim.
+    /// Neighbouring wedges use the same diagonal of their common side: from the lower end of the axis to the upper
+    /// rim.
     void fill_wedge(int k) {
         const Index a = row(0, 0, k), b = row(0, 0, k + 1), c = row(1, 0, k), d = row(1, 0, k + 1);
         add_tetrahedron(mesh_, {0, a, b, d});
@@ -54,7 +55,7 @@ private:
         add_tetrahedron(mesh_, {0, 1, c, d});
     }
 
-    const Real radius_, half_;  // m
+    const Real radius_, half_;  // [m]
     Mesh mesh_;
     Index row_[2][caps + 1][around] = {};
 };

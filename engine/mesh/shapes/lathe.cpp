@@ -12,10 +12,10 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-constexpr Real layer_height = 1.0;  // over the distance of rings: gives the largest of the smallest altitudes
-constexpr Real sharp_turn = 0.25;   // rad: a kink of the outline that is worth a layer of its own
-constexpr Real least_layer = 0.6;   // over the distance of rings: kinks closer than this to another layer are rounded
-constexpr Real point_radius = 0.3;  // over the distance of rings: narrower ends close to a point
+constexpr Real layer_height = 1.0;  // in units of the ring spacing: maximises the smallest altitude
+constexpr Real sharp_turn = 0.25;   // kinks of the outline above this angle get a layer of their own [rad]
+constexpr Real least_layer = 0.6;   // in units of the ring spacing: kinks closer than this to another layer are rounded
+constexpr Real point_radius = 0.3;  // in units of the ring spacing: narrower ends close to a point
 
 void check_profile(std::span<const ProfilePoint> profile) {
     if (profile.size() < 2)
@@ -36,8 +36,8 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Ends of the outline and its sharp kinks, sharpest first, as far as they leave room for layers between them.
-/// Ascending.
+/// Returns the ends of the outline and its sharp kinks, ascending. The sharpest come first when kinks are too close
+/// together for layers between them.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
@@ -80,7 +80,7 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is one point: planes that are as narrow beside it would only hold tiny elements.
+    // A pointed end is one point: equally narrow planes next to it would only contain tiny elements.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)
@@ -93,8 +93,8 @@ std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing
         discs.push_back(
             {planes[i], radius, std::clamp(static_cast<int>(std::lround(radius / spacing)), least, most_rings)});
     }
-    // Neighbours differ by one ring at most, as stack_discs needs it. The wider one gives way: elements may be longer,
-    // not shorter.
+    // Neighbouring discs may differ by one ring at most, as stack_discs requires. The wider disc is reduced: elements
+    // may become longer, not shorter.
     for (std::size_t i = 1; i < discs.size(); ++i) discs[i].rings = std::min(discs[i].rings, discs[i - 1].rings + 1);
     for (std::size_t i = discs.size() - 1; i-- > 0;) discs[i].rings = std::min(discs[i].rings, discs[i + 1].rings + 1);
     return discs;
@@ -120,7 +120,7 @@ Mesh cylinder(Real radius, Real height, int resolution) {
 
 Mesh skittle(Real height, int resolution) {
     require_size("skittle height", height);
-    // A ninepin: foot, belly at three tenths, neck at seven, head. Radius and z over the height.
+    // A ninepin: foot, belly at 0.3 of the height, neck at 0.7, head. Radius and z are relative to the height.
     std::array<ProfilePoint, 12> profile{{{0.110, 0.00},
                                           {0.134, 0.10},
                                           {0.147, 0.20},

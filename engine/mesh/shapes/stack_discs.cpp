@@ -10,8 +10,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Numbers of a disc's nodes: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on
-// how many rings follow, so node n of a disc stands above node n of the one below.
+// Node numbers of a disc: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on
+// the number of rings, so node n of a disc lies above node n of the disc below.
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
@@ -22,9 +22,9 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// The nodes of a disc are those of a hexagon of the triangular lattice, which three colours paint so that neighbours
-/// differ. The colours say which way the walls between prisms are cut: the same way at each corner of a sixth, so
-/// nothing turns the body to one side.
+/// Colours the nodes with three colours so that neighbours differ; topologically they form a hexagon of the triangular
+/// lattice. The colours determine the diagonals of the walls between prisms. All corners of a sixth are treated alike,
+/// so the mesh has no sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -85,7 +85,7 @@ private:
             for_each_triangle(ring, prism, prism);
         }
         if (below == above) return;
-        // The wider disc's last ring closes onto the shared ring of the narrower one.
+        // The last ring of the wider disc is closed onto the last ring of the narrower one.
         const std::size_t wide = below > above ? layer : layer + 1, narrow = below > above ? layer + 1 : layer;
         for_each_triangle(
             shared + 1,
@@ -95,8 +95,8 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// A wall of the layer is cut from its lower to its higher colour when one goes up, the other way round in the next
-    /// layer.
+    /// True if the diagonal of a wall rises from `from` to `to`: towards the higher colour in even layers, the lower
+    /// colour in odd ones.
     bool cut_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }
@@ -111,7 +111,7 @@ private:
         }
     }
 
-    /// The wall over nodes a and b, and a tip outside of it.
+    /// Adds a pyramid: the wall over nodes a and b, and a tip outside of it.
     void add_pyramid(std::size_t layer, int a, int b, Index tip) {
         if (!cut_rises(layer, a, b)) std::swap(a, b);
         add_tetrahedron(mesh_, {node(layer, a), node(layer, b), node(layer + 1, b), tip});

@@ -7,16 +7,16 @@
 
 namespace skerry::mesh {
 
-/// A disc about the z axis, triangulated by a centre and `rings` rings at equal distances, the k-th of 6 k nodes:
-/// nearly equilateral triangles all over. No rings: a point.
+/// A disc about the z axis, triangulated by a centre and `rings` equally spaced rings; ring k has 6 k nodes. The
+/// triangles are nearly equilateral. Without rings it is a point.
 struct Disc {
-    Real z;       // m
-    Real radius;  // m
+    Real z;       // [m]
+    Real radius;  // [m]
     int rings;
 };
 
-/// Fills the space between neighbouring discs. z ascends, neighbours differ by one ring at most and are not both
-/// points.
+/// Fills the space between neighbouring discs. z must ascend. Neighbours may differ by one ring at most and must not
+/// both be points.
 Mesh stack_discs(const std::vector<Disc>& discs);
 
 }  // namespace skerry::mesh

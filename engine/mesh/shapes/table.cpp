@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Cells of about `cell` metres, at least one.
+/// Number of cells of about `cell` metres, at least one.
 int cells_in(Real length, Real cell) {
     const Real count = std::round(length / cell);
     require_fits("table cells", count);

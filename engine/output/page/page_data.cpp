@@ -10,15 +10,15 @@
 namespace skerry {
 namespace {
 
-/// In the order of the alternatives of Shape.
+/// Names in the order of the alternatives of Shape.
 constexpr const char* kind_names[] = {"plane", "sphere", "box", "capsule", "cylinder", "bucket", "mesh"};
 static_assert(std::size(kind_names) == std::variant_size_v<Shape>);
 
-/// What field `field` of page_field_count is at a node.
+/// Value of a field at a node; `field` counts from 0 to page_field_count - 1.
 Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
     if (field == 0) return body.velocity[node].norm();
     if (field == stress_field) return von_mises(body.node_stress[node]);
-    return von_mises(body.node_strain[node]) * 2 / 3;  // the factor that makes it the strain along a bar in tension
+    return von_mises(body.node_strain[node]) * 2 / 3;  // the factor 2/3 gives the axial strain of a bar in tension
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void PageData::add(const Frame& frame) {
                      .regions = count_regions(frame.contacts)});
 }
 
-/// Scales have to be wide enough for all bodies of a frame before the first of them is packed.
+/// Widens the scales. This must happen for all bodies of a frame before the first of them is packed.
 void PageData::measure_body(const BodyFrame& body, std::size_t place) {
     SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size() &&
                  body.node_strain.size() == body.position.size());

@@ -1,4 +1,4 @@
-// What the page plays: frames packed small.
+// Data played by the page: frames in a compact encoding.
 #pragma once
 
 #include <array>
@@ -15,26 +15,26 @@
 
 namespace skerry {
 
-/// A collider as first seen. Planes have no triangles: the page draws them as far as it sees.
+/// A collider in the state in which it was first seen. Planes have no triangles: the page draws them itself.
 struct PageCollider {
     std::string name;
     std::string kind;  // plane, sphere, box, capsule, cylinder, bucket, mesh
     SurfaceMesh picture;
 };
 
-/// What the plots show of a frame.
+/// Values of one frame for the plots.
 struct PageRow {
-    Real time;  // s
+    Real time;  // [s]
     Energy energy;
     Index contacts, stick, slide, regions;
 };
 
-/// Packs frames as they come into one stream, compressed as a whole (docs/decisions/0016-page-stream.md). Counts and
-/// changes as in pack.h, the rest little-endian. A frame is
+/// Packs frames as they arrive into one stream, compressed as a whole (docs/decisions/0016-page-stream.md). Counts and
+/// changes are encoded as in pack.h, all other numbers are little-endian. A frame consists of
 ///   counts of bodies, colliders, contacts
-///   changes: exponents of four of the tops of speed, stress, strain and force (ValueScale), each from zero
-///   per body: count: its number; if it is new its shape, then positions, then values of each field (BodyStream)
-///   per collider: count: its number; f32 position[3] (m), rotation[3] (axis times angle)
+///   changes from zero: exponents e of the tops 4^e of speed, stress, strain and force (ValueScale)
+///   per body: count: its number; its shape if it is new; then positions, then values of each field (BodyStream)
+///   per collider: count: its number; f32 position[3] [m], rotation[3] (axis times angle)
 ///   contacts (ContactStream)
 class PageData {
 public:
@@ -46,7 +46,7 @@ public:
     std::span<const PageRow> rows() const { return rows_; }
     /// All frames, compressed.
     std::string packed_frames() const { return frames_.packed(); }
-    /// By field, in the order of page_field_count.
+    /// One per field, page_field_count in all.
     std::span<const Quantile> fields() const { return fields_; }
     const Quantile& force() const { return force_; }
     const Vec3& gravity() const { return gravity_; }
@@ -69,9 +69,9 @@ private:
     Quantile force_;
     std::array<ValueScale, page_field_count> field_scale_;
     ValueScale force_scale_;
-    Vec3 gravity_ = Vec3::Zero();  // m/s^2, of the first frame
-    // Scratch, kept for its memory: what the bodies of the frame have at their vertices, by body and field; which of
-    // them are new.
+    Vec3 gravity_ = Vec3::Zero();  // of the first frame [m/s^2]
+    // Scratch memory, kept between frames: values at the vertices of the frame's bodies by body and field, and flags
+    // of new bodies.
     struct BodyValues {
         Index number = 0;
         bool is_new = false;

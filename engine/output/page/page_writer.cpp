@@ -13,7 +13,7 @@ struct PageWriter::Impl {
 
 PageWriter::PageWriter(const std::filesystem::path& file, const std::string& title)
     : impl_(new Impl{.file = file, .title = title, .data = {}}) {
-    // What would fail after a long run is better said before it.
+    // Reports these failures before the run instead of after it.
     require_page_library(file);
     if (file.has_parent_path()) make_folder(file.parent_path());
 }

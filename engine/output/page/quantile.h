@@ -1,4 +1,4 @@
-// Quantiles of many positive numbers without keeping them.
+// Quantiles of many positive numbers without storing the numbers.
 #pragma once
 
 #include <cmath>
@@ -9,16 +9,17 @@
 
 namespace skerry {
 
-/// Counts values in bins 2 % wide, so that a legend can end where nearly all values do instead of at one extreme.
+/// Counts values in bins 2 % wide. A legend can then end where nearly all values do, instead of at one extreme value.
 class Quantile {
 public:
     void add(Real value) {
-        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero anyway
+        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero in any case
         ++bins_[static_cast<int>(std::floor(std::log(value) / log_width))];
         ++count_;
         if (value > max_) max_ = value;
     }
-    /// The value below which the fraction `share` of the positive ones lies, to 2 %; 0 when there are none.
+    /// Returns the value below which the fraction `share` of the positive values lies, accurate to 2 %; 0 if there are
+    /// none.
     Real at(Real share) const {
         std::uint64_t below = 0;
         for (const auto& [bin, count] : bins_) {

@@ -17,7 +17,7 @@ std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& pla
 
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach) {
-    // on a face the first of two tetrahedra has it, whichever way rounding goes
+    // a place on a face belongs to the first of its two tetrahedra, regardless of rounding
     constexpr Real rounding = 1e-9;
     for (const auto& corner : tetrahedra) {
         const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corner[k])]; };

@@ -1,4 +1,4 @@
-// Which material point lies at a place.
+// Finds the material point at a place.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@ struct MaterialPoint {
     std::array<Real, 4> weight{};
 };
 
-/// The corners of the tetrahedron that the place lies in, with its barycentric coordinates; the nearest node where it
-/// lies in none, but no further from that than `reach` (m); else nothing.
+/// Returns the corners of the tetrahedron that contains the place, with its barycentric coordinates. Outside all
+/// tetrahedra it returns the nearest node, if that is no further away than `reach` [m], or else nothing.
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach);
 
-/// Which node that is, and how far, m.
+/// Returns the nearest node and its distance [m].
 std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& place);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// What each kind of probe records: its columns, and their values at a time.
+// Columns recorded by each kind of probe, and their values at a time.
 #pragma once
 
 #include <vector>
@@ -7,29 +7,29 @@
 
 namespace skerry {
 
-/// What a probe of forces got since the row before.
+/// Sums of a force probe since the previous row.
 struct ForceSum {
-    Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();  // N s, N m s
+    Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();  // [N s], [N m s], [N s]
     Real pressing = 0, largest = 0, seconds = 0;
     Index contacts = 0;
 
     void add(const ForceReport& report);
 };
 
-/// A probe, and what it remembers.
+/// A probe with its accumulated state.
 struct TrackedProbe {
     RecordedProbe probe;
-    Vec3 origin = Vec3::Zero();  // m, of displacements
+    Vec3 origin = Vec3::Zero();  // reference of displacements [m]
     ForceSum force{};
 };
 
 bool measures_force(const RecordedProbe& probe);
-/// Refuses what the world does not have: throws SceneError.
+/// Starts a probe. Throws SceneError if the world does not have its body, collider or other object.
 TrackedProbe track(const World& world, RecordedProbe probe);
 void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
-/// Of the last call of advance, for probes of forces.
+/// Adds the forces of the last call of advance; only for force probes.
 void add_forces(const World& world, TrackedProbe& probe);
-/// Appends one value a column, and forgets the forces.
+/// Appends one value per column and resets the accumulated forces.
 void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values);
 
 }  // namespace skerry

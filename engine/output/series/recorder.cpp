@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real slack = 1e-9;  // of `every`: times are sums of steps
+constexpr Real slack = 1e-9;  // share of `every`; times are sums of steps and carry rounding
 
 [[noreturn]] void refuse(const std::string& name, const char* field, const std::string& found,
                          const std::string& expected) {
@@ -33,7 +33,7 @@ constexpr Real slack = 1e-9;  // of `every`: times are sums of steps
         .raise();
 }
 
-/// Says of which probe a complaint is.
+/// Calls function() and adds the name of the probe to its error messages.
 template <class Function>
 auto called_for(const RecordedProbe& probe, Function function) {
     try {
@@ -55,7 +55,7 @@ void check_names(const std::vector<RecordedProbe>& probes) {
     }
 }
 
-/// RFC 4180: in quotes where it has to be.
+/// Quotes a field as in RFC 4180 where necessary.
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -78,7 +78,7 @@ std::string csv_row(std::span<const Real> values) {
     return line + "\n";
 }
 
-/// Whole rows of a file of the same headings, up to a time.
+/// Returns the complete rows up to a time from a file with the same headings.
 std::string rows_to_keep(const std::filesystem::path& file, const std::string& head, Real until) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return {};
@@ -136,13 +136,13 @@ PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point) {
 struct Recorder::Impl {
     std::vector<TrackedProbe> probes;
     std::vector<SeriesColumn> columns;
-    Real every = 0, next = 0;  // s
+    Real every = 0, next = 0;  // [s]
     bool begun = false;
-    Real last_time = 0;        // s, of the last look
+    Real last_time = 0;        // time of the last call of sample() [s]
     std::vector<Real> values;  // row by row
     std::filesystem::path stream_file;
     std::ofstream stream;
-    std::uintmax_t stream_size = 0;  // bytes, of whole rows
+    std::uintmax_t stream_size = 0;  // size of the complete rows [bytes]
 
     std::size_t rows() const { return values.size() / columns.size(); }
     std::span<const Real> row(std::size_t number) const {
@@ -155,7 +155,7 @@ struct Recorder::Impl {
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
-        std::error_code ignored;  // rows are whole
+        std::error_code ignored;  // removes the incomplete row
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         Complaint{.file = stream_file.string(),
                   .object = "output",
@@ -193,7 +193,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    if (r.begun && !(time > r.last_time)) return;  // no time has passed: its forces were seen
+    if (r.begun && !(time > r.last_time)) return;  // no time has passed since the last call, which added these forces
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
     r.last_time = time;
@@ -205,7 +205,7 @@ void Recorder::sample(const World& world) {
         r.values.push_back(time);
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { put_row(world, probe, r.values); });
     } catch (...) {
-        r.values.resize(before);  // rows are whole
+        r.values.resize(before);  // removes the incomplete row
         throw;
     }
     if (r.stream.is_open()) r.put(csv_row(r.row(r.rows() - 1)));
@@ -232,7 +232,7 @@ void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real>
     r.stream_file = file;
     errno = 0;
     r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
-    std::error_code ignored;  // of a pipe, which has none
+    std::error_code ignored;  // a pipe has no size
     r.stream_size = std::filesystem::file_size(file, ignored);
     if (!r.stream) r.put("");
 }

@@ -1,4 +1,4 @@
-// One VTK XML file: a header of tags, and all arrays as raw bytes behind it.
+// One VTK XML file: a header of tags, followed by all arrays as raw bytes.
 #pragma once
 
 #include <bit>
@@ -27,28 +27,28 @@ inline constexpr std::string_view vtk_type<std::int32_t> = "Int32";
 template <>
 inline constexpr std::string_view vtk_type<std::uint8_t> = "UInt8";
 
-/// Shortest text that reads back as the same number, whatever the locale.
+/// Returns the shortest text that reads back as the same number, in any locale.
 std::string number_text(double value);
 
-/// Texts of the field data, which ParaView shows as an array of strings.
+/// Texts in the field data; ParaView shows them as an array of strings.
 struct VtkTexts {
     std::string_view name;
     std::span<const std::string> texts;
 };
 
-/// Put together in the order of the format (VTK file formats, "XML file formats", appended data): tags, and for each
-/// array its raw little-endian bytes behind a count of 64 bits. Raw, not base64: a third smaller, and every reader of
-/// VTK's own takes it.
+/// Assembles a file in the order of the format (VTK file formats, "XML file formats", appended data): tags, then for
+/// each array a 64-bit count and its raw little-endian bytes. Raw bytes take a quarter less space than base64, and all
+/// of VTK's own readers accept them.
 class VtkFile {
 public:
-    /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a file
-    /// of its own.
+    /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a
+    /// file that is opened alone.
     VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts = {});
 
     void open(std::string_view tag, std::string_view attributes = "");
     void close(std::string_view tag);
 
-    /// An array of `tuples` rows; fill(put) calls put(value) for each of their components, in order.
+    /// Adds an array of `tuples` rows; fill(put) calls put(value) for each of their components, in order.
     template <class T>
     void array(std::string_view name, int components, std::size_t tuples, auto&& fill) {
         begin_array(vtk_type<T>, name, components);

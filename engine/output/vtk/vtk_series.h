@@ -1,4 +1,4 @@
-// A series of VTK files from frames.
+// Writes a series of VTK files from frames.
 #pragma once
 
 #include <filesystem>
@@ -11,30 +11,30 @@
 
 namespace skerry {
 
-/// Whether a series of that name writes files of that file name.
+/// True if a series called `name` may write a file with this file name.
 bool is_series_file(std::string_view file_name, std::string_view name);
 
-/// NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, whenever a collider came, went or moved, NAME_colliders_0000.vtp;
-/// NAME.pvd lists them by time. Bodies and colliders are numbered in the order in which they were first seen, and keep
-/// their number. Throws SceneError where an earlier series of the name cannot be replaced. The first frame takes the
-/// place of all of an earlier series of the name: what is there under the names above is removed, and nothing else. A
-/// frame that cannot be written whole leaves nothing.
+/// Writes NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, if a collider was added, removed or moved,
+/// NAME_colliders_0000.vtp. NAME.pvd lists them by time. Bodies and colliders are numbered in the order of their first
+/// appearance and keep their number. The first frame removes all files of an earlier series with the same name, as far
+/// as they have the above names, and nothing else. Throws SceneError if they cannot be replaced. A frame that cannot
+/// be written completely leaves no files.
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
-    /// As if `frames` frames had been written, `frame_step` seconds apart, `now` being the last: those that are there
-    /// are listed.
+    /// Continues a series as if `frames` frames had been written, `frame_step` seconds apart, `now` being the last.
+    /// Existing files of these frames are listed in the index.
     void go_on(const Frame& now, std::size_t frames, Real frame_step);
-    /// In the order in which materials were added; "material NUMBER" of those that are not named.
+    /// Names in the order in which materials were added. Materials without a name become "material NUMBER".
     void name_materials(std::vector<std::string> names) { material_names_ = std::move(names); }
     void write_frame(const Frame& frame);
     void write_index() const;
 
 private:
     struct Entry {
-        Real time;         // s
+        Real time;         // [s]
         int part;          // 0 bodies, 1 contacts, 2 colliders
-        std::string file;  // beside the index
+        std::string file;  // in the folder of the index
     };
 
     void remove_earlier();
@@ -48,7 +48,7 @@ private:
     void measure_patch(const Frame& frame);
     std::string frame_file(const char* what, const char* extension) const;
 
-    std::vector<std::filesystem::path> earlier_;  // files of an earlier series of this name, its index first
+    std::vector<std::filesystem::path> earlier_;  // files of an earlier series with this name, its index first
     std::filesystem::path folder_;
     std::string name_;
     std::size_t frame_count_ = 0;
@@ -56,11 +56,11 @@ private:
     std::map<ColliderHandle, Index> collider_number_;
     std::vector<std::string> body_names_, collider_names_;  // by number
     std::vector<std::string> material_names_;
-    std::map<BodyHandle, std::vector<Vec3>> origin_;                    // m, by node: where a body was first seen
+    std::map<BodyHandle, std::vector<Vec3>> origin_;  // positions at the first appearance of a body, by node [m]
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;  // as last written
-    std::string colliders_file_;                                        // last written
-    Vec3 patch_center_ = Vec3::Zero();                                  // m, of the pictures of planes
-    Real patch_half_size_ = 0;                                          // m, 0: not measured yet
+    std::string colliders_file_;                                        // last file written
+    Vec3 patch_center_ = Vec3::Zero();                                  // centre of the displayed part of planes [m]
+    Real patch_half_size_ = 0;  // half size of the displayed part of planes; 0: not measured yet [m]
     std::vector<Entry> entries_;
 };
 

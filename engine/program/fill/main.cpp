@@ -1,8 +1,8 @@
-// skerry-fill: a closed surface from standard input, tetrahedra inside of it to a file. A program of its own, so that
-// Netgen (LGPL), and the CAD libraries, Tcl, Python and MPI that Debian's build of it loads, stay out of `skerry`, and
-// a surface on which it fails ends this process alone. Called by `skerry inspect --repair`.
+// skerry-fill: reads a closed surface from standard input and writes tetrahedra inside it to a file. It is a separate
+// program for two reasons. Netgen (LGPL), and the CAD libraries, Tcl, Python and MPI that Debian's build of it loads,
+// stay out of `skerry`. A failure on some surface ends this process alone. `skerry inspect --repair` calls it.
 //
-// In: "NODES TRIANGLES LARGEST_EDGE", lines "x y z", lines "a b c" counted from 0. Out, to file descriptor 3:
+// Input: "NODES TRIANGLES LARGEST_EDGE", lines "x y z", lines "a b c" counted from 0. Output, to file descriptor 3:
 // "NODES TETRAHEDRA", lines "x y z", lines "a b c d" counted from 0.
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace nglib {
 
 namespace {
 
-constexpr int output = 3;  // standard output is full of Netgen's own messages
+constexpr int output = 3;  // standard output receives Netgen's own messages
 
 bool read_surface(nglib::Ng_Mesh* mesh, nglib::Ng_Meshing_Parameters& settings) {
     long nodes = 0, triangles = 0;
@@ -65,6 +65,6 @@ int main() {
     settings.optsteps_3d = 5;
     if (!read_surface(mesh, settings)) return 2;
     if (nglib::Ng_GenerateVolumeMesh(mesh, &settings) != nglib::NG_OK) return 1;
-    // Without the libraries' own clean-up at exit, which is not ours to debug.
+    // Skips the libraries' clean-up at exit, which is outside our control.
     std::_Exit(write_mesh(mesh) ? 0 : 2);
 }

@@ -40,11 +40,11 @@ std::string CaseHasher::hash(std::span<const std::string> assignments) {
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;
-    files_[file] = 0;  // of one that is not there, or that includes itself
+    files_[file] = 0;  // value for a missing file, or one that includes itself
     Hash hash;
     std::ifstream stream(file, std::ios::binary);
     add_text({std::istreambuf_iterator<char>(stream), {}}, hash);
-    // The two files of TetGen name each other by their names alone.
+    // The two files of TetGen belong together by name only; neither mentions the other.
     for (const auto& [one, other] : {std::pair{".node", ".ele"}, std::pair{".ele", ".node"}})
         if (file.extension() == one) {
             std::ifstream beside(std::filesystem::path(file).replace_extension(other), std::ios::binary);

@@ -1,4 +1,4 @@
-// One number for all that the result of a case follows from.
+// One number for all inputs that determine the result of a case.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace skerry {
 
 class Hash;
 
-/// Hashes of cases of one scene: of what its file holds after a case's assignments, and of the scene and mesh files
-/// that this names. Files are read once.
+/// Hashes cases of one scene: the content of its file after a case's assignments, and all scene and mesh files that it
+/// names. Each file is read once.
 class CaseHasher {
 public:
     /// Throws SceneError for a scene that cannot be read.
     explicit CaseHasher(const std::filesystem::path& scene);
-    /// "0x" and 16 digits. Assignments that cannot be carried out are hashed as they are.
+    /// Returns "0x" and 16 digits. Assignments that fail are hashed as text.
     std::string hash(std::span<const std::string> assignments);
     const Json& scene() const { return scene_; }
 
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);
-    /// Walks all that names a file: "include", "file".
+    /// Adds the hashes of all files named by the keys "include" and "file".
     void add_files(const Json& json, const std::filesystem::path& of, Hash& hash);
 
     std::filesystem::path file_;

@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-constexpr double bar_interval = 0.1;      // s
-constexpr double first_line_after = 1;    // s
-constexpr double longest_interval = 600;  // s, between two lines
+constexpr double bar_interval = 0.1;      // [s]
+constexpr double first_line_after = 1;    // [s]
+constexpr double longest_interval = 600;  // longest time between two lines [s]
 
 }  // namespace
 

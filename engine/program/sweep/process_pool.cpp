@@ -17,7 +17,7 @@ namespace skerry {
 
 namespace {
 
-/// Holds the signals back that the pool waits for, so that none comes between a look and the wait.
+/// Blocks the signals that the pool waits for, so that none arrives unnoticed between a check and the wait.
 class HeldSignals {
 public:
     HeldSignals() {
@@ -29,13 +29,13 @@ public:
     HeldSignals(const HeldSignals&) = delete;
     HeldSignals& operator=(const HeldSignals&) = delete;
 
-    /// The next of them, or 0 after half a second.
+    /// Returns the next of these signals, or 0 after half a second.
     int next() const {
-        const timespec patience{0, 500000000};  // ns
+        const timespec patience{0, 500000000};  // [ns]
         const int number = sigtimedwait(&held_, nullptr, &patience);
         return number > 0 ? number : 0;
     }
-    /// For a process that is to have them as they were.
+    /// Restores the previous signal mask, for a child process.
     void let_go() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
 
 private:
@@ -75,12 +75,12 @@ private:
     void begin_jobs() {
         while (may_begin_ && next_ < count_ && static_cast<int>(running_.size()) < at_once_) {
             std::cout.flush();
-            std::fflush(nullptr);  // or both would write it
+            std::fflush(nullptr);  // otherwise parent and child would both write the buffered output
             const pid_t parent = getpid(), process = fork();
             if (process == 0) in_child(parent);
             if (process < 0 && running_.empty()) throw std::system_error(errno, std::generic_category(), "no process");
             if (process < 0) {
-                at_once_ = static_cast<int>(running_.size());  // as many as there may be
+                at_once_ = static_cast<int>(running_.size());  // the system allows no more processes
                 return;
             }
             running_.push_back({process, next_++});
@@ -91,11 +91,11 @@ private:
         for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
         signals_.let_go();
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (getppid() != parent) _exit(1);  // it had ended before
+        if (getppid() != parent) _exit(1);  // the parent ended before prctl took effect
         const int code = calls_.run(next_);
         std::cout.flush();
         std::fflush(nullptr);
-        _exit(code);  // leaving what the parent will do at its end to the parent
+        _exit(code);  // skips exit handlers, which belong to the parent
     }
 
     void collect() {

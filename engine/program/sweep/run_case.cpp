@@ -16,7 +16,7 @@ double seconds_of(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// Of this process, all its life.
+/// CPU time of this process since its start [s].
 double cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -65,7 +65,7 @@ int run_to_file(const CaseJob& job) {
 }  // namespace
 
 int run_case(const CaseJob& job) {
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that would get too large is an error like any other
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes an ordinary write error
     try {
         return run_to_file(job);
     } catch (const std::exception& error) {

@@ -22,7 +22,7 @@ public:
 
     bool has(const char* name) const { return text(name) != nullptr; }
 
-    /// Empty where it is not set.
+    /// Returns nothing if the variable is not set.
     std::optional<int> number(const char* name) const {
         const char* const found = text(name);
         if (found == nullptr) return {};
@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    /// Empty counts as not set: so scripts switch a variable off.
+    /// Treats an empty variable as not set, because scripts disable a variable that way.
     const char* text(const char* name) const {
         const char* const value = environment_(name);
         return value != nullptr && *value != '\0' ? value : nullptr;
@@ -51,7 +51,7 @@ void require_within(const Share& share, const std::string& who) {
                      "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
 }
 
-/// Tasks of one job: the launcher that is nearest to this process, which may have been started by the others.
+/// Rank among the tasks of one job. The innermost launcher comes first: the others may have started it.
 Share task_share(const Variables& variables) {
     struct Launcher {
         const char *rank, *of;
@@ -60,7 +60,7 @@ Share task_share(const Variables& variables) {
         {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
     for (const Launcher& launcher : launchers) {
         const bool slurm = std::strcmp(launcher.rank, "SLURM_PROCID") == 0;
-        // what sbatch starts has a rank, 0, and the number of tasks that it may start, but is no step
+        // a process started by sbatch has rank 0 and the number of possible tasks, but is not a job step
         if (slurm && variables.has("SLURM_JOB_ID") && !variables.has("SLURM_STEP_ID")) continue;
         const char* const count = slurm && variables.has("SLURM_STEP_NUM_TASKS") ? "SLURM_STEP_NUM_TASKS" : launcher.of;
         const std::optional<int> rank = variables.number(launcher.rank), of = variables.number(count);
@@ -72,7 +72,7 @@ Share task_share(const Variables& variables) {
     return {};
 }
 
-/// Jobs of a SLURM array, whose numbers may begin anywhere and be some apart.
+/// Rank among the jobs of a SLURM array, whose numbers may start anywhere and have a constant stride.
 Share array_share(const Variables& variables) {
     const std::optional<int> id = variables.number("SLURM_ARRAY_TASK_ID");
     if (!id) return {};

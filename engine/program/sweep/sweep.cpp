@@ -1,4 +1,4 @@
-// The command: which cases are left, running them, the table when all are there.
+// The command `skerry sweep`: finds the missing cases, runs them and writes the table once all are done.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/file.h>
@@ -24,12 +24,12 @@ namespace skerry {
 
 namespace {
 
-/// That the system lets this process use: those of its cgroup's set or of who bound it, not all of the machine.
+/// Number of cores that the system lets this process use: those of its cgroup or CPU affinity, not all of the machine.
 int cores_here() {
     cpu_set_t set;
     CPU_ZERO(&set);
     if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
-    return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));  // more cores than such a set can name
+    return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));  // a cpu_set_t cannot represent all cores
 }
 
 std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
@@ -39,11 +39,11 @@ std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
     return mine;
 }
 
-/// Of those cases, the ones without a result. Refuses results of other cases, unless they may go.
+/// Returns those of the cases `mine` that have no result. Refuses results of other cases unless `redo` is set.
 std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
     std::vector<int> left;
     int others = 0;
-    std::string first;  // of the others
+    std::string first;  // description of the first such file
     for (const int index : mine) {
         const CaseFile file = plan.read(index);
         if (file.state == CaseFileState::other && others++ == 0)
@@ -79,7 +79,7 @@ void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
               << " of them are done; results in " << plan.folder.string() << std::endl;
 }
 
-/// Holds other processes off the files of the whole sweep while it lives, where the file system can.
+/// Locks the folder of results against other processes during its lifetime, if the file system supports it.
 class FolderLock {
 public:
     explicit FolderLock(const std::filesystem::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -115,7 +115,7 @@ void write_tables(const SweepPlan& plan, const SweepTable& table, bool quiet) {
     if (!quiet) std::cout << table_text(table) << "wrote " << csv.string() << "\nwrote " << page.string() << std::endl;
 }
 
-/// What cases that came to no end have left behind.
+/// Removes partial files of cases that did not end.
 void remove_unfinished(const SweepPlan& plan, int index) {
     std::error_code ignored;
     std::filesystem::remove(case_file(plan.folder, index) += ".part", ignored);
@@ -133,7 +133,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
     const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
     const auto goes_on = [&](int, int code) {
-        run.output_failed |= code == exit_output;  // what does not fit now will not later
+        run.output_failed |= code == exit_output;  // a full disk will not have space for later cases either
         return !run.output_failed;
     };
     const auto show = [&](int done, int running) { progress.show(done, running); };
@@ -147,7 +147,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     return run;
 }
 
-/// Whether no case of this process failed, was refused or is doubted.
+/// True if no case of this process failed, was refused or has warnings.
 bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
     return std::ranges::all_of(mine, [&](int index) {
         const CaseFile file = plan.read(index);
@@ -161,21 +161,22 @@ bool is_there(const SweepPlan& plan, int index) {
     return std::filesystem::exists(case_file(plan.folder, index), error);
 }
 
-/// Whether every case has a file. Of many processes most find one that has none soon, and read no other's results.
+/// True if every case has a file. With many processes most of them soon find a missing file and read no results of
+/// others.
 bool all_there(const SweepPlan& plan) {
     for (int i = 0; i < plan.cases.count(); ++i)
         if (!is_there(plan, i)) return false;
     return true;
 }
 
-/// The table, where all have a result; else how to go on.
+/// Writes the table if all cases have a result; otherwise prints how to continue.
 void conclude(const SweepPlan& plan, const std::vector<int>& mine, const SweepOptions& options) {
     if (options.table || all_there(plan)) {
         const SweepTable table = collect(plan);
         if (options.table || count_missing(table) == 0) return write_tables(plan, table, options.quiet);
     }
     if (options.quiet) return;
-    // by their files: a process may have been stopped after it had written its own
+    // counts files, because a stopped process may have written its result before it ended
     const auto there = std::ranges::count_if(mine, [&](int index) { return is_there(plan, index); });
     const bool all = there == static_cast<std::ptrdiff_t>(mine.size());
     std::cout << there << " of " << mine.size() << " cases of this process have a result in " << plan.folder.string()
@@ -191,7 +192,7 @@ int exit_code_of(const SweepPlan& plan, const std::vector<int>& mine, const Swee
     return options.strict && !all_good(plan, mine) ? exit_failed : exit_ok;
 }
 
-/// Results do not take the place of what is read.
+/// Refuses a folder in which results would replace the input files.
 void check_folder(const SweepPlan& plan, const SweepOptions& options) {
     require_writable_folder(plan.folder);
     for (const char* name : {"sweep.csv", "sweep.html"}) require_writable_file(plan.folder / name);
@@ -236,7 +237,7 @@ int sweep(const SweepOptions& options) {
     }
     try {
         conclude(plan, mine, options);
-    } catch (const SceneError& error) {  // of a table: the results are there
+    } catch (const SceneError& error) {  // only the table failed: the results exist
         std::cerr << "skerry: " << error.what() << std::endl;
         return exit_output;
     }

@@ -18,7 +18,7 @@ std::vector<std::string> keys_of(const Json& json, const char* key) {
     return names;
 }
 
-/// Sets one place of a scene. A value of a material that is not there would make one that no body has.
+/// Sets one place of a scene. Refuses to create a new material by setting one of its values: no body would use it.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
@@ -32,7 +32,7 @@ void try_place(const Place& of, const std::string& place, const Json& value, con
                       nearest_hint(name, before));
 }
 
-/// Whether one of the scenes can be read says whether the sweep was meant.
+/// Requires that at least one of the first cases gives a readable scene; otherwise the sweep itself is wrong.
 void require_a_readable_case(const SweepPlan& plan) {
     const SweepFile& file = plan.file;
     constexpr int most_tried = 100;
@@ -52,7 +52,7 @@ void require_a_readable_case(const SweepPlan& plan) {
         .refuse_inner("no case is a scene that can be read; " + first);
 }
 
-/// Tries all places on the scene; those of a list case by case.
+/// Tries all places on the scene. For a list each case is tried, otherwise only the first.
 void require_places(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

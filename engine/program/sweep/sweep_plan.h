@@ -1,4 +1,4 @@
-// A sweep before it runs: its cases, whether the scene knows what they set, and where their files are.
+// Plan of a sweep before it runs: its cases, checked against the scene, and the paths of their files.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@ namespace skerry {
 struct SweepPlan {
     SweepFile file;
     Cases cases;
-    std::filesystem::path folder;     // of the results
-    std::vector<std::string> hashes;  // by case
+    std::filesystem::path folder;     // folder of the results
+    std::vector<std::string> hashes;  // one hash per case
 
     CaseJob job(int index, bool probes) const;
     CaseFile read(int index) const;
 };
 
-/// Reads cases and scene. Throws SceneError for places that the scene has not, and where none of the cases (of many:
-/// of the first hundred) is a scene that can be read: one that cannot is a result.
+/// Reads cases and scene. Throws SceneError for places that do not exist in the scene, and if none of the first
+/// hundred cases gives a readable scene. A single case with an unreadable scene is a result.
 SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace skerry

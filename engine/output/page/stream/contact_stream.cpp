@@ -13,7 +13,7 @@ auto key_of(const ContactSides& sides, const std::array<Index, 4>& node) {
     return std::tuple(sides, node);
 }
 
-/// The lattice that the point of a contact is on, and where its first point is.
+/// Returns the lattice for the point of a contact, and the first vertex of its body on that lattice.
 std::pair<Lattice, Code3> place_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
     const Index body = sides.first >= 0 ? sides.first : sides.second;
     if (body < 0) return {Lattice{}, Code3{}};

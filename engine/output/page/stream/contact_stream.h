@@ -1,4 +1,4 @@
-// The contacts of the page, frame after frame, as changes.
+// Encodes the contacts of the page, frame after frame, as changes.
 #pragma once
 
 #include <compare>
@@ -13,22 +13,23 @@
 
 namespace skerry {
 
-/// What a contact touches, in numbers of the page; -1: none.
+/// Both sides of a contact, as body and collider numbers of the page; -1: none.
 struct ContactSides {
     Index first = -1, second = -1, collider = -1;
 
     auto operator<=>(const ContactSides&) const = default;
 };
 
-/// Finds contacts of the frame before again by the nodes that touch, and says what has changed.
+/// Matches contacts with those of the previous frame by the touching nodes, and encodes the changes.
 class ContactStream {
 public:
-    /// By contact: 0 if it is new, else one more than the zigzag of how far its row in the frame before is from that
-    /// after the row of the last one found. Then for each new one first, second, collider, each plus one. Then by
-    /// contact, each as its change since the frame before, of new ones since the row above if that has the same first
-    /// body, else from zero (points: from the first vertex of that body): x, y, z of the point on the lattice of the
-    /// first body, or else the second, or else one of 1 um; x, y, z of the force and its normal part, on the scale.
-    /// Last by contact: change of the region since the row above; u8 state (0 open, 1 stick, 2 slide).
+    /// Writes per contact 0 if it is new, else 1 + zigzag(its row in the previous frame - expected row); the row after
+    /// the last match is expected. Then per new contact: first, second, collider, each plus one. Then, component by
+    /// component for all contacts, x, y, z of the point, x, y, z of the force and its normal part, each as a change.
+    /// The reference is the contact in the previous frame. For a new contact it is the row above if that has the same
+    /// first body, else zero (points: first vertex of the body). Points use the lattice of the first body, or else of
+    /// the second, or else one of 1 um. Last, for all contacts the change of the region since the row above, then for
+    /// all u8 state (0 open, 1 stick, 2 slide).
     void put_frame(const Frame& frame, std::span<const ContactSides> sides, const std::vector<BodyStream>& bodies,
                    const ValueScale& force, std::string& out);
 
@@ -40,7 +41,7 @@ private:
         std::array<Index, 4> node;
         std::array<std::int64_t, number_count> code;
     };
-    /// Rows of rows_ in the order of what touches.
+    /// Sorts the rows of the previous frame by sides and nodes, into order_prev_.
     void sort_rows();
     Index find(const ContactSides& sides, const std::array<Index, 4>& node) const;
 

@@ -1,4 +1,4 @@
-// Bytes made few (zlib, RFC 1950), as browsers undo it with DecompressionStream("deflate").
+// Compresses bytes (zlib, RFC 1950). Browsers decompress them with DecompressionStream("deflate").
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Takes bytes as they come and keeps only what they are packed into.
+/// Compresses bytes as they arrive and stores only the compressed ones.
 class Deflater {
 public:
     Deflater();
@@ -16,7 +16,7 @@ public:
     Deflater& operator=(Deflater&&) noexcept;
 
     void add(std::string_view bytes);
-    /// All bytes so far, packed, with the end that makes them whole. More can be added afterwards.
+    /// Returns all bytes so far as a complete compressed stream. More bytes can be added afterwards.
     std::string packed() const;
 
 private:

@@ -1,4 +1,4 @@
-// Numbers as bytes.
+// Encodes numbers as bytes.
 #pragma once
 
 #include <bit>
@@ -21,13 +21,13 @@ inline void put_floats(std::string& out, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(out, static_cast<float>(v[axis]));
 }
 
-/// Seven bits a byte, the lowest first; all bytes but the last have the eighth bit set (LEB128).
+/// Writes seven bits per byte, lowest first; all bytes but the last have the eighth bit set (LEB128).
 inline void put_count(std::string& out, std::uint64_t value) {
     for (; value > 127; value >>= 7) out += static_cast<char>((value & 127) | 128);
     out += static_cast<char>(value);
 }
 
-/// 0, -1, 1, -2, ... as 0, 1, 2, 3, ...: small changes of either sign are small counts.
+/// Maps 0, -1, 1, -2, ... to 0, 1, 2, 3, ...: small changes of either sign become small counts.
 constexpr std::uint64_t zigzag(std::int64_t value) {
     return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
 }
@@ -36,7 +36,7 @@ inline void put_change(std::string& out, std::int64_t value) {
     put_count(out, zigzag(value));
 }
 
-/// The bytes in base64 (RFC 4648).
+/// Encodes bytes in base64 (RFC 4648).
 std::string base64(std::string_view bytes);
 
 }  // namespace skerry

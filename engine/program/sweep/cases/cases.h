@@ -1,4 +1,4 @@
-// The cases of a sweep: which values each of them has.
+// Cases of a sweep and the values of their parameters.
 #pragma once
 
 #include <optional>
@@ -10,29 +10,29 @@
 namespace skerry {
 
 struct Parameter {
-    std::string name;                 // heads its column
-    std::vector<std::string> places;  // all get its value
-    Place place;                      // in the file of cases
+    std::string name;                 // heading of its column
+    std::vector<std::string> places;  // places in the scene that all get its value
+    Place place;                      // position in the file of cases
 };
 
 struct Cases {
     std::vector<Parameter> parameters;
-    std::vector<std::vector<std::optional<Json>>> values;  // by case and parameter; of a list some have none
+    std::vector<std::vector<std::optional<Json>>> values;  // by case and parameter; a list may lack some
 
     int count() const { return static_cast<int>(values.size()); }
 };
 
-/// All cases in their order: of a grid the last parameter varies first. Throws SceneError for more than a million, and
-/// where two parameters have one name or one place.
+/// Expands all cases in order; in a grid the last parameter varies first. Throws SceneError for more than a million
+/// cases, and if two parameters have the same name or the same place.
 Cases cases_of(const SweepFile& sweep);
 
-/// PLACE=VALUE for `skerry run --set`, in the order in which they are carried out.
+/// PLACE=VALUE for `skerry run --set`, in the order of execution.
 std::vector<std::string> assignments_of(const SweepFile& sweep, const Cases& cases, int index);
 
-/// "mu=0.3, E=1e5"
+/// Returns, for example, "mu=0.3, E=1e5".
 std::string case_text(const Cases& cases, int index);
 
-/// Columns of every table beside those of the parameters, which may not be called so.
+/// Columns that every table has in addition to the parameters. No parameter may have one of these names.
 inline constexpr std::string_view case_column = "case", status_column = "status", message_column = "message",
                                   doubts_column = "doubts_text", hash_column = "state_hash";
 

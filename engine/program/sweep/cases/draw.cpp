@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// To 12 significant digits: 0.3 rather than 0.30000000000000004, and no last bits that arithmetic left.
+/// Rounds to 12 significant digits: 0.3 instead of 0.30000000000000004, without differences in the last bits.
 double rounded(double value) {
     char text[40];
     std::snprintf(text, sizeof text, "%.12g", value);
@@ -20,12 +20,12 @@ double rounded(double value) {
 
 double natural_log(double x) {
     int exponent = 0;
-    double mantissa = std::frexp(x, &exponent);  // 0.5 to below 1
+    double mantissa = std::frexp(x, &exponent);  // in [0.5, 1)
     if (mantissa < std::numbers::sqrt2 / 2) {
         mantissa *= 2;
         --exponent;
     }
-    // log m = 2 artanh s; s^2 is at most 0.0295, so that the last term is below 1e-19
+    // log m = 2 artanh s; s^2 is at most 0.0295, so the last term is below 1e-19
     const double s = (mantissa - 1) / (mantissa + 1), square = s * s;
     double sum = 0;
     for (int k = 25; k >= 1; k -= 2) sum = sum * square + 1.0 / k;
@@ -34,7 +34,7 @@ double natural_log(double x) {
 
 double exponential(double x) {
     const double turns = std::floor(x / std::numbers::ln2 + 0.5);
-    const double rest = x - turns * std::numbers::ln2;  // at most 0.35
+    const double rest = x - turns * std::numbers::ln2;  // absolute value at most 0.35
     double sum = 1;
     for (int k = 18; k >= 1; --k) sum = 1 + sum * rest / k;
     return std::ldexp(sum, static_cast<int>(turns));

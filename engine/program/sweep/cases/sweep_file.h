@@ -1,4 +1,4 @@
-// What a file of cases says, key by key.
+// Content of a file of cases, key by key.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace skerry {
 
-/// One file each: what a folder can hold, and less than a typing mistake asks for.
+/// Each case has a file. A folder can hold this many; a larger count is more likely a typing mistake.
 inline constexpr int most_cases = 1000000;
 
-/// Any JSON: whether it fits its place is for the scene to say.
+/// Any JSON value. The scene checks later whether it fits its place.
 struct AnyValue {
     Json json;
 };
@@ -42,7 +42,7 @@ struct EnumNames<Distribution> {
     }};
 };
 
-/// A parameter of a grid: its values one by one, or from one number to another.
+/// A parameter of a grid: a list of values, or a range from one number to another.
 struct GridEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -53,7 +53,7 @@ struct GridEntry {
     Place place;
 };
 
-/// A parameter that is drawn.
+/// A parameter with random values.
 struct DrawnEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -70,11 +70,11 @@ struct RandomEntry {
 };
 
 struct SweepFile {
-    std::string schema;  // for editors, otherwise unused
+    std::string schema;  // used by editors only
     std::string name;
     std::string description;
     FilePath scene;
-    Named<AnyValue> set;  // in every case
+    Named<AnyValue> set;  // assignments of every case
     std::vector<GridEntry> grid;
     std::vector<Named<AnyValue>> list;
     std::optional<RandomEntry> random;

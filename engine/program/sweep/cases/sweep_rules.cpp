@@ -1,4 +1,4 @@
-// The keys of a file of cases.
+// Keys of a file of cases.
 #include <cmath>
 
 #include "engine/program/sweep/cases/sweep_file.h"
@@ -14,7 +14,7 @@ const KeyDoc set_doc{.meaning = "the place in the scene, as `skerry run --set` t
                      .required = true};
 const KeyDoc name_doc{.meaning = "of the column in tables; by default the place"};
 
-/// Whole numbers up to here are doubles without a gap.
+/// All whole numbers up to this one are exact as doubles.
 constexpr Real most_whole = 9007199254740992.0;  // 2^53
 
 void check_ends(const Place& place, Real from, Real to, bool log) {

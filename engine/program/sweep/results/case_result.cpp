@@ -21,7 +21,7 @@ Json json_of_figures(const CaseResult& result) {
     return figures;
 }
 
-/// Throws nlohmann's exceptions for what write_case has not written.
+/// Throws nlohmann's exceptions for documents that write_case has not written.
 CaseResult result_from(const Json& json) {
     CaseResult result;
     json.at("case").get_to(result.index);
@@ -120,7 +120,7 @@ CaseFile read_case(const std::filesystem::path& file, int index, const std::stri
             return read;
         }
         return {CaseFileState::whole, result_from(json), {}};
-    } catch (const std::exception&) {  // nlohmann's, or a status that is none
+    } catch (const std::exception&) {  // nlohmann's exceptions, or an invalid status
         return read;
     }
 }

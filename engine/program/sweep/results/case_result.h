@@ -1,4 +1,4 @@
-// What came of one case, and its file.
+// Result of one case, and its file.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// ok: simulated to its end; failed: a step could not be committed; refused: the scene is not understood or cannot
-/// begin.
+/// ok: simulated to its end; failed: a step could not be committed; refused: the scene is invalid or cannot be
+/// started.
 enum class CaseStatus { ok, failed, refused };
 template <>
 struct EnumNames<CaseStatus> {
@@ -26,34 +26,34 @@ struct EnumNames<CaseStatus> {
 struct CaseResult {
     int index = 0;
     CaseStatus status = CaseStatus::ok;
-    std::string message;              // why it failed or was refused
-    std::vector<std::string> doubts;  // why not to rely on it
-    std::string state_hash;           // of its end; empty where it did not begin
-    // One number each for tables, by name with its unit, such as seconds_cpu; of a refused one none but that.
+    std::string message;              // reason for failure or refusal
+    std::vector<std::string> doubts;  // warnings: reasons not to rely on the result
+    std::string state_hash;           // hash of the final state; empty if the case did not start
+    // Numbers for tables, named with their unit, such as seconds_cpu. A refused case has only this one.
     std::vector<std::pair<std::string, double>> figures;
 };
 
-/// What stands in the file of a case beside its result.
+/// Content of a case's file besides its result.
 struct CaseHead {
     std::string sweep, scene, case_hash;
-    Json parameters;                       // values by name
-    std::vector<std::string> assignments;  // for `skerry run --set`, which runs the same case
+    Json parameters;                       // parameter values by name
+    std::vector<std::string> assignments;  // arguments of `skerry run --set` that run the same case
 };
 
-/// The figures of a run that ended by itself. `seconds_cpu`: of all the process did for it.
+/// Result of a run that ended by itself. `seconds_cpu`: all CPU time that the process spent on it [s].
 CaseResult result_of(const RunResult& run, double seconds_cpu);
 
 std::filesystem::path case_file(const std::filesystem::path& folder, int index);
-/// The whole file, or none. `report`: the document of `skerry run --stats`; null where there was no run.
+/// Writes the whole file or none. `report`: document of `skerry run --stats`; null without a run.
 void write_case(const std::filesystem::path& file, const CaseHead& head, const CaseResult& result, const Json& report);
 
-/// What the file of a case is. whole: it has the result of this case; missing: there is none; other: it has that of
-/// another case, or is no result.
+/// State of a case's file. whole: it has the result of this case; missing: it does not exist; other: it has the result
+/// of another case, or is not a result.
 enum class CaseFileState { whole, missing, other };
 struct CaseFile {
     CaseFileState state = CaseFileState::missing;
-    CaseResult result;  // of a whole one
-    std::string found;  // of another one, what it is
+    CaseResult result;  // for whole files
+    std::string found;  // for other files: a description of the content
 };
 CaseFile read_case(const std::filesystem::path& file, int index, const std::string& case_hash);
 

@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// JSON within a script: "</" would end it.
+/// JSON for use inside a script element, which "</" would end.
 std::string script_text(const Json& json) {
     std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
@@ -23,7 +23,7 @@ Json rows_json(const SweepTable& table) {
         Json values = Json::object(), figures = Json::object();
         for (std::size_t p = 0; p < table.cases.parameters.size(); ++p)
             if (table.cases.values[i][p]) values[table.cases.parameters[p].name] = *table.cases.values[i][p];
-        for (const auto& [name, value] : file.result.figures) figures[name] = value;  // null where not finite
+        for (const auto& [name, value] : file.result.figures) figures[name] = value;  // null if not finite
         rows.push_back({{"case", i},
                         {"status", whole ? name_of(file.result.status) : "not run"},
                         {"message", file.result.message},
@@ -34,7 +34,7 @@ Json rows_json(const SweepTable& table) {
     return rows;
 }
 
-/// The text with `mark` replaced, once.
+/// Replaces the first occurrence of `mark` in the text.
 void put_in(const std::string& mark, const std::string& part, std::string& text) {
     const std::size_t at = text.find(mark);
     if (at != std::string::npos) text.replace(at, mark.size(), part);
@@ -52,7 +52,7 @@ std::string table_page(const SweepTable& table) {
                        {"figures", figure_names(table)},
                        {"rows", rows_json(table)}};
     std::string page(sweep_page_html);
-    put_in("@DATA@", script_text(data), page);  // behind the title, whose mark is the first of its kind then too
+    put_in("@DATA@", script_text(data), page);  // first: it follows @TITLE@, so the next search finds the mark
     put_in("@TITLE@", escape_markup(table.sweep.name), page);
     return page;
 }

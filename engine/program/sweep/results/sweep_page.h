@@ -1,10 +1,10 @@
-// The page of a sweep, which the build embeds (sweep_page.html).
+// Page of a sweep, embedded by the build (sweep_page.html).
 #pragma once
 
 #include <string_view>
 
 namespace skerry {
 
-extern const std::string_view sweep_page_html;  // with @TITLE@ and @DATA@ where these go
+extern const std::string_view sweep_page_html;  // contains the placeholders @TITLE@ and @DATA@
 
 }  // namespace skerry

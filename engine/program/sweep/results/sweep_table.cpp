@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-constexpr int most_lines = 60;  // of cases on the terminal
+constexpr int most_lines = 60;  // largest number of cases printed on the terminal
 constexpr int most_messages = 10;
 
 using Cells = std::vector<std::string>;
@@ -23,7 +23,7 @@ double figure_of(const CaseResult& result, std::string_view name) {
     return found == result.figures.end() ? std::nan("") : found->second;
 }
 
-/// Of the figures, those of the table on the terminal.
+/// Figures shown in the table on the terminal.
 std::vector<std::string> shown_figures(const SweepTable& table) {
     std::vector<std::string> shown{"seconds_simulated", "steps",         "seconds_cpu",
                                    "contacts_mean",     "penetration_m", "energy_error_share"};
@@ -106,7 +106,7 @@ std::string totals_text(const SweepTable& table) {
     return text + "; " + duration_text(cpu) + " of CPU in all\n";
 }
 
-/// What a sweep would be for, if not for this.
+/// Note for a sweep whose cases all ended in the same state; otherwise empty.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;
     int same = 0;
@@ -128,7 +128,7 @@ std::string csv_cell(const std::string& text) {
     return quoted + "\"";
 }
 
-/// With all digits; whole numbers without a point.
+/// Writes all digits; whole numbers have no decimal point.
 std::string csv_number(double value) {
     if (!std::isfinite(value)) return {};
     constexpr double exact = 1e15;

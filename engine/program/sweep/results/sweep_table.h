@@ -1,4 +1,4 @@
-// All cases of a sweep side by side: for people, for spreadsheets, for the page.
+// All cases of a sweep side by side: as text for people, as CSV for spreadsheets and as a web page.
 #pragma once
 
 #include <string>
@@ -12,20 +12,21 @@ namespace skerry {
 struct SweepTable {
     const SweepFile& sweep;
     const Cases& cases;
-    std::vector<CaseFile> files;  // by case
+    std::vector<CaseFile> files;  // one per case
 };
 
-/// Names of all figures, in the order in which cases bring them.
+/// Names of all figures, in order of their first appearance.
 std::vector<std::string> figure_names(const SweepTable& table);
 
-/// A line a case with what says most, then why cases failed or were refused, and what they cost. Of many cases the
-/// first ones.
+/// One line for each case with the most important figures, then the reasons of failed and refused cases, and the total
+/// cost. Long lists are cut.
 std::string table_text(const SweepTable& table);
 
-/// RFC 4180: parameters, status and all figures of each case; what is not known is empty.
+/// Table as RFC 4180: parameters, status and all figures of each case. Unknown values are empty.
 std::string table_csv(const SweepTable& table);
 
-/// A page for a browser, in one file: the same table, and any figure over any parameter. The drawing is its own.
+/// Web page in one file: the table, and a plot of any figure over any parameter. The page draws without external
+/// libraries.
 std::string table_page(const SweepTable& table);
 
 }  // namespace skerry
