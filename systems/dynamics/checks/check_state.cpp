@@ -88,7 +88,7 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 struct Fastest {
     Real rate_squared = 0;  // |F'|^2 over the square of the leeway [1/s^2]
     Index node = no_index;
-    Index element = no_index;  // of the tetrahedra: lane of a block
+    Index element = no_index;  // number of a tetrahedron: lane of a block
 
     void look_at(const Fastest& other) {
         if (other.rate_squared > rate_squared) *this = other;

@@ -25,10 +25,10 @@ struct StrainRate {
 /// Why a step must not be committed.
 struct StepVerdict {
     StepFault fault = StepFault::none;
-    Index body = no_index;         // row of BodyTable
-    Index node = no_index;         // row of NodeTable, if one node causes the fault
-    Real value = 0;                // too_fast: norm of the change of F in this step, over the leeway;
-                                   // too_far: spacing of floating-point coordinates over the mean edge
+    Index body = no_index;  // row of BodyTable
+    Index node = no_index;  // row of NodeTable, if one node causes the fault
+    Real value = 0;         // too_fast: norm of the change of F in this step, over the leeway;
+                            // too_far: spacing of floating-point coordinates over the mean edge; not_finite: unused
     Index tetrahedron = no_index;  // lane of a block, if one tetrahedron causes the fault
     StrainRate fastest = {};       // set by check_state unless the fault is not_finite
 };
@@ -44,7 +44,7 @@ struct CheckInputs {
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
     std::span<const ElementLane> tetrahedron_leeway = {};     // factor on max_strain_step; empty: 1
-    std::span<const Range> body_blocks = {};                  // BodyTable; empty: one check by the mean velocity
+    std::span<const Range> body_blocks = {};                  // BodyTable; empty: see check_state
     // ElementBlockTable, ElementNodeTable; empty: tetrahedra are the elements
     std::span<const Range> body_element_blocks = {};
     std::span<const Index> element_first = {}, element_count = {};

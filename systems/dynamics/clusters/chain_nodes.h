@@ -56,7 +56,7 @@ struct NodeChains {
         };
         for_each([&](Index, Index n) { nodes.push_back(n); });
         if (nodes.empty()) return;
-        // the nodes of a body lie side by side
+        // the nodes of a body are consecutive rows
         const auto ends = std::ranges::minmax(nodes);
         first = ends.min;
         sets.start(static_cast<std::size_t>(ends.max - first) + 1);

@@ -212,7 +212,7 @@ ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     constexpr int rounds_of_sharing = 4;  // between two rounds that make elements implicit
     constexpr int rounds_of_estimates = 24;
-    constexpr Real most_change = 4;  // of a share in a round, so that a hopeless element does not starve its neighbours
+    constexpr Real most_change = 4;  // per round, of a share, so that a hopeless element does not starve its neighbours
     start_mass_shares(elements_, blocks_, out_.mass_share);
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;

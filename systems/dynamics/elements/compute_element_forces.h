@@ -135,8 +135,8 @@ struct ElementMemory {
 /// lane by lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
 /// `rotation` and write next.rotation; other models write no frame. Patches of bodies that are left out keep their
 /// forces. `kick`: time for which forces act [s]. `kick_over_last`: `kick` over that of the step before; 0 if
-/// next.viscous_strain no longer holds the strain from before that step. The dissipated energy is then exact to first
-/// order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel over patches.
+/// next.viscous_strain no longer holds the strain from before that step. With 0 the dissipated energy is exact to
+/// first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, Real kick_over_last,
                             std::span<const ElementRotation> rotation, const ElementMemory& next,

@@ -186,7 +186,7 @@ template <class Positions, class Load>
     return F;
 }
 
-/// F = sum_k (x_k - x_0) (x) g_k of a part of a block; with velocities for positions, its rate.
+/// F = sum_k (x_k - x_0) (x) g_k of a part of a block. If `position` holds velocities: the rate of F.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
@@ -199,7 +199,7 @@ template <class Positions, class Load>
     return gradient_of_part(block, part, position, load_corner<PatchRows<const Real>>);
 }
 
-/// F of all lanes of a block; with velocities for positions, its rate.
+/// F of all lanes of a block. If `position` holds velocities: the rate of F.
 inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<const Vec3> position) {
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }

@@ -38,7 +38,7 @@ struct JointWorkInputs {
     }
 };
 
-/// Sequential, in the order of the blocks.
+/// Sums the work of all joints, and the impulses from the world and from held bodies. Sequential, in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry
