@@ -86,8 +86,7 @@ ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std:
       measured_(frequency_.size()),
       trace_(frequency_.size()) {
     const std::size_t count =
-        nodes_.empty() ? 0
-                       : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // including rows between them
+        nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // gaps included
     if (count > 0) first_node_ = nodes_.front();
     marks_.resize(count);
     sum_.resize(count);
