@@ -22,8 +22,8 @@ Vec3 motion(const CheckInputs& state, std::size_t node) {
     return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
-/// Of a block: in the world, and in a frame that moves with `frame` (m/s). Not a number when any node's velocity is not
-/// finite, or so large that its square is not.
+/// Greatest squared speeds in a node block: in the world, and in a frame with the velocity `frame` [m/s]. NaN if the
+/// velocity of a node is not finite, or so large that its square is not.
 std::array<Real, 2> max_speeds_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
     const auto begin = static_cast<std::size_t>(state.block_begin[block]);
     const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
@@ -60,7 +60,7 @@ Real highest_lane(const Real8& of) {
     return highest;
 }
 
-/// The highest value of `count` rows, none below 0. The same in whatever order the rows are looked at.
+/// The highest value of `count` rows, at least 0. It does not depend on the order in which the rows are evaluated.
 template <class Value>
 Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job, Value&& value) {
     std::atomic<Real> highest{0};
@@ -74,8 +74,7 @@ Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job,
     return highest.load();
 }
 
-/// Whether any row of `count` has a value above a limit. The answer does not depend on the order in which the blocks
-/// run.
+/// True if `exceeds` holds for any of `count` rows. The answer does not depend on the order in which the jobs run.
 template <class Exceeds>
 bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job, Exceeds&& exceeds) {
     std::atomic<bool> found{false};
@@ -87,22 +86,22 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // 1/s^2: |F'|^2 over the square of the leeway
+    Real rate_squared = 0;  // |F'|^2 over the square of the leeway [1/s^2]
     Index node = no_index;
-    Index element = no_index;  // row: lane of a block
+    Index element = no_index;  // number of a tetrahedron: lane of a block
 
     void look_at(const Fastest& other) {
         if (other.rate_squared > rate_squared) *this = other;
     }
 };
 
-/// Columns: corners 1 to 3 less corner 0.
+/// Columns: velocities of corners 1 to 3 minus that of corner 0 [m/s].
 LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
     const LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
     return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
 }
 
-/// Of three vectors, the square of the longest.
+/// Squared length of the longest column.
 Real8 widest_parting(const LaneMat3<Real8>& parting) {
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
@@ -114,8 +113,8 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// |F'|^2 over the square of the leeway, F' = [v_k - v_0] [X_k - X_0]^-1, of each element of a block; 0 in a lane that
-/// is left over.
+/// |F'|^2 over the square of the leeway, F' = [v_k - v_0] [X_k - X_0]^-1, of each tetrahedron of a block; 0 in an
+/// unused lane [1/s^2].
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -129,9 +128,9 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Squares of how fast the tetrahedra of a block deform, 1/s^2: as |F'|, but not faster than their corners part, over
-/// the altitude. 0 in all lanes where none is faster than `rate` (1/s): in most corners do not even part by that.
-/// `part_at_most`: m/s, no two nodes of the body part faster.
+/// Squared deformation rates of the tetrahedra of a block: |F'|, or the relative speed of corners over the altitude if
+/// that is less [1/s^2]. 0 in all lanes if none is faster than `rate` [1/s]; in most blocks the corners alone show
+/// this. `part_at_most`: bound on the relative speed of two nodes of the body [m/s].
 Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -144,7 +143,8 @@ Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, 
     return by_corners < by_gradient ? by_corners : by_gradient;
 }
 
-/// The greatest of these in a block, where it is above the square of `rate`; else 0. Marks the nodes of all that are.
+/// The greatest squared deformation rate in a block if it is above the square of `rate`, else 0 [1/s^2]. Marks the
+/// nodes of all tetrahedra above it.
 Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
                         std::span<std::uint8_t> beside_fast) {
     const Real8 squared = deforming_squared(state, block, rate, part_at_most);
@@ -159,7 +159,7 @@ Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, 
     return highest_lane(squared);
 }
 
-/// The tetrahedron of a block that deforms fastest, and its corner that parts fastest from corner 0.
+/// The tetrahedron of a block that deforms fastest, and its corner that is fastest relative to corner 0.
 Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     const Real8 rate_squared = rate_squared_of(state, block, parting_of(state, block));
     Fastest fastest;
@@ -178,14 +178,14 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// The greatest |F'|^2 over the square of the leeway (1/s^2) of the elements of a block, if any has a marked node;
-/// else 0.
+/// The greatest |F'|^2 over the square of the leeway among the elements of a block if any node is marked, else 0
+/// [1/s^2].
 Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
-    // a guard is of one tetrahedron, not of a mean
+    // F of a guard is that of one tetrahedron, not a mean
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
-    unsigned marked = 0;  // more than half of what it takes to look at a block are the gradients
+    unsigned marked = 0;  // tested first: gradients are over half of the cost of a block
     for (Index k = 0; k < count; ++k)
         for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)
             marked |= beside_fast[static_cast<std::size_t>(n)];
@@ -197,7 +197,8 @@ Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<con
     return highest_lane(inner_product(change, change) / (leeway * leeway));
 }
 
-/// Relative to the mean velocity of the body: a coarser measure, for a body whose elements are not given.
+/// The node that is fastest relative to the mean velocity of the body. A coarser measure, for a body whose tetrahedra
+/// are not given.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
     const std::size_t begin = static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]);
@@ -211,8 +212,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// Whether any node of a body moves away from the first one by so much in a second that a tetrahedron of the least
-/// altitude may deform faster than `rate` (1/s).
+/// True if a node of a body moves so fast relative to the first one that a tetrahedron of the least altitude may deform
+/// faster than `rate` [1/s].
 bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
@@ -227,9 +228,9 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
     });
 }
 
-/// How fast the elements of a body deform, 1/s, where any does faster than `rate`; else 0. Tests from cheap to dear,
-/// each asked only where the one before fails. F' of an element is a mean of those of its tetrahedra. `part_at_most`:
-/// m/s, no two nodes of the body part faster.
+/// Deformation rate of the fastest element of a body if it is above `rate`, else 0 [1/s]. Tests go from cheap to
+/// expensive; each runs only if the one before fails. F' of an element is a mean of those of its tetrahedra.
+/// `part_at_most`: bound on the relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;
@@ -254,7 +255,7 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
     return where_faster(std::min(of_tetrahedra, of_elements));
 }
 
-/// Who is to blame for a body that deforms too fast: the first of those that deform fastest.
+/// The tetrahedron and node to report for a body that deforms too fast: the first of the fastest ones.
 Fastest fastest_of(const CheckInputs& state, std::size_t body) {
     if (state.body_blocks.empty())
         return fastest_from_mean(state, state.body_node_blocks[body], state.body_min_altitude[body]);
@@ -293,7 +294,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     StepVerdict verdict;
     beside_fast.resize(state.velocity_next.size());
     const Real looked_for = max_strain_step / std::max(h, longest);
-    // two nodes part at most at twice the highest speed
+    // the relative speed of two nodes is at most twice the highest speed
     const auto may_be_fast = [&](std::size_t body) {
         const Real altitude = state.body_min_altitude[body];
         return altitude > 0 && 2 * speed.body_frame[body] > looked_for * altitude;

@@ -15,10 +15,10 @@ namespace skerry {
 
 namespace {
 
-// Smaller bodies share a job of as many.
+// Blocks of a part. Parts of small bodies share a job of at most as many blocks.
 constexpr Index blocks_per_part = 256;
 
-// Looks at a narrow block, of which the first finds its width: half of what a look takes.
+// Checks of a narrow block per computation of its width, which is half of the cost of a check.
 constexpr std::uint8_t looks_at_narrow = 8;
 
 // Blocks whose budgets are tested together, without a branch for each.
@@ -32,7 +32,8 @@ Real8 larger(const Real8& a, const Real8& b) {
     return a > b ? a : b;
 }
 
-/// Four faces and three pairs of opposite edges: the planes that can be nearest are parallel to one of these.
+/// The largest squared cross product of four faces and three pairs of opposite edges. The nearest parallel planes
+/// around a tetrahedron are parallel to one of these.
 Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     const LaneVec3<Real8> e01 = e.c1 - e.c0, e02 = e.c2 - e.c0, e12 = e.c2 - e.c1;
     const Real8 faces = larger(larger(squared(cross(e.c0, e.c1)), squared(cross(e.c1, e.c2))),
@@ -41,7 +42,7 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     return larger(faces, pairs);
 }
 
-/// m, of the narrowest element of a block; of inverted ones, too: they may turn back, and over again.
+/// Width of the narrowest tetrahedron of a block [m]. Inverted ones count: they may turn back and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     const Real8 left_over = Real8{} + std::numeric_limits<Real>::infinity();
@@ -56,9 +57,9 @@ Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
 struct Body {
     const InversionInputs& inputs;
     Real h;
-    Real reach;         // m, that a node can move in this step
-    Real travel_bound;  // m, travel with it
-    Real travel_base;   // m: a budget begins here (measure_displacement.h)
+    Real reach;         // greatest motion of a node in this step [m]
+    Real travel_bound;  // bound on the travel after this step [m]
+    Real travel_base;   // travel at which a new budget begins (measure_displacement.h) [m]
 
     Body(const InversionInputs& of, Real step, Index body)
         : inputs(of),
@@ -68,7 +69,7 @@ struct Body {
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
     void look(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> looks_left) const {
-        // All are asked for before the first is looked at: they are out of the cache since the step before.
+        // All blocks are prefetched before the first is checked: since the last step they have left the cache.
         std::array<std::size_t, blocks_per_part> due;
         std::size_t due_count = 0;
         SKERRY_CHECK(static_cast<std::size_t>(part.blocks.size()) <= due.size());
@@ -98,14 +99,14 @@ struct Body {
     }
 
 private:
-    /// An implicit element makes no step unstable, whatever becomes of it; a sliver turns over by a motion that strains
-    /// much only what fills next to nothing.
+    /// False for tetrahedra whose inversion is harmless. An implicit element never makes a step unstable. A motion that
+    /// inverts a sliver strains only a negligible volume by much.
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
     }
 
-    /// visit(begin, end) of some blocks that follow each other.
+    /// Calls visit(begin, end) for groups of at most blocks_at_once consecutive blocks.
     static void for_each_group(Range blocks, auto&& visit) {
         const auto end = static_cast<std::size_t>(blocks.end);
         for (auto b = static_cast<std::size_t>(blocks.begin); b < end; b += blocks_at_once)
@@ -145,16 +146,16 @@ private:
     }
 };
 
-/// Cuts the bodies that can have come far enough into parts, and these into jobs.
+/// Splits the bodies that may have moved far enough into parts, and groups the parts into jobs.
 void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> body_uninverted_until,
                 InversionMemory& memory) {
     memory.part.clear();
     memory.job.clear();
-    // whichever bodies are due in a later step
+    // enough for any later step, whichever bodies it checks
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);
-    Index open = blocks_per_part;  // of the last job
+    Index open = blocks_per_part;  // blocks in the last job
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;
@@ -172,7 +173,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     memory.job.push_back(static_cast<Index>(memory.part.size()));
 }
 
-/// What the parts of one body found, added to what was found before it.
+/// Adds the results of the parts of one body to those of the bodies before it.
 void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
               Inversions& found) {
     const Index body = parts.front().body;

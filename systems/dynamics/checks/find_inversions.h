@@ -1,4 +1,4 @@
-// Which tetrahedra the step would turn inside out (docs/methods/time_stepping.md 4.2).
+// Finds the tetrahedra that the step would turn inside out (docs/methods/time_stepping.md 4.2).
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
     std::span<const ElementLane> tetrahedron_leeway;   // empty: 1
-    std::span<const std::uint8_t> tetrahedron_sliver;  // empty: none is one
+    std::span<const std::uint8_t> tetrahedron_sliver;  // empty: there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
     std::span<const Vec3> position;                 // m, at the start of the step
-    std::span<const Vec3> velocity_next, push_out;  // push_out: empty: no contact pushes
-    std::span<const Range> body_rigid = {};         // BodyTable; rigid bodies are not looked at; empty: none is
+    std::span<const Vec3> velocity_next, push_out;  // m/s; push_out may be empty: no contact pushes
+    std::span<const Range> body_rigid = {};         // BodyTable; rigid bodies are skipped; empty: there are none
 
-    /// `pushed`: some contact pushes.
+    /// `pushed`: true if some contact pushes.
     static InversionInputs bind(const Binder& binder, const TetrahedronBlockTable& tetrahedron, const BodyTable& body,
                                 const NodeTable& node, const bool& pushed) {
         return {.tetrahedron_node = binder.read(tetrahedron.node),
@@ -45,26 +45,28 @@ struct InversionInputs {
 /// Tetrahedra whose volume is positive at the start of the step and not at its end.
 struct Inversions {
     Index count = 0;
-    Index body = no_index;         // row of BodyTable, of the first
-    Index tetrahedron = no_index;  // of the table: lane of a block
-    // some body of them had no inverted tetrahedron before; slivers and what implicit elements cover do not count
+    Index body = no_index;         // of the first one: row of BodyTable
+    Index tetrahedron = no_index;  // the first one: lane of a block of the table
+    // true if one of the bodies had no inverted tetrahedron before; slivers and tetrahedra that implicit elements cover
+    // do not count
     bool first = false;
 };
 
-/// Some blocks of a body that is due, and what was found in them.
+/// Some blocks of a body that has to be checked, and the results for them.
 struct InversionPart {
     Index body = no_index;
     Range blocks{0, 0};
-    Real uninverted_until = 0;                // m, the least of them
-    Index count = 0, tetrahedron = no_index;  // that the step turns over, and the first of them
-    bool judged = false;                      // some of them neither slivers nor with leeway
+    Real uninverted_until = 0;                // least value of the blocks [m]
+    Index count = 0, tetrahedron = no_index;  // tetrahedra that the step inverts, and the first
+    bool judged = false;                      // one of them is neither a sliver nor has leeway
 };
 
 /// Working memory, kept between steps.
 struct InversionMemory {
-    Column<InversionPart> part;  // of all bodies that are due, in their order
-    Column<Index> job;           // first rows of `part`, for each job, and their count
-    // by block of tetrahedra: looks that do without a new budget, since one is so narrow that it would be spent at once
+    Column<InversionPart> part;  // parts of all bodies to check, in body order
+    Column<Index> job;           // first row of `part` for each job, then the number of parts
+    // by block of tetrahedra: checks left before the next budget is computed; above 0 only if a tetrahedron is so
+    // narrow that a budget would be spent at once
     Column<std::uint8_t> looks_left;
 };
 
@@ -77,10 +79,10 @@ struct InversionBudgets {
     }
 };
 
-/// Looks only where the body can have come far enough: a tetrahedron is not turned over before its corners have moved
-/// by half of its width, the distance of the two nearest parallel planes around it. So slivers are looked at often, the
-/// rest of their body is not. Budgets are written where tetrahedra are looked at, of blocks that are too narrow for one
-/// in every eighth look. Parallel over parts of bodies.
+/// Checks tetrahedra only if their body may have moved far enough. A tetrahedron cannot invert before its corners have
+/// moved by half of its width, the distance of the two nearest parallel planes around it. So slivers are checked often,
+/// the rest of their body rarely. Every check of a block writes a new budget; in blocks too narrow for a budget only
+/// every eighth check does. Parallel over parts of bodies.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

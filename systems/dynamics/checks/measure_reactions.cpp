@@ -15,13 +15,14 @@ bool is_awake(const ReactionInputs& inputs, Index body) {
     return inputs.kind[b] == BodyKind::deformable && !inputs.asleep[b];
 }
 
-/// Whether its nodes are held one by one.
+/// True if the nodes of a body are held one by one, not as a rigid body.
 bool counts(const ReactionInputs& inputs, Index body) {
     const auto b = static_cast<std::size_t>(body);
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
-/// What takes a rigid body along, against its weight, loads and contacts, or keeps the frame of an implicit one.
+/// Adds the impulse that moves a rigid body against its weight, loads and contacts. For an implicit body adds the
+/// moment that holds its frame.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
@@ -40,14 +41,14 @@ void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_
     }
 }
 
-/// Part of its velocity that damping takes from a node of a body that is held.
+/// Fraction of its velocity that a node of a held body loses to damping.
 Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) {
     const Index material = inputs.body_material[body];
     return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * kick);
 }
 
-/// Rows of held nodes in the added inertia of the implicit elements (docs/methods/clusters.md 1): what changes the
-/// velocities of moving nodes there pulls at the held ones, too. Damping does not act by that inertia.
+/// Adds the rows of held nodes in the added inertia of the implicit elements (docs/methods/clusters.md 1): a change of
+/// the velocities of moving nodes also gives an impulse to held ones. Damping does not act through that inertia.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);
@@ -84,7 +85,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     SKERRY_CHECK(inputs.velocity_before.size() == inputs.velocity.size());
     reactions.assign(count, {});
     node_impulse.resize(inputs.position.size());
-    // What each held node was given, once, whichever attachments hold it.
+    // The impulse on each held node; every attachment that holds it finds the same value.
     for (std::size_t a = 0; a < count; ++a) {
         if (!counts(inputs, inputs.attached_body[a])) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
@@ -97,7 +98,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     Index last = no_index;
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
-        // attachments of one body need not stand together: a body is done at its first
+        // attachments of one body need not be adjacent: a body is treated at the first one
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
@@ -105,7 +106,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     }
     for (std::size_t a = 0; a < count; ++a)
         if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, kick, moment_point, a, reactions[a]);
-    // From the last attachment back: the first that takes the impulse of a node has it.
+    // In reverse order, so that the impulse of a node goes to the last attachment that holds it.
     for (std::size_t a = count; a-- > 0;) {
         if (!counts(inputs, inputs.attached_body[a])) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);

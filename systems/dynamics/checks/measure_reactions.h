@@ -1,4 +1,4 @@
-// What attachments gave to their bodies in this step.
+// Impulses of attachments on their bodies in this step.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct ReactionInputs {
     std::span<const Range> attached;       // by attachment: range in `held`
     std::span<const Index> attached_body;  // by attachment: row of BodyTable
     std::span<const Index> held;           // nodes, of all attachments
-    std::span<const Vec3> held_impulse;    // N s, by node: what contacts gave to it
-    // m/s, by node: velocities of held nodes before the step
+    std::span<const Vec3> held_impulse;    // by node: impulse of contacts [N s]
+    // by node: velocities of held nodes before the step [m/s]
     std::span<const Vec3> velocity_before;
     // by node
     std::span<const Vec3> position, velocity, velocity_next;
@@ -41,7 +41,7 @@ struct ReactionInputs {
     std::span<const std::uint8_t> asleep;
     std::span<const BodyKind> kind;
     std::span<const Range> blocks;
-    std::span<const Real> cluster_step;  // s; 0: no implicit element
+    std::span<const Real> cluster_step;  // 0: no implicit element [s]
     std::span<const Index> body_material;
     std::span<const Real> material_damping;  // 1/s
     // by element block
@@ -91,11 +91,11 @@ struct ReactionInputs {
     }
 };
 
-/// One row an attachment: what takes its nodes to the velocities of this step against the forces of elements, weight
-/// and loads, the impulses of contacts and the inertia of implicit elements. Moments about `moment_point`. A node that
-/// several attachments hold counts for the last one, whose motion it follows. Of bodies at rest, and of colliders,
-/// nothing. A rigid body is held as a whole, by the last attachment that does. `node_impulse` is memory, by node.
-/// Sequential.
+/// Writes one row per attachment: the impulse that takes its nodes to the velocities of this step against the forces of
+/// elements, weight and loads, the impulses of contacts and the inertia of implicit elements. Moments are about
+/// `moment_point`. A node that several attachments hold counts for the last one, whose motion it follows. Attachments
+/// of bodies at rest and of colliders have zero rows. A rigid body counts as a whole for the last attachment that holds
+/// it. `node_impulse` is scratch, by node. Sequential.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

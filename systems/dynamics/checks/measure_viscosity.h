@@ -1,4 +1,4 @@
-// Energy taken by the viscosity of implicit elements (docs/methods/clusters.md 2).
+// Energy dissipated by the viscosity of implicit elements (docs/methods/clusters.md 2).
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace skerry {
 
-/// Energy taken by the viscous impulses of the elements that are not left out [J]: impulse times the rate of F, the
-/// mean of the rates before and after the step, since velocities change by much within a step of the highest modes.
-/// `impulse` and `viscous` as compute_element_forces left them. `patches`: their blocks. Parallel over patches, summed
-/// in order.
+/// Energy dissipated by the viscous impulses of the elements that are not left out [J]: impulse times the mean of the
+/// rates of F before and after the step. The mean matters because the highest modes change velocities by much within a
+/// step. `impulse` and `viscous` are those that compute_element_forces wrote. `patches`: blocks of each patch. Parallel
+/// over patches, summed in order.
 Real measure_viscosity(Executor& executor, const ElementInputs& elements, std::span<const Range> patches,
                        std::span<const ElementViscousImpulse> impulse, std::span<const std::uint8_t> viscous,
                        std::span<const Vec3> velocity, std::span<const Vec3> velocity_next, Column<Real>& partial);

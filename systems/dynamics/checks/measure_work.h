@@ -1,4 +1,4 @@
-// What loads and held nodes gave to the moving nodes in this step, for the balance of a run.
+// Impulse and work of loads and held nodes on the moving nodes in this step, for the balance of a run.
 #pragma once
 
 #include <span>
@@ -20,16 +20,16 @@ struct ExternalWork {
 
 struct WorkInputs {
     std::span<const Vec3> load;   // N, by node; empty: none
-    std::span<const Vec3> force;  // N, by node without freedom
+    std::span<const Vec3> force;  // by held node [N]
     std::span<const Vec3> velocity_next;
     std::span<const Real> mass;   // kg, by node
     std::span<const Index> held;  // nodes
     std::span<const Index> node_body;
-    std::span<const Range> body_implicit;  // BodyTable; of those with rows forces are those of the step already
+    std::span<const Range> body_implicit;  // BodyTable; with rows: `force` is already that of the whole step
     RestingNodes resting;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
-    /// `loaded`: some node has a load. `any_asleep`: some body rests.
+    /// `loaded`: true if some node has a load. `any_asleep`: true if some body is asleep.
     static WorkInputs bind(const Binder& binder, const NodeTable& node, const AttachmentTable& attachment,
                            const BodyTable& body, const bool& loaded, const bool& any_asleep, const Vec3& gravity) {
         return {.load = binder.read_if(binder.value(loaded), node.load),
@@ -45,10 +45,11 @@ struct WorkInputs {
     }
 };
 
-/// Loads on all nodes and the forces that hold the nodes `held`, which are the opposite of `force` there: impulse kick
-/// F and, of loads, which are constant, work h F . velocity_next, the displacement of a symplectic step. What holds
-/// nodes works against their weight and loads by as much, and against elements for as long as these act. Nodes at rest
-/// do not count: what holds them is not known. The loads' sum goes over fixed blocks, in their order.
+/// Impulse and work of the loads on all nodes and of the forces that hold the nodes `held`, the opposite of `force`
+/// there. The impulse is kick F. Loads are constant and do the work h F . velocity_next, since h velocity_next is the
+/// displacement of a symplectic step. Holding forces do work against weight and loads for h, too, but against elements
+/// for `kick`. Nodes at rest do not count: the force that holds them is unknown. Loads are summed over fixed blocks, in
+/// their order.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick,
                           Column<ExternalWork>& partial);
 

@@ -1,4 +1,4 @@
-// How far tetrahedra and elements are pressed together, for reports.
+// Compression of tetrahedra and elements, for reports.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Volume over that at rest: the smallest, who has it (lane of a block), how many are below near_inversion, and how
-/// many below 0: inverted. A value that is not a number counts as the smallest.
+/// Statistics of present volume over rest volume: the smallest ratio, the item that has it (lane of a block), the
+/// number below near_inversion (or another limit), and the number below 0 (inverted). NaN counts as the smallest.
 struct VolumeRatios {
     Real smallest;
     Index item;
@@ -17,11 +17,11 @@ struct VolumeRatios {
 };
 inline constexpr Real near_inversion = 0.1;
 
-/// Of the tetrahedra of a range of blocks.
+/// Volume ratios of the tetrahedra of a range of blocks.
 VolumeRatios tetrahedron_volume_ratios(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                                        Range blocks, std::span<const Vec3> position);
 
-/// det F of the elements of a range of blocks; `near`: what counts as near inversion.
+/// Volume ratios det F of the elements of a range of blocks; below `near` they count as near inversion.
 VolumeRatios element_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                    Real near = near_inversion);
 

@@ -10,10 +10,11 @@ namespace skerry {
 
 namespace {
 
-// Of the modulus of a guard, until it comes into play: its inertia is to be next to none at ordinary strain.
+// Assumed modulus of a guard before it comes into play, over its full modulus. Its inertia should be negligible at
+// ordinary strain.
 constexpr Real modulus_at_rest = 0.01;
 
-/// Whether the moving corners of a tetrahedron are of one cluster, and there are any.
+/// True if a tetrahedron has moving corners and all of them belong to one cluster.
 bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
     Index root = no_index;
     for (Index k = 0; k < nodes.count; ++k) {
@@ -26,7 +27,7 @@ bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, s
     return root != no_index;
 }
 
-/// m^3, by the gradients; 0 in a lane that is left over.
+/// Volume of a tetrahedron from its gradients; 0 in an unused lane [m^3].
 Real volume_of(const BlockNodes& nodes, std::size_t l) {
     Mat3 gradients;
     for (Index k = 1; k < 4; ++k)

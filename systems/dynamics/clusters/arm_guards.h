@@ -1,4 +1,4 @@
-// Which guards act (docs/methods/elasticity.md 7.7).
+// Activates the guards of a body (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include <span>
@@ -7,18 +7,18 @@
 
 namespace skerry {
 
-/// Of each block of the body.
+/// Output columns, by block of the body.
 struct GuardOutputs {
     std::span<ElementLane> modulus, volume;  // Pa; m^3
 };
 
-/// A guard acts where all of its moving corners are nodes of one cluster, which the other implicit elements of the body
-/// chain: it has a modulus, which is raised as it comes into play (stiffen_clusters.h), and its volume. Others have
-/// neither. One that acts already keeps the modulus that it is taken to have. Sequential; allocates.
+/// A guard acts if all of its moving corners are nodes of one cluster of the other implicit elements of the body. It
+/// then gets its volume and a modulus, which is raised as it comes into play (stiffen_clusters.h). Other guards get 0
+/// for both. A guard that already acts keeps its assumed modulus. Sequential; allocates.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,
                 const GuardOutputs& out);
 
-/// None acts. By block of the body.
+/// Deactivates all guards of a body: sets their volumes to 0. Both columns are by block of the body.
 void disarm_guards(std::span<const ElementPart> part, std::span<ElementLane> volume);
 
 }  // namespace skerry

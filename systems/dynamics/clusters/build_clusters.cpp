@@ -29,11 +29,11 @@ void sort_unique(std::vector<Index>& nodes) {
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
-/// Numbers the clusters of a body by their first nodes and lists these.
+/// Numbers the clusters of a body in the order of their first nodes and lists the nodes of each.
 void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeClusters& clusters) {
     const auto first = static_cast<Index>(clusters.body.size());
     for (const Index n : nodes) {
-        const Index root = sets.root(n);  // the smallest of its set: listed first
+        const Index root = sets.root(n);  // the smallest node of its set: listed first
         if (root == n) {
             clusters.cluster_of[n] = static_cast<Index>(clusters.body.size());
             clusters.body.push_back(body);
@@ -88,7 +88,7 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
         const std::size_t begin = clusters.inverse.size();
         clusters.first_entry.push_back(begin);
         clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
-        // symmetric to the last bit: what two contacts do to each other is the same
+        // bitwise symmetric, so that two contacts act on each other equally
         for (Eigen::Index i = 0; i < inverse.rows(); ++i)
             for (Eigen::Index j = 0; j < inverse.cols(); ++j)
                 clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =
@@ -96,7 +96,7 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
     }
 }
 
-/// Takes a cluster over as it was.
+/// Copies cluster c unchanged.
 void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
     const std::span<const Index> nodes = before.nodes[c];
     for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -148,7 +148,7 @@ void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs
     clusters.nodes.offset.push_back(0);
     UnionFind sets;
     sets.start(node_count);
-    std::size_t next = 0;  // of those before
+    std::size_t next = 0;  // cluster of `before`
     for (std::size_t body = 0; body < inputs.body_blocks.size(); ++body) {
         const auto is_of_body = [&] { return next < before.size() && before.body[next] == static_cast<Index>(body); };
         for (; is_of_body(); ++next)

@@ -1,4 +1,4 @@
-// The matrices by which the nodes of implicit elements move (docs/methods/clusters.md 2).
+// Builds the inertia matrices of the nodes of implicit elements (docs/methods/clusters.md 2).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// What clusters are made of.
+/// Data from which clusters are built.
 struct ClusterInputs {
     std::span<const Range> body_blocks;
     std::span<const Real> body_cluster_step;  // s
@@ -18,17 +18,17 @@ struct ClusterInputs {
     std::span<const Real> mass, inverse_mass;
 };
 
-/// Nodes chained by implicit elements are a cluster; A = M + beta sum modulus V sum_kl g_k.g_l over those elements, of
-/// its moving nodes, and its inverse. Sequential; allocates.
+/// Builds the clusters, sets of moving nodes that implicit elements connect, and inverts their matrices
+/// A = M + beta sum modulus V sum_kl g_k.g_l, summed over those elements. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
-/// The same where only implicit elements of some bodies have changed, those with a mark (by body): the matrices of all
-/// others stay as they are, to the last bit.
+/// Rebuilds the clusters of bodies whose implicit elements have changed, marked in `body_changed` (by body). The
+/// matrices of all other bodies stay bitwise the same.
 void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
                       std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
-/// How many nodes the largest cluster of a body would have, the entries of all its matrices, and the sum of the cubes
-/// of their widths, which is what it takes to invert them.
+/// Sizes of the clusters that a body would have: the nodes of the largest one, the entries of all matrices, and the sum
+/// of the cubes of their widths, which is proportional to the cost of inverting them.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

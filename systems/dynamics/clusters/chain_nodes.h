@@ -1,4 +1,4 @@
-// Which nodes implicit elements couple (docs/methods/clusters.md 2).
+// Finds the nodes that implicit elements couple (docs/methods/clusters.md 2).
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace skerry {
 
-/// Whether an element holds a node.
+/// True if the element in lane `l` acts on a node, that is, has a gradient there.
 inline bool holds(const ElementGradient& gradient, std::size_t l) {
     return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
 }
 
-/// Calls visit(block, lane, modulus) for every implicit element; `modulus`: from blocks.begin on.
+/// Calls visit(block, lane, modulus) for every implicit element. `modulus` begins at the row of blocks.begin.
 template <class Visit>
 void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit&& visit) {
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
@@ -24,7 +24,7 @@ void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit
             if (const Real m = modulus[b - static_cast<std::size_t>(blocks.begin)][l]; m > 0) visit(b, l, m);
 }
 
-/// Calls visit(node, k) for the moving nodes that an element holds.
+/// Calls visit(node, k) for the moving nodes on which the element in lane `l` acts.
 template <class Visit>
 void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
     for (Index k = 0; k < nodes.count; ++k) {
@@ -33,13 +33,14 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
     }
 }
 
-/// The moving nodes of a body that its implicit elements chain, guards left out: they act within a cluster alone.
+/// Sets of moving nodes of a body that its implicit elements connect. Guards are left out: they only act within a
+/// cluster.
 struct NodeChains {
-    Index first = 0;                    // node, of those that are chained
-    UnionFind sets;                     // by node from there on
-    std::vector<std::uint8_t> chained;  // by node from there on, as far as the last
+    Index first = 0;                    // first node with an implicit element
+    UnionFind sets;                     // by node - first
+    std::vector<std::uint8_t> chained;  // by node - first, up to the last connected node
 
-    /// `modulus`: from blocks.begin on.
+    /// `modulus` begins at the row of blocks.begin.
     NodeChains(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                std::span<const Real> inverse_mass) {
         std::vector<Index> nodes;
@@ -55,7 +56,7 @@ struct NodeChains {
         };
         for_each([&](Index, Index n) { nodes.push_back(n); });
         if (nodes.empty()) return;
-        // the nodes of a body lie side by side
+        // the nodes of a body are consecutive rows
         const auto ends = std::ranges::minmax(nodes);
         first = ends.min;
         sets.start(static_cast<std::size_t>(ends.max - first) + 1);
@@ -66,7 +67,7 @@ struct NodeChains {
         });
     }
 
-    /// Of the set of a node; no_index where nothing chains it.
+    /// Root of the set of a node; no_index if no implicit element acts on the node.
     Index root_of(Index node) {
         const Index row = node - first;
         if (row < 0 || row >= static_cast<Index>(chained.size()) || chained[static_cast<std::size_t>(row)] == 0)

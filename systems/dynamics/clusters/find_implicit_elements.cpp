@@ -21,7 +21,7 @@ void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit
             if (elements.volume[b][l] > 0) visit(b, l);
 }
 
-/// Rows of the nodes of these elements, ascending.
+/// Rows of the nodes of the elements, ascending.
 std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
     Index last = 0, first = std::numeric_limits<Index>::max();
     const auto for_each_node = [&](auto&& visit) {
@@ -42,7 +42,7 @@ std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
     return nodes;
 }
 
-/// kg m^2, the least moment of inertia of these nodes of a body.
+/// Least moment of inertia of the given nodes of a body [kg m^2].
 Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, std::span<const Real> mass) {
     Real total = 0;
     Vec3 center = Vec3::Zero();
@@ -59,12 +59,13 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
     return least_moment_of(second);
 }
 
-/// kg m^2, of a rigid turn, what an implicit element adds: beta c V |omega x|^2 <= beta c V omega^2 for each axis.
+/// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. The kinetic energy
+/// grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2.
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_of_stiffness(step) * modulus * volume;
 }
 
-constexpr Real most_volume = 0.75;  // given up
+constexpr Real most_volume = 0.75;  // largest fraction of the volume that may be implicit
 
 }  // namespace
 
@@ -85,7 +86,7 @@ ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std:
       measured_(frequency_.size()),
       trace_(frequency_.size()) {
     const std::size_t count =
-        nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // with some between
+        nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // gaps included
     if (count > 0) first_node_ = nodes_.front();
     marks_.resize(count);
     sum_.resize(count);
@@ -208,19 +209,19 @@ ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    constexpr int rounds_of_sharing = 4;  // between two rounds that give elements up
+    constexpr int rounds_of_sharing = 4;  // between two rounds that make elements implicit
     constexpr int rounds_of_estimates = 24;
-    constexpr Real most_change = 4;  // of a share in a round: what is hopeless is not to starve its neighbours
+    constexpr Real most_change = 4;  // per round, of a share, so that a hopeless element does not starve its neighbours
     start_mass_shares(elements_, blocks_, out_.mass_share);
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // not with all the mass of its nodes to itself
+        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // unstable even with all the mass of its nodes
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;
     for (int round = 1;; ++round) {
-        // what was given up stays so: it will be no less
+        // implicit elements stay implicit, so later rounds add no less
         if (found.too_many || !(found.moment <= goal.most_moment)) return found;
         if (round % rounds_of_estimates == 1 || found_enough)
             measure();
@@ -231,7 +232,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         found_enough = !(shortest < goal.stands);
         if (found_enough && exact_) break;
-        if (found_enough) continue;  // says the estimate
+        if (found_enough) continue;  // the estimate has to be confirmed by the bound
         if (round % rounds_of_sharing == 0) {
             give_up(goal.stands);
             found = added(goal);
@@ -251,7 +252,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
                                     const ImplicitOutputs& out) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
-    // what is given up leaves its masses to others
+    // elements that become implicit leave their masses to others
     for (bool gave_up = true; gave_up;) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
         gave_up = false;

@@ -27,7 +27,7 @@ void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> m
 }
 
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time) {
-    constexpr Real of_step = 0.1;  // omega h stays below sqrt(4 - 2 * 1.8^2 * 0.1), which is more than 1.8
+    constexpr Real of_step = 0.1;  // the limit of omega h, sqrt(4 - 2 * 1.8^2 * 0.1), is above 1.8
     for (std::size_t b = 0; b < modulus.size(); ++b)
         viscous_time[b] = std::ranges::any_of(modulus[b].lane, [](Real of) { return of > 0; }) ? of_step * step : 0;
 }

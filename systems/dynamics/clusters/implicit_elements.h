@@ -1,4 +1,4 @@
-// What is asked of the elements that are left to clusters (docs/methods/clusters.md 2, 3).
+// Properties of implicit elements: leeway, viscosity, stiffening, added inertia (docs/methods/clusters.md 2, 3).
 #pragma once
 
 #include <span>
@@ -8,35 +8,35 @@
 
 namespace skerry {
 
-/// How many times faster than others tetrahedra may deform: `of_implicit` times those that implicit elements cover,
-/// which may turn over, too. `tetrahedra`: of each element, those that it covers.
+/// Writes the leeway of tetrahedra, the factor on the allowed change of F: `of_implicit` if an implicit element covers
+/// the tetrahedron, which may then also invert, else 1. `tetrahedra`: those that each element covers.
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
                  std::span<ElementLane> leeway);
 
-/// s, by block: for those with implicit elements the time that, times the modulus that these are taken to have, is
-/// their viscosity; 0 for others. `step`: that of the body's clusters, s.
+/// Writes the viscosity over the assumed modulus of the implicit elements, by block; 0 for blocks without implicit
+/// elements [s]. `step`: step of the body's clusters [s].
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time);
 
-/// The largest factor by which an implicit element of the body is stiffer now than it is taken to be; 0 without any.
+/// The largest present stiffness over assumed stiffness of the implicit elements of the body; 0 without any.
 Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const ElementLane> modulus);
 
-/// J, what the inertia of implicit elements adds to the kinetic energy: v.(A - M) v / 2. `step`: that of the body's
-/// clusters, s.
+/// Kinetic energy that the inertia of implicit elements adds, v.(A - M) v / 2 [J]. `step`: step of the body's clusters
+/// [s].
 Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
                   std::span<const Vec3> velocity);
 
-/// The least moment of inertia, of the integral of x x^T over the mass, x from its centre.
+/// The least moment of inertia. `spread`: integral of x x^T over the mass, x relative to the centre of mass.
 Real least_moment_of(const Mat3& spread);
 
-/// What masses at the nodes, a quarter of each tetrahedron at each of its corners, add to the least moment of inertia
-/// of a body of one density, over that moment. 0 of a body without volume.
+/// Relative increase of the least moment of inertia of a body of uniform density if a quarter of the mass of each
+/// tetrahedron is placed at each of its corners. 0 for a body without volume.
 Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                        std::span<const Vec3> position);
 
-/// kg m^2/s^2 per Pa m^3: beta of A = M + beta sum K, for steps up to `step`.
+/// beta of A = M + beta sum K, for steps up to `step` [s^2].
 constexpr Real inertia_of_stiffness(Real step) {
-    constexpr Real safety = 1.8;  // step_times_frequency, in place of 2
+    constexpr Real safety = 1.8;  // step_times_frequency; the limit is 2
     return step * step / (safety * safety);
 }
 

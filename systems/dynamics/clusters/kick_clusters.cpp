@@ -12,10 +12,10 @@ namespace skerry {
 
 namespace {
 
-// Rows whose sums stand in registers: what is loaded of kicks and column sums serves all of them. A row adds to a
-// column sum after the rows before it, however many go together.
+// Rows whose sums are in registers at the same time and share the loads of kicks and column sums. Rows add to a column
+// sum in ascending order, however many are taken at once.
 constexpr std::size_t rows_at_once = kernel_parts == 1 ? 8 : 2;
-constexpr std::size_t tile = element_lanes;  // rows and columns that are not taken by themselves
+constexpr std::size_t tile = element_lanes;  // rows and columns that are taken together
 
 Real8 lanes_at(const Real* from) {
     return *reinterpret_cast<const Real8InMemory*>(from);
@@ -27,8 +27,8 @@ Real sum_of_lanes(const Real8& of) {
     return ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
 }
 
-/// A vector of a cluster, by component and place. Components begin a register apart, so that what is read together
-/// lies in one line of the cache.
+/// A vector of a cluster, by component and place. Each component begins at a multiple of a register's length, so that
+/// one load touches one cache line.
 struct ByComponent {
     Real* component[3];
 
@@ -36,7 +36,7 @@ struct ByComponent {
     Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
 };
 
-/// Sums of some rows of a matrix, by component, lanes side by side.
+/// Sums of some rows of a matrix, by component. Each lane sums its own columns.
 template <std::size_t Rows>
 struct RowSums {
     std::array<Real8, Rows> x{}, y{}, z{};
@@ -50,9 +50,9 @@ template <std::size_t Rows, class Visit>
     (std::make_index_sequence<Rows>());
 }
 
-/// Of `Rows` rows from `place` on, columns 0 .. width, a multiple of the tile: what they give their rows, and, since
-/// the matrix is symmetric, what they give those columns. So only one triangle is read: large matrices do not fit into
-/// the caches.
+/// Products of `Rows` rows from `place` on with columns 0 .. width, a multiple of the tile. Returns the sums of the
+/// rows and, since the matrix is symmetric, adds the transposed entries to the sums of those columns. So only one
+/// triangle is read: large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t place, std::size_t width,
@@ -60,7 +60,7 @@ template <std::size_t Rows>
     const Real* const row = matrix + place * count;
     const auto [kick_x, kick_y, kick_z] = kick.component;
     const auto [sum_x, sum_y, sum_z] = sum.component;
-    Real own_x[Rows], own_y[Rows], own_z[Rows];  // side by side: one address for all
+    Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous: one address for all
     std::copy_n(kick_x + place, Rows, own_x);
     std::copy_n(kick_y + place, Rows, own_y);
     std::copy_n(kick_z + place, Rows, own_z);
@@ -84,7 +84,7 @@ template <std::size_t Rows>
     return rows;
 }
 
-/// The sums of the lanes of each, one after the other.
+/// Stores the sum over the lanes of each register, one after the other.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline void store_sums(const std::array<Real8, Rows>& of, Real* to) {
     for_each_row<Rows>([&](auto r) __attribute__((always_inline)) { to[r] = sum_of_lanes(of[r]); });
@@ -105,7 +105,7 @@ template <std::size_t Rows>
              to);
 }
 
-/// Rows place .. place + Rows of a tile that begins at `first`; all of the tile's columns are read.
+/// Sums the rows place .. place + Rows of the tile that begins at `first`; all of the tile's columns are read.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -123,7 +123,7 @@ void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, 
     store_sums(rows.z, sum.component[2] + place);
 }
 
-/// The same of a tile that the matrix ends in.
+/// Sums the rows place .. place + Rows of the last, incomplete tile, which begins at `first`.
 template <std::size_t Rows>
 void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                      const ByComponent& kick, const ByComponent& sum) {
@@ -153,8 +153,8 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
     if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
 }
 
-/// Of the components of cluster c, whose nodes begin at `begin` of all, in working memory; the first of what follows
-/// them, too, since (begin + 7 c)/8, rounded down, is no more than begin/8 + c.
+/// The tile in working memory at which cluster c begins, if its nodes begin at `begin` in the list of all nodes. The
+/// padded clusters before it fit below, since (begin + 7 c)/8, rounded down, is no more than begin/8 + c.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

@@ -1,4 +1,4 @@
-// Nodes of clusters take the impulse of their forces by the inertia of the cluster (docs/methods/clusters.md 1).
+// Applies impulses of forces to the nodes of clusters by the inertia of the cluster (docs/methods/clusters.md 1).
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ namespace skerry {
 struct ClusterKickInputs {
     const NodeClusters& clusters;
     std::span<const Real> mass;                           // kg, by node
-    std::span<const std::uint8_t> body_asleep;            // empty: none is
-    std::span<const std::uint16_t> body_unstrained = {};  // empty: none is
+    std::span<const std::uint8_t> body_asleep;            // empty: no body is asleep
+    std::span<const std::uint16_t> body_unstrained = {};  // empty: no body is unstrained
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {
@@ -30,11 +30,11 @@ struct ClusterKickInputs {
     }
 };
 
-/// velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster; the same where its
-/// body is unstrained and moves on as one, since A then has no more than the masses to move. `kick`: N s, what forces
-/// gave each node, by item of clusters.nodes; `work`: memory that is kept between steps. `known`: both hold what the
-/// call before left there, of the same clusters, velocities and forces. Parallel over clusters. Returns false where
-/// there is none (skipped).
+/// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster. velocity_next stays as it is
+/// if the body is unstrained and the cluster moves as one, since A then acts as the masses do. `kick`: impulse of
+/// forces on each node, by item of clusters.nodes [N s]. `work`: scratch kept between steps. `known`: both still hold
+/// the results of a call with the same clusters, velocities and forces. Parallel over clusters. Returns false if there
+/// is no cluster (skipped).
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

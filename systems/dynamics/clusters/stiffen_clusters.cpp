@@ -16,10 +16,10 @@ namespace skerry {
 
 namespace {
 
-constexpr Real too_near = 0.9;  // of the modulus
-constexpr Real raised_to = 2;   // times what it is
+constexpr Real too_near = 0.9;  // of the assumed modulus: above it the assumption is raised
+constexpr Real raised_to = 2;   // times the present stiffness
 
-/// to += x factor_x + y factor_y + z factor_z, by component of the factor. Lane by lane the same for each.
+/// to += x factor_x + y factor_y + z factor_z, by component of the factor. The expression is the same in every lane.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
@@ -31,9 +31,9 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
 }
 
-/// inverse = (A + weight G G^T)^-1 by what Woodbury's identity takes away, G = the gradients of the element by node:
+/// inverse = (A + weight G G^T)^-1 by Woodbury's identity, G = the gradients of the element by node. It subtracts
 /// U (1/weight + G^T U)^-1 U^T with U = A^-1 G. With C C^T = 1/weight + G^T U that is W W^T, W = U C^-T, which is
-/// symmetric to the last bit however it is added up.
+/// bitwise symmetric in any order of summation.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -78,13 +78,13 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
 
 namespace {
 
-/// The column of lane l.
+/// The vector in lane l.
 Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// The impulse -weight F' g_k on the nodes of an element that has become so much heavier, among what it does to them in
-/// this step: what deforms it keeps the momentum that it had, not the velocity.
+/// Adds the impulse -weight F' g_k to the forces of an element on its nodes in this step. `weight` is its gain of
+/// inertia: it goes on deforming with the momentum that it had, not with the velocity.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);
@@ -113,14 +113,14 @@ void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, s
     for (std::size_t i = 0; i < 9; ++i) patches.viscous_impulse[b][i][l] += impulse.data()[i];
 }
 
-/// What the elements do to their nodes in the step that begins.
+/// Forces of the elements on their nodes in the step that begins; they act for `kick` [s].
 struct StepForces {
     Real kick;
     const PatchForces& patches;
 };
 
-/// Looks at the implicit elements of one block. Returns what it adds to the kinetic energy, J. `forces`: null between
-/// steps.
+/// Raises the assumed stiffness of the implicit elements of one block if they come near it. Returns the kinetic energy
+/// that this adds [J]. `forces`: null between steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
                    const StepForces* forces, const StiffenOutputs& out) {
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
@@ -146,7 +146,8 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
     return energy;
 }
 
-/// Of the blocks with which `is_due` goes along.
+/// Treats the blocks for which is_due(block) holds, of awake bodies with clusters. Returns the added kinetic energy
+/// [J].
 template <class IsDue>
 Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StepForces* forces,
              const StiffenOutputs& out, IsDue&& is_due) {

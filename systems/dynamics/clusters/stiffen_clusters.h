@@ -1,4 +1,4 @@
-// Keeps clusters as stiff as their elements have become (docs/methods/clusters.md 3).
+// Raises the assumed stiffness of clusters whose elements have become stiffer (docs/methods/clusters.md 3).
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace skerry {
 
 struct StiffenInputs {
     std::span<const Range> body_blocks;
-    std::span<const Real> body_cluster_step;  // s; 0: a body without clusters
+    std::span<const Real> body_cluster_step;  // 0: a body without clusters [s]
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
@@ -28,10 +28,10 @@ struct StiffenInputs {
     }
 };
 
-/// What follows the stiffness of implicit elements.
+/// Data that depend on the stiffness of implicit elements.
 struct StiffenOutputs {
     std::span<ElementLane> modulus;  // Pa, by block
-    NodeClusters& clusters;          // of which the matrices are written
+    NodeClusters& clusters;          // only their matrices are written
 
     static StiffenOutputs bind(const Binder& binder, ElementBlockTable& element, NodeClusters& clusters) {
         binder.value(clusters.nodes);
@@ -44,16 +44,17 @@ struct StiffenOutputs {
     }
 };
 
-/// Implicit elements that are about to become stiffer than they are taken to be are taken to be twice as stiff as they
-/// are, and the matrices of their clusters follow. Returns what that adds to the kinetic energy, J, while velocities
-/// stay; that an element is deformed with the momentum that it had and not with its velocity is an impulse of the step
-/// (docs/methods/clusters.md 6), which comes to what elements do to their nodes for `kick` seconds, and to what is
-/// viscous. Looks where `patches.stiffening` says so (compute_element_forces, of the same positions), and takes that
-/// back. Sequential, in element order.
+/// Raises the assumed stiffness of implicit elements that come near it to twice their present stiffness, and updates
+/// the matrices of their clusters. Returns the kinetic energy that this adds with unchanged velocities [J]. A stiffened
+/// element keeps the momentum with which it deforms, not the velocity. The difference is an impulse of the step
+/// (docs/methods/clusters.md 6). It is added to the forces of the elements, which act for `kick` [s], and to the
+/// viscous impulses. Tests the blocks marked in `patches.stiffening` (compute_element_forces, for the same positions)
+/// and clears the marks. Sequential, in element order.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 
-/// The same between steps, found by looking at every implicit element: velocities stay.
+/// Stiffens clusters between steps: tests every implicit element and leaves velocities as they are. Returns the kinetic
+/// energy that this adds [J].
 Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out);
 
 }  // namespace skerry

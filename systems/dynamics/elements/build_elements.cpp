@@ -26,7 +26,7 @@ std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest
     return centre;
 }
 
-/// Halves a group along its longest side until every part is a patch; the parts one after the other.
+/// Halves a group along its longest side until every part is a patch. Appends the sizes of the patches in their order.
 void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<std::size_t>& patch_size) {
     const std::size_t patches = (group.size() + elements_per_patch - 1) / elements_per_patch;
     if (patches <= 1) {
@@ -55,7 +55,7 @@ ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_po
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    // guards by themselves: they change no sum of others while they do not act
+    // guards are separate, so that inactive ones change no sum of other elements
     const auto group_of = [&](Index e) { return list.part[static_cast<std::size_t>(e)] == ElementPart::guard; };
     std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;
@@ -162,7 +162,7 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         blocks.part[block] = list.part[leader];
         blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
-        blocks.rotation_next[block] = blocks.rotation[block];  // kernels of some laws touch neither, and the step swaps
+        blocks.rotation_next[block] = blocks.rotation[block];  // some laws write neither, yet the step swaps them
         for (Real& share : blocks.mass_share[block].lane) share = 1;
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const bool used = lanes[l] != no_index;
@@ -217,8 +217,8 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
 
 namespace {
 
-/// The list of items that name each row, in their order, for the rows behind those that have theirs, which the items
-/// behind theirs name.
+/// Appends the lists of rows that have none yet: the items that name each row, ascending. Only items behind the listed
+/// ones name these rows.
 void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
     // Counting sort: count, sum up, fill.
     if (items.offset.empty()) items.offset.push_back(0);
@@ -254,7 +254,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
         const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
         for (std::size_t b = begin; b < end; ++b) SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
-        // In the order of the nodes: the kernel fetches their positions from memory.
+        // Nodes of a patch ascend, since the kernel fetches their positions from memory.
         for (std::size_t row = first_row; row < end_row; ++row)
             for (const Index n : nodes.node[row].lane)
                 if (Index& slot = slot_of(n); slot == no_index) {

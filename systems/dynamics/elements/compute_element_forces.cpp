@@ -19,38 +19,39 @@ namespace skerry {
 
 namespace {
 
-// Blocks between the one that is computed and the one whose rows are asked for.
+// Blocks between the one that is computed and the one whose rows are prefetched.
 constexpr std::size_t blocks_ahead = 6;
 
-// Positions of so many nodes of a patch, 16 kB, stand in a place that stays in the nearest cache; of more in rows of
-// their own.
+// Positions of up to this many nodes of a patch (16 kB) are in a local buffer that stays in the L1 cache; those of
+// larger patches are in patches.position.
 constexpr std::size_t near_nodes = 512;
 
-/// Whether the kick is known to be as long as that of the step before: what is booked as lost is had for less then.
+/// `alike`: the kick (force interval) of this step equals that of the step before. Dissipated energy then needs one
+/// subtraction instead of a weighted difference.
 enum class Kicks { alike, any };
 
-/// Blocks of a patch, one after the other, that are of one material.
+/// Consecutive blocks of a patch that have one material and one part.
 struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
     Real kick;                       // s
-    Real kick_over_last;             // 0: what relaxed in the step before is not known
+    Real kick_over_last;             // 0: the strain that relaxed in the step before is unknown
     PatchRows<const Real> position;  // m, of the patch
-    PatchRows<Real> force;           // N, the same
+    PatchRows<Real> force;           // N, of the patch
     std::span<const Vec3> velocity;  // of all nodes
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
     const PatchForces& patches;
 
-    /// A block's rows, with its nodes among those of the patch.
+    /// Rows of a block, with its nodes as slots of the patch.
     BlockNodes nodes_of(std::size_t block) const {
         const auto row = static_cast<std::size_t>(elements.first[block]);
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
     /// Prefetches the rows of a later block, which may belong to the next patch. The other loads in between keep
-    /// processors from seeing that these rows lie one after the other.
+    /// processors from recognising that these rows are consecutive.
     [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
@@ -71,7 +72,7 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// What is kept of the stretch of both viscous parts while the dashpots give way for the time of the kick.
+    /// Fractions of the stretch of both viscous parts that remain after the dashpots relax for the time of the kick.
     template <class T>
     struct Kept {
         T strain, volume;
@@ -80,7 +81,7 @@ struct Run {
     [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
         const T forgets = kick * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
-        // backward Euler: never more than all; one division for both
+        // backward Euler: never relaxes more than all; one division for both
         const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
         return {over_both * less_volume, over_both * less};
     }
@@ -94,8 +95,8 @@ struct Run {
         return kept;
     }
 
-    /// The dashpots give way, then the springs push. Returns the second Piola-Kirchhoff stress, Pa, times the scale of
-    /// the block, and writes what the dashpots have taken and what they dissipated, as dissipated_of has it.
+    /// Relaxes the dashpots, then computes the stress of the springs. Returns the second Piola-Kirchhoff stress [Pa]
+    /// times the scale of the block. Writes the viscous strain and `dissipated`, which dissipated_of converts to J.
     template <Kicks kicks, class T>
     [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, const T& scale,
                                                   std::size_t block, std::size_t part, T& dissipated) const {
@@ -104,12 +105,12 @@ struct Run {
         const LaneSymmetric<T> strain = twice_green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
-        const Real of_now = kick_over_last > 0 ? 1 : 2;  // not known: as if it had been stretched as now
+        const Real of_now = kick_over_last > 0 ? 1 : 2;  // 2 if unknown: assumes the stretch of now
         const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
         const LaneSymmetric<T> taken = strain - after.strain;
         const T taken_volume = strain.trace() - after.volume;
-        // Springs push, in the mean, as stretched as in the step before and in this one, on what the dashpots take; and
-        // they took of the step before what it was stretched, times its rate.
+        // The dissipation is the work of the mean spring stress of the step before and of this one on the strain that
+        // the dashpots take. The stretch in the step before is the strain that relaxed then over the rate.
         const auto twice = [&](const T& now, std::size_t i) {
             const T older = load_part<T>(forgotten_next[i], part);
             if constexpr (kicks == Kicks::alike) return T(now - older);
@@ -132,16 +133,16 @@ struct Run {
         return S;
     }
 
-    /// Out of line, as all that is rare: by value, so that what it is given need not be in memory when it is not
-    /// called.
+    /// relax() for the rare case, out of line. The arguments are passed by value, so that they need not be in memory if
+    /// it is not called.
     template <class T>
     [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, T scale,
                                                            std::size_t block, std::size_t part, T& dissipated) {
         return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
-    /// Elastic stress, Pa, times `scale`. Frames are extracted from all parts at once: how often their steps are
-    /// repeated does not depend on the width of a part.
+    /// Elastic stress [Pa] times `scale`. Frames are extracted from all parts at once, so that the number of iterations
+    /// does not depend on the width of a part.
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                const Parts<KernelReal>& scale) const {
@@ -168,15 +169,15 @@ struct Run {
         }
     }
 
-    /// Of implicit elements of this |F|^2 and det F: whether they are near enough to rest to have no viscosity.
+    /// True for implicit elements near enough to rest to have no viscosity. `square`: |F|^2, `J`: det F.
     template <class T>
     static auto is_calm(const T& square, const T& J) {
         constexpr Real stretched = 6, pressed = 0.3;  // 3 and 1 at rest
         return (square < stretched) & (J > pressed);
     }
 
-    /// Whether all elements of the block are implicit ones far from what they are made for, or explicit ones beside
-    /// such: most are, in most steps.
+    /// True if the block has implicit elements and none of them is viscous or near its assumed stiffness. This holds
+    /// for most blocks in most steps.
     [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
@@ -190,7 +191,8 @@ struct Run {
         return any_implicit && easy;
     }
 
-    /// Pa s, of implicit elements that are stretched or pressed by much; 0 of the others. Returns whether any is.
+    /// Writes the viscosity of implicit elements that are stretched or compressed by much, 0 for others [Pa s]. Returns
+    /// whether any element is viscous.
     bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
@@ -204,7 +206,7 @@ struct Run {
         return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
     }
 
-    /// Whether an implicit element is so strained that its stiffness has to be looked at closely.
+    /// True if an implicit element is so strained that its stiffness has to be computed accurately.
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
@@ -220,8 +222,7 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the stress of the strain rate of implicit elements where there is one, times `scale`, and keeps its
-    /// impulse.
+    /// Adds the viscous stress of implicit elements, times `scale`, if the block has one, and stores its impulse.
     void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
                             Parts<LaneMat3<KernelReal>>& P) const {
         Parts<KernelReal> viscosity;
@@ -252,7 +253,7 @@ struct Run {
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    /// Factor that makes forces of a stress: minus the volume [m^3].
+    /// Factor from stress to forces: minus the volume [m^3].
     [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
         Parts<KernelReal> scale;
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -260,8 +261,8 @@ struct Run {
         return scale;
     }
 
-    /// First Piola-Kirchhoff stress, Pa, of all that the elements are made of, times the scale of the block. Adds up
-    /// `relaxed`, of which dissipated_of makes J.
+    /// Total first Piola-Kirchhoff stress of the elements [Pa] times the scale of the block. Adds their dissipation to
+    /// `relaxed`, which dissipated_of converts to J.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
                                                                  const Parts<LaneMat3<KernelReal>>& F,
@@ -273,7 +274,7 @@ struct Run {
             if (rests_easy(block, F)) {
                 note(block, false, false);
             } else {
-                // copies for the call alone: what has an address is in memory, whether it is called or not
+                // copies for the call only: a variable with an address is in memory, even if the call is not made
                 Parts<LaneMat3<KernelReal>> rest;
                 for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
@@ -292,7 +293,7 @@ struct Run {
             if (kick_over_last == 1) {
                 S = relax<Kicks::alike>(F[part], kept[part], scale[part], block, part, dissipated);
             } else {
-                KernelReal unlike;  // for the call alone: what has an address is in memory
+                KernelReal unlike;  // for the call only: a variable with an address is in memory
                 S = relax_unlike(*this, F[part], kept[part], scale[part], block, part, unlike);
                 dissipated = unlike;
             }
@@ -302,7 +303,8 @@ struct Run {
         return P;
     }
 
-    /// Dissipated energy from the sum over the elements [J]. The dashpots took that of two steps and twice the strain.
+    /// Dissipated energy from the sum over the elements [J]. The sum has two steps and strains twice their size, hence
+    /// the factor 1/4; the scale of the blocks is negative.
     static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
 
     /// Deformation gradients of a block.
@@ -322,9 +324,9 @@ struct Run {
     }
 };
 
-/// With wide registers a block is begun before the forces of the block before are added: neither waits for the other,
-/// and the stress between them is a long chain of operations that do. Narrow ones are too few to hold
-/// both. Returns the energy that the dashpots of the elements dissipate [J].
+/// Computes a run. With wide registers the next block is fetched before the forces of the present one are added. These
+/// two are independent, while the stress between them is a long chain of dependent operations. Narrow registers are too
+/// few to hold both. Returns the energy that the dashpots of the elements dissipate [J].
 [[gnu::always_inline]] inline Real compute_run(const Run& run) {
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
@@ -337,7 +339,7 @@ struct Run {
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) {
                 F = run.fetch(block + 1);
-                kept = run.kept_of(block + 1);  // here: a division takes long
+                kept = run.kept_of(block + 1);  // early: a division takes long
             }
             run.add(block, Q);
             if (!ahead && goes_on) {
@@ -349,18 +351,18 @@ struct Run {
     return run.dissipated_of(relaxed);
 }
 
-/// Positions of the nodes of a patch, which ascend, side by side, and forces zero.
+/// Copies the positions of the nodes of a patch, which ascend, to padded rows, and sets their forces to zero.
 void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    const std::size_t last = node.size() - 1;  // the only one that nothing may follow
+    const std::size_t last = node.size() - 1;  // the only one whose position may end the array
     for (std::size_t s = 0; s < last; ++s)
         store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
-/// The first block after `begin` that is not of the same material, part and kind.
+/// The first block after `begin` that has another material or part.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
     while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin]) ++b;

@@ -22,15 +22,15 @@ struct ElementInputs {
     std::span<const MaterialConstants> constants;
     std::span<const Index> body = {};         // row of BodyTable, by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
-    // Of what relaxes; empty: nothing does
+    // Relaxing stress; empty: nothing relaxes
     std::span<const ElementLane> relaxation_rate = {}, own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const ElementStrain> viscous_strain = {};
-    // BodyTable. Elements of bodies that rest, or are unstrained, have nothing to do in a step; empty: no such body
+    // BodyTable. Elements of bodies that are asleep or unstrained are left out of a step; empty: no such body
     std::span<const std::uint8_t> body_asleep = {};
     std::span<const std::uint16_t> body_unstrained = {};
-    std::span<const ElementForm> mass_form = {};         // 1/(kg m^2); empty: elements go by mass_share
-    std::span<const ElementLane> implicit_modulus = {};  // Pa; 0: an explicit element; empty: all are
+    std::span<const ElementForm> mass_form = {};         // 1/(kg m^2); empty: elements use mass_share
+    std::span<const ElementLane> implicit_modulus = {};  // Pa; 0: an explicit element; empty: all are explicit
     std::span<const FrameMass> frame_mass = {};
     std::span<const Real> frame_bound = {};  // 1/s^2; empty: no body has frame masses
 
@@ -42,20 +42,20 @@ struct ElementInputs {
     MaterialConstants material_of(std::size_t block) const {
         return part_of(constants[static_cast<std::size_t>(material[block])], part[block]);
     }
-    /// Whether a block does nothing in this step.
+    /// True if a block is left out of this step.
     bool is_left_out(std::size_t block) const {
         return (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) ||
                (!body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(body[block])]);
     }
 
-    /// All elements.
+    /// Binds all elements.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                               const MaterialTable& material) {
         ElementInputs elements = bind_explicit(binder, element, nodes, material);
         elements.implicit_modulus = binder.read(element.implicit_modulus);
         return elements;
     }
-    /// Those that have something to do in a step. `any_asleep`: some body rests.
+    /// Binds all elements and marks those that are left out of a step. `any_asleep`: true if some body is asleep.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                               const MaterialTable& material, const BodyTable& body, const bool& any_asleep) {
         ElementInputs elements = bind(binder, element, nodes, material);
@@ -63,7 +63,7 @@ struct ElementInputs {
         elements.body_unstrained = binder.read(body.unstrained);
         return elements;
     }
-    /// All elements, for who does not ask what implicit ones are taken to have, and need not wait for it.
+    /// Binds all elements without implicit_modulus, for readers that need not wait until it is written.
     static ElementInputs bind_explicit(const Binder& binder, const ElementBlockTable& element,
                                        const ElementNodeTable& nodes, const MaterialTable& material) {
         return {.first = binder.read(element.first),
@@ -87,10 +87,11 @@ struct ElementInputs {
     }
 };
 
-/// Of the stiffness that an implicit element is taken to have: what comes that near is looked at closely.
+/// Fraction of the assumed stiffness of an implicit element. If the quick bound is above it, the stiffness is computed
+/// accurately.
 inline constexpr Real near_stiffness = 0.7;
 
-/// The patches and where their sums go.
+/// The patches and the columns of their sums.
 struct PatchForces {
     std::span<const Range> blocks, slots;
     std::span<const Index> node;                            // by slot
@@ -98,10 +99,10 @@ struct PatchForces {
     std::span<PaddedVec3> position;                         // m, by slot; scratch
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nothing is viscous
-    std::span<std::uint8_t> viscous = {};                   // by block: whether it has one in this step
-    // by block that is not left out: whether the quick bound of an implicit element is above near_stiffness
+    std::span<std::uint8_t> viscous = {};                   // by block: 1 if it has a viscous impulse in this step
+    // by block that is not left out: 1 if the quick bound of an implicit element is above near_stiffness
     std::span<std::uint8_t> stiffening = {};
-    std::span<Real> relaxed = {};  // J, by patch; empty: nothing relaxes
+    std::span<Real> relaxed = {};  // energy that relaxed, by patch; empty: nothing relaxes [J]
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -117,10 +118,10 @@ struct PatchForces {
     }
 };
 
-/// What elements will remember of this step.
+/// State of the elements that this step writes for the next one.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // What dashpots have taken: of this step; until that is written, of before the last one. Empty: nothing relaxes.
+    // Viscous strain after this step; until that is written, the one before the last step. Empty: nothing relaxes.
     std::span<ElementStrain> viscous_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
@@ -129,13 +130,13 @@ struct ElementMemory {
     }
 };
 
-/// Sums over each patch what its elements do to its nodes, from the first Piola-Kirchhoff stress P(F),
-/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). In the order of the blocks, and lane by
-/// lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
-/// `rotation` and leave the result in `rotation_next`; those of other models copy nothing. Patches of bodies that are
-/// left out keep what they had. `kick`: s, for which they act; `kick_over_last`: over that of the step before, of which
-/// next.viscous_strain still knows what relaxed, 0 where it does not: then what is booked as relaxed is exact to first
-/// order only (docs/methods/elasticity.md 6.2). Parallel over patches.
+/// Sums over each patch the forces of its elements on its nodes, from the first Piola-Kirchhoff stress P(F),
+/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). Sums go in the order of the blocks, and
+/// lane by lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
+/// `rotation` and write next.rotation; other models write no frame. Patches of bodies that are left out keep their
+/// forces. `kick`: time for which forces act [s]. `kick_over_last`: `kick` over that of the step before; 0 if
+/// next.viscous_strain no longer holds the strain from before that step. With 0 the dissipated energy is exact to
+/// first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, Real kick_over_last,
                             std::span<const ElementRotation> rotation, const ElementMemory& next,

@@ -1,4 +1,4 @@
-// What the kernels do with a block: fetch its nodes, form F, write its forces.
+// Operations of the kernels on a block: fetch its nodes, form F, write its forces.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// A position and whatever follows it.
+/// A position and the number that follows it in memory.
 [[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
     return half_at(at->data());
 }
@@ -19,8 +19,8 @@ namespace skerry {
     return *reinterpret_cast<const Real4*>(at->lane);
 }
 
-/// Positions of the nodes of a patch, or forces on them. A slot is the place of the first number of its row
-/// (ElementNodeTable): processors scale by eight at most, and a row is longer.
+/// Positions of the nodes of a patch, or forces on them. A slot is the offset of the first number of its row
+/// (ElementNodeTable), not the row: processors scale addresses by at most eight bytes, and a row is longer.
 template <class Number>
 struct PatchRows {
     Number* first;
@@ -31,8 +31,8 @@ struct PatchRows {
     }
 };
 
-/// One node of as many lanes as the kernel takes at once, in the order in which the transposes below want them. A
-/// full-width load per node and a few shuffles, in place of three gathers, which cost a load per lane each.
+/// Positions of one node in as many lanes as the kernel takes at once, in the order that the transposes below need. One
+/// full-width load per node and a few shuffles replace three gathers, which cost one load per lane each.
 #ifdef __AVX512VL__
 /// (x, y, z, next node's x) of lanes 0 4, 1 5, 2 6, 3 7
 struct Corner {
@@ -48,7 +48,7 @@ template <class Positions>
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
-/// The same for a block that touches the last node: nothing follows its position.
+/// load_corner for a block that contains the last node, whose position no number follows.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
@@ -81,7 +81,7 @@ template <class Positions>
              load_position(position + of[3])}};
 }
 
-/// The same for a block that touches the last node: nothing follows its position.
+/// load_corner for a block that contains the last node, whose position no number follows.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
@@ -103,7 +103,7 @@ template <class Positions>
 }
 #endif
 
-/// All lanes of a block from the parts that the kernel takes at once.
+/// Joins the parts that the kernel takes at once to all lanes of a block.
 template <class Part>
 [[gnu::always_inline]] inline LaneMat3<Real8> joined(Part&& part_of_block) {
     if constexpr (kernel_parts == 1) {
@@ -122,8 +122,8 @@ template <class Part>
     }
 }
 
-/// Whether something follows the position of every node, of which none is beyond the last. Lanes side by side: as the
-/// highest of them it was a quarter of a look at a block.
+/// True if no node is the last one, so that a number follows the position of each. Lanes are compared side by side: to
+/// find the highest node first would take a quarter of the time of a block.
 [[gnu::always_inline]] inline bool clear_of_end(const NodeLane* node, Index count, std::span<const Vec3> position) {
     typedef Index Index8 __attribute__((vector_size(sizeof(NodeLane)), may_alias));
     typedef std::int64_t Bits __attribute__((vector_size(sizeof(NodeLane))));
@@ -143,7 +143,7 @@ template <class Positions, class Load>
             edge(load_nodes(node[3], part, position), corner0)};
 }
 
-/// The same of all lanes of a block of tetrahedra.
+/// Edges of all lanes of a block of tetrahedra, as columns: corners 1 to 3 minus corner 0.
 inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3> position) {
     const bool clear = clear_of_end(node.data(), 4, position);
     return joined([&](std::size_t part) {
@@ -170,7 +170,7 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
             g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
 }
 
-/// sum_k (x_k - x_0) (x) g_k
+/// sum_k (x_k - x_0) (x) g_k of a part of a block with any number of nodes.
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     Positions position, Load&& load_nodes) {
@@ -186,29 +186,29 @@ template <class Positions, class Load>
     return F;
 }
 
-/// F = sum_k (x_k - x_0) (x) g_k of a part of a block; of velocities: its rate.
+/// F = sum_k (x_k - x_0) (x) g_k of a part of a block. If `position` holds velocities: the rate of F.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
         return gradient_of_part(block, part, position.data(), load_corner<const Vec3*>);
     return gradient_of_part(block, part, position.data(), load_corner_near_end);
 }
-/// The same of a patch, where every position is padded.
+/// F of a part of a block from the positions of a patch, which are padded.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         PatchRows<const Real> position) {
     return gradient_of_part(block, part, position, load_corner<PatchRows<const Real>>);
 }
 
-/// The same of all lanes.
+/// F of all lanes of a block. If `position` holds velocities: the rate of F.
 inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<const Vec3> position) {
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// One for each part of a block.
+/// One value for each part of a block.
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
-/// Number by number: what a call that is rare is given, so that the original need not be in memory.
+/// Copies number by number. A rare call gets the copy, so that the original need not be in memory.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
@@ -219,7 +219,7 @@ template <class T>
     return copy;
 }
 
-/// The lanes of a block added up, in the same order however many are computed at once.
+/// Sum over the lanes of a block. Its order does not depend on the number of lanes that are computed at once.
 [[gnu::always_inline]] inline Real sum_of_parts(const std::array<Real4, 2>& lanes) {
     const Real4 half = lanes[0] + lanes[1];
     return (half[0] + half[1]) + (half[2] + half[3]);
@@ -229,15 +229,15 @@ template <class T>
     return sum_of_parts({__builtin_shufflevector(all, all, 0, 1, 2, 3), __builtin_shufflevector(all, all, 4, 5, 6, 7)});
 }
 
-/// Q g_k
+/// Force Q g_k on node k.
 [[gnu::always_inline]] inline LaneVec3<KernelReal> force_on_node(const LaneMat3<KernelReal>& Q, const BlockNodes& block,
                                                                  Index k, std::size_t part) {
     const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
     return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
 }
 
-/// f_k = Q g_k, Q = -V P, and f_0 = -(f_1 + f_2 + ...): take(k, part, f_k), lanes side by side. All parts of a node
-/// come before the next node, so that sums have one order, whatever the width of a part.
+/// Calls take(k, part, f_k) for f_k = Q g_k, Q = -V P, and f_0 = -(f_1 + f_2 + ...), lanes side by side. All parts of a
+/// node come before the next node, so that the order of sums does not depend on the width of a part.
 template <class Take>
 [[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& Q, const BlockNodes& block,
                                                   Take&& take) {

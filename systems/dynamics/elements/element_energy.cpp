@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block that is asked for. The frame of an element starts
-/// from the same lane of the block before it, asked for or not: neighbours turn together. Laws without a frame do not
-/// look at it.
+/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) holds. The extraction of a
+/// frame starts from the same lane of the block before, asked for or not, since neighbours rotate alike. Laws without a
+/// frame do not use it.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
                        Visit&& visit) {

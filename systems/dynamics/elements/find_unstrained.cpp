@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t bodies_per_job = 16;
 bool move_alike(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
-    // the last first: it is far from the first, so that what turns or trembles is found out at once
+    // the last node is compared first: it is far from the first one, so that rotation and vibration show at once
     if (velocity.back() != first) return false;
     constexpr std::size_t at_once = 64;  // compared without a branch for each
     const Real x = first[0], y = first[1], z = first[2];
@@ -38,7 +38,7 @@ bool is_zero(const ElementStrain& strain) {
     });
 }
 
-/// Of an empty lane nothing is asked. What is no number is strained.
+/// True if no element of a block is strained. Lanes without volume do not count; NaN counts as strained.
 bool is_unstrained(const LaneMat3<Real8>& F, const ElementLane& volume) {
     const Real8 strain[9] = {F.c0.x - 1.0, F.c0.y, F.c0.z, F.c1.x, F.c1.y - 1.0, F.c1.z, F.c2.x, F.c2.y, F.c2.z - 1.0};
     for (std::size_t l = 0; l < element_lanes; ++l)

@@ -1,4 +1,4 @@
-// Bodies whose elements have nothing to do, since they only fly (docs/methods/skipping.md 1.1).
+// Finds bodies in pure translation, whose elements can be left out (docs/methods/skipping.md 1.1).
 #pragma once
 
 #include <span>
@@ -12,11 +12,12 @@
 
 namespace skerry {
 
-/// An element is strained, or turned, when an entry of F is further than this from that of the unit matrix: some
-/// hundred times what rounding makes of elements of a centimetre a metre from the origin.
+/// An element is strained or rotated if an entry of F differs from that of the unit matrix by more than this. It is
+/// some hundred times the rounding error of elements of a centimetre at a metre from the origin.
 inline constexpr Real unstrained_within = 1e-11;
 
-/// In so many steps rounding moves a node by that many half places of its position at most.
+/// Steps until an unstrained body is checked again. In as many steps rounding moves a node by at most as many half
+/// units in the last place of its position.
 inline constexpr std::uint16_t unstrained_steps = 1024;
 
 struct UnstrainedInputs {
@@ -50,10 +51,10 @@ struct UnstrainedOutputs {
     }
 };
 
-/// A body whose nodes all have the same velocity, bit by bit, and none of whose elements is strained or remembers that
-/// it was, is unstrained; then on for as long as velocities are the same, looked at again every unstrained_steps steps.
-/// What its elements remember for the next step is what they remember now. Whoever moves nodes otherwise than by their
-/// velocities sets `unstrained` to 0. Returns how many are. Parallel over bodies.
+/// A body is unstrained if all its nodes have bitwise the same velocity and none of its elements is strained or has a
+/// viscous strain. It stays unstrained while the velocities are equal; strains are checked again every unstrained_steps
+/// steps. Its elements keep their memory for the next step. Code that moves nodes other than by their velocities has to
+/// set `unstrained` to 0. Returns the number of unstrained bodies. Parallel over bodies.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry

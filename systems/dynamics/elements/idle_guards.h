@@ -1,4 +1,4 @@
-// Guards that do not act (docs/methods/elasticity.md 7.7).
+// Finds guards that do not act (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Blocks of a patch of guards of which none acts: those that do are viscous, too.
+/// True for the blocks of a patch of guards if none of them acts. Guards that act have a viscous time.
 inline bool is_idle(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     return elements.part[begin] == ElementPart::guard && !elements.viscous_time.empty() &&
            std::ranges::all_of(elements.viscous_time.subspan(begin, end - begin), [](Real time) { return time == 0; });

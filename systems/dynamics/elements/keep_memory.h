@@ -1,4 +1,4 @@
-// Memory of the elements after a committed step in which some bodies rested.
+// Memory of the elements after a committed step in which some bodies were asleep.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// rotation and viscous_strain = those of the step, and viscous_strain_next = that of before, for the blocks that were
-/// not left out and whose law or losses have them. The others keep theirs. Parallel over blocks.
+/// Sets rotation and viscous_strain to those of the step, and viscous_strain_next to the one before the step, for
+/// blocks that were not left out and whose law or losses use them. Other blocks stay as they are. Parallel over blocks.
 void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlockTable& table);
 
 }  // namespace skerry

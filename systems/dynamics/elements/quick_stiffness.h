@@ -1,4 +1,4 @@
-// A cheap bound on how stiff elements have become, for those that are made to stand a stiffness
+// A cheap bound on the present stiffness of elements, for implicit elements, which have an assumed stiffness
 // (docs/methods/clusters.md 3).
 #pragma once
 
@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// Pa, not below the bound of the law in each lane; 0 where the law does not stiffen. `square`: |F|^2, `J`: det F.
+/// Upper bound of the stiffness bound of the law in each lane; 0 if the stiffness of the law is constant [Pa].
+/// `square`: |F|^2, `J`: det F.
 template <class T>
 [[gnu::always_inline]] inline T quick_stiffness(const MaterialConstants& material, const T& square, const T& J) {
     return with_law(material.model, [&](auto law) {

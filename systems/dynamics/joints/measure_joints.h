@@ -1,4 +1,4 @@
-// What joints gave to the bodies that they move in this step, for the balance of a run.
+// Impulse and work of joints on the bodies that they move in this step, for the balance of a run.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@
 namespace skerry {
 
 struct JointMeasures {
-    Vec3 impulse = Vec3::Zero();  // N s, from the world and from held bodies
-    Real work = 0;                // J: of motors and of what leads, less what stops took
+    Vec3 impulse = Vec3::Zero();  // from the world and from held bodies [N s]
+    Real work = 0;                // of motors and of held bodies that move, less the work taken by stops [J]
 };
 
-/// Rigid bodies after the solve, by row.
+/// Blocks and rigid bodies after the solve; rigid bodies by row of their table.
 struct JointWorkInputs {
     std::span<const JointBlock> block;
     std::span<const Vec3> impulse;  // of the blocks
@@ -38,7 +38,7 @@ struct JointWorkInputs {
     }
 };
 
-/// Sequential, in the order of the blocks.
+/// Sums the work of all joints, and the impulses from the world and from held bodies. Sequential, in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry

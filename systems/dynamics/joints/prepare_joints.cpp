@@ -10,12 +10,12 @@ namespace skerry {
 
 namespace {
 
-/// The turn about the axis of the second that takes its first direction nearest to that of the first.
+/// Angle about the axis of the second frame that takes its first direction nearest to that of the first frame [rad].
 Real angle_between(const Mat3& first, const Mat3& second) {
     return std::atan2(first.col(0).dot(second.col(1)), first.col(0).dot(second.col(0)));
 }
 
-/// rad, in the frame of the second: by which the axis of the first is off, or all of it where it must not turn.
+/// Rotation of the first frame against the second, in axes of the second [rad]. For a hinge only the error of the axis.
 Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     if (kind != JointKind::hinge) return second.transpose() * rotation_vector(first * second.transpose());
     return second.transpose() * second.col(2).cross(first.col(2));

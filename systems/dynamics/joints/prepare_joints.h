@@ -1,4 +1,4 @@
-// The equations that joints ask of the velocities of this step (docs/methods/joints.md 2).
+// The velocity equations of the joints in this step (docs/methods/joints.md 2).
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Where a joint's frame is on one of its bodies, or in the world.
+/// Place of a joint's frame on one of its bodies or on the world, in coordinates of the world.
 struct JointPlace {
     Vec3 point;
     Mat3 axes;
@@ -27,7 +27,7 @@ struct JointInputs {
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
     std::span<const Range> body_rigid, body_nodes;  // BodyTable
-    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty: none is
+    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty: no body is asleep
     // RigidBodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, rest_center;
@@ -59,17 +59,17 @@ struct JointInputs {
     }
 
     std::size_t size() const { return kind.size(); }
-    /// Row of RigidBodyTable; of the world no_index.
+    /// Row of RigidBodyTable; no_index for the world.
     Index rigid(Index body) const {
         return body == no_index ? no_index : body_rigid[static_cast<std::size_t>(body)].begin;
     }
-    /// The first node of a body that impulses can move, else no_index.
+    /// The first node of a body if impulses can move the body, else no_index.
     Index moving_node(Index body) const {
         const Index row = rigid(body);
         if (row == no_index || holder[static_cast<std::size_t>(row)] != no_index) return no_index;
         return body_nodes[static_cast<std::size_t>(body)].begin;
     }
-    /// Whether no body of a joint moves in this step.
+    /// True if some body is asleep and no body of this joint moves in this step.
     bool rests(std::size_t j) const {
         const auto is_out = [&](Index body) {
             return moving_node(body) == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
@@ -79,16 +79,16 @@ struct JointInputs {
     JointPlace place(Index body, const JointFrame& frame) const;
 };
 
-/// The way of a slider (m) or the angle of a hinge (rad) between its places on both bodies, the turn nearest to the one
-/// before; 0 of others.
+/// Displacement of a slider [m] or angle of a hinge [rad] between the frames on both bodies; 0 for other kinds. Whole
+/// turns of a hinge are counted so that the angle is the one nearest to `before`.
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
-/// Writes the blocks of all joints of which a body moves, with the impulses of the last step as the first guess.
-/// `kick`: s, for which forces act, those of motors among them.
-/// Returns false where there is no joint (skipped).
+/// Writes the blocks of all joints with a moving body, with the impulses of the last step as the warm start.
+/// `kick`: time for which forces act, including those of motors [s].
+/// Returns false if there is no joint (skipped).
 bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks);
 
-/// What is known of the joints once a step is taken.
+/// State of the joints that a committed step stores.
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
@@ -102,7 +102,7 @@ struct JointMemory {
     }
 };
 
-/// Keeps what the joints gave for the next step. Returns false where there is no joint (skipped).
+/// Stores coordinates and impulses of the joints for the next step. Returns false if there is no joint (skipped).
 bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out);
 
 }  // namespace skerry

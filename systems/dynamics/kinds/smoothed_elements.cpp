@@ -25,8 +25,8 @@ struct Gradients {
         }
     }
 
-    /// Takes out the nodes whose gradients cancel, as that of an inner node in its own element does. Rounding leaves
-    /// 1e-16 of them, which moves nothing but would count in the bound on the step, whatever its size.
+    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding leaves 1e-16 of
+    /// them, which moves nothing but would count in the bound on the step, however small it is.
     void drop_nothings() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;
@@ -58,7 +58,7 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
                 element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
         element.drop_nothings();
-        // to the last bit, as the kernel has it
+        // bitwise the gradient of node 0 that the kernel uses
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
         element.gradient.front() = -others;
@@ -75,7 +75,7 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
 }  // namespace
 
 void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list) {
-    // in the order in which the mesh comes to them: neighbours stay neighbours
+    // edges in the order of their first tetrahedra, so that neighbours stay close
     std::vector<Group> groups;
     std::unordered_map<std::uint64_t, std::size_t> group_of;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
