@@ -64,11 +64,11 @@ public:
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid. The sphere cannot
     /// be attached or become another kind of body.
     BodyHandle add_body(const Sphere& sphere, const BodySettings& body);
-    /// Adds a rigid capsule in the same way. Its axis is z of its frame, and its first two nodes are the ends of the
-    /// axis (mesh::capsule_picture). `capsule.length` must be > 0.
+    /// Adds a rigid capsule; see add_body() for a sphere. Its axis is z of its frame, and its first two nodes are the
+    /// ends of the axis (mesh::capsule_picture). `capsule.length` must be > 0.
     BodyHandle add_body(const Capsule& capsule, const BodySettings& body);
-    /// Adds a rigid cylinder with flat ends and sharp rims in the same way. Its axis is z of its frame, and its first
-    /// node is the centre (mesh::cylinder_picture).
+    /// Adds a rigid cylinder with flat ends and sharp rims; see add_body() for a sphere. Its axis is z of its frame,
+    /// and its first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of nodes (local numbers) of a body: they stay in place or follow `motion` from now on.
@@ -167,13 +167,12 @@ public:
     void move_to(ColliderHandle collider, const Pose& pose, Real duration);
     void move_to(AttachmentHandle attachment, const Pose& pose, Real duration);
     /// Jumps to a pose. Objects on the way are neither pushed nor detected. Constant velocities continue from there,
-    /// keys and targets are dropped. New overlaps are treated as at the start (Settings::start_overlaps). A body held
-    /// by the attachment is deformed; if the attachment holds a whole rigid body or the frame of an implicit one, this
-    /// moves along.
+    /// keys and targets are dropped. Settings::start_overlaps applies to new overlaps. A body held by the attachment is
+    /// deformed; if the attachment holds a whole rigid body or the frame of an implicit one, this moves along.
     void set_pose(ColliderHandle collider, const Pose& pose);
     void set_pose(AttachmentHandle attachment, const Pose& pose);
     /// Sets the positions of all nodes of a body [m, world frame]. Velocities stay, and attached nodes are held at
-    /// their new positions. New overlaps are treated as at the start. Throws SceneError if an element would be
+    /// their new positions. Settings::start_overlaps applies to new overlaps. Throws SceneError if an element would be
     /// inverted.
     void set_positions(BodyHandle body, std::span<const Vec3> position);
     void set_velocities(BodyHandle body, std::span<const Vec3> velocity);
@@ -202,7 +201,7 @@ public:
     void set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask);
     void set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask);
     /// Switches the collision of a pair on or off; initially all pairs that their groups admit are on. For a body with
-    /// itself it sets self_contact. Overlaps of a pair that is switched on are treated as at the start.
+    /// itself it sets self_contact. Settings::start_overlaps applies to a pair that is switched on.
     void set_collision(BodyHandle a, BodyHandle b, bool on);
     void set_collision(BodyHandle body, ColliderHandle collider, bool on);
     /// True if groups and switches let the two collide.
