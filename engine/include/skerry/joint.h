@@ -48,7 +48,7 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
-    Real error = 0;              // distance of the points that should coincide, for a slider normal to the axis [m]
+    Real error = 0;              // distance of the points that should coincide; for a slider, normal to the axis [m]
 };
 
 /// The joints of a world: a view, valid until the world is moved or destroyed. As in World, functions that change

@@ -109,8 +109,8 @@ struct LumpedContacts {
     std::vector<std::array<Index, 4>> node;
     std::vector<std::array<Real, 4>> weight;
     std::vector<Vec3> normal;  // unit
-    // part of u from gaps, collider motion and the spin of round bodies, less half of the turn of the slip in the step
-    // [m/s]
+    // velocity offset from gaps, collider motion and the spin of round bodies, less half of the rotation of the slip by
+    // forces within the step [m/s]
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // mu
     // one entry per node

@@ -24,7 +24,7 @@ struct QueryFilter {
 struct SurfaceHit {
     BodyHandle body{};          // the body; a stale handle if the surface is that of a collider
     ColliderHandle collider{};  // the collider; a stale handle if the surface is that of a body
-    // triangle of World::surface, or of the mesh of a collider; -1 for analytic shapes, those of bodies included
+    // triangle of World::surface, or of the mesh of a collider; -1 for analytic colliders and round rigid bodies
     Index triangle = -1;
     std::array<Real, 3> barycentric{};  // weights of the triangle's corners, in [0, 1], their sum 1
     Vec3 point = Vec3::Zero();          // [m]

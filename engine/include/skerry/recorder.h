@@ -75,8 +75,8 @@ struct SeriesColumn {
     std::string heading() const;
 };
 
-/// Records a row of values at the end of the first call of advance that reaches the next multiple of `every`. Forces
-/// cover all calls since the previous row: impulses are sums, forces and moments are means, and largest_force is the
+/// Records a row of values after the first call of advance that reaches the next multiple of `every`. Forces cover all
+/// calls since the previous row: impulses are sums, forces and moments are means, and largest_force is the
 /// largest of any step. All rows stay in memory as long as the Recorder exists.
 class Recorder {
 public:

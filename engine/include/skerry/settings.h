@@ -128,9 +128,9 @@ struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // axis times angle [rad]
     Motion motion{};
-    std::optional<Real> friction{};  // default: the value of the body; if given, the geometric mean of both counts
+    std::optional<Real> friction{};  // default: the value of the body; if given, the geometric mean of both is used
     std::optional<Real> static_friction{}, dynamic_friction{};
-    std::optional<Real> restitution{};  // default: the value of the body; if given, the larger of both counts
+    std::optional<Real> restitution{};  // default: the value of the body; if given, the larger of both is used
     Real contact_distance = 0;          // thickness of the contact shell of a mesh collider [m]
     std::uint32_t collision_group = 1;  // see BodySettings::collision_group
     std::uint32_t collision_mask = 0xffffffffu;
@@ -177,7 +177,7 @@ struct Settings {
     // out of the step, and its contacts stay as they are, until something presses on it or changes it. With `sleep` a
     // body is still if it hardly moves and its motion neither grows nor goes on steadily. Its distance from
     // equilibrium is then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). If sleep_speed is
-    // above 0, a body is still instead if all its nodes are slower than that.
+    // above 0, a body is still if all its nodes are slower than that, whatever `sleep` says.
     bool sleep = true;
     Real sleep_speed = 0;   // >= 0 [m/s]
     Real sleep_time = 0.5;  // >= 0 [s]

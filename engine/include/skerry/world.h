@@ -56,8 +56,8 @@ public:
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
 
     // Building, between calls of advance; in callbacks of advance these functions throw SceneError. Handles to all
-    // other objects stay valid. The cost of a change depends on the size of the changed object only. Objects that are
-    // removed one after the other leave the tables together, when these are needed next.
+    // other objects stay valid. The cost of a change depends on the size of the changed object only. Consecutive
+    // removals are carried out together, when the tables are needed next.
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere; its nodes, faces and tetrahedra are for output
@@ -125,7 +125,7 @@ public:
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
     std::vector<Real> von_mises_stress(BodyHandle body) const;  // by tetrahedron [Pa]
     /// Step that each tetrahedron allows in the present shape of the body [s]: that of the stiffest element that covers
-    /// it. The shortest one is the stable step of the body; the tetrahedra that have it are worth repairing.
+    /// it. The shortest one is the stable step of the body; the tetrahedra that have it are those to repair.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     const std::string& name(BodyHandle body) const;
     /// Kind of the elements. Instead of `smoothed` it is the resolved kind; if that depends on the material,
@@ -185,8 +185,8 @@ public:
     /// momentum and angular momentum stay, to rounding. Shape and velocities are taken over between explicit and
     /// implicit bodies. A rigid body has the shape of its mesh, fitted to the nodes; energy of deformation and
     /// vibration is lost. An explicit body starts with fully relaxed losses, as if it had long had its shape. Throws
-    /// SceneError for `automatic`, for a body that is attached or has a joint, and for a rigid or implicit body with
-    /// self-contact.
+    /// SceneError for `automatic`, for a body that is attached or has a joint or is a sphere, capsule or cylinder, and
+    /// for a body with self-contact that is to be rigid or implicit.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// External forces on the nodes, kept until set again [N].
     void set_loads(BodyHandle body, std::span<const Vec3> load);
