@@ -1,4 +1,4 @@
-// The one exception of bad input.
+// The exception for bad input.
 #pragma once
 
 #include <stdexcept>
@@ -7,14 +7,14 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Bad input while building or reading: names the file, the object, the field, what was found and what was expected.
+/// Bad input while building or reading. The message names the file, object and field, the found and the expected value.
 class SceneError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// The parts of such a message, put together in one way everywhere:
-/// "FILE: OBJECT: FIELD: found FOUND, expected EXPECTED (HINT)". Empty parts are left out.
+/// The parts of the message of a SceneError. text() joins them to
+/// "FILE: OBJECT: FIELD: found FOUND, expected EXPECTED (HINT)" and leaves out empty parts.
 struct Complaint {
     std::string file, object, field, found, expected, hint;
 

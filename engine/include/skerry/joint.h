@@ -1,4 +1,4 @@
-// Joints of rigid bodies: what two of them leave to each other, how far, and what drives them (docs/methods/joints.md).
+// Joints of rigid bodies with limits and motors (docs/methods/joints.md).
 #pragma once
 
 #include <limits>
@@ -14,59 +14,63 @@ namespace skerry {
 
 class World;
 
-/// Drives the axis of a hinge or a slider, as far as its strength goes, and holds it there. Of speed and position one.
+/// A motor on the axis of a hinge or a slider. Exactly one of `speed` and `position` must be given. The motor reaches
+/// and holds this target as far as its strength allows.
 struct JointMotor {
-    std::optional<Real> speed{};     // rad/s or m/s
-    std::optional<Real> position{};  // rad or m, of the coordinate; reached within a step where it can
-    Real strength = 0;               // N m or N, >= 0: the most that it exerts
-    Real fastest = std::numeric_limits<Real>::infinity();  // rad/s or m/s, > 0: on the way to a position
+    std::optional<Real> speed{};     // target speed [rad/s or m/s]
+    std::optional<Real> position{};  // target coordinate, reached within a step if possible [rad or m]
+    Real strength = 0;               // largest moment or force, >= 0 [N m or N]
+    Real fastest = std::numeric_limits<Real>::infinity();  // largest speed towards `position`, > 0 [rad/s or m/s]
 };
 
-/// A joint where its bodies are now. Its coordinate is how far the first has come from there against the second: the
-/// angle of a hinge about the axis (rad, whole turns counted), the way of a slider along it (m).
+/// A joint of two rigid bodies, or of one and the world, in their present poses. Its coordinate is zero there and
+/// measures the motion of the first body relative to the second: the angle of a hinge about the axis, with whole turns
+/// counted [rad], or the displacement of a slider along the axis [m].
 struct JointSettings {
     JointKind kind = JointKind::ball;
     BodyHandle first{};                    // a rigid body
-    std::optional<BodyHandle> second{};    // another; none: the world
-    Vec3 point = Vec3::Zero();             // m, world
-    Vec3 axis = {0, 0, 1};                 // of a hinge or slider, world, any length but zero
-    std::optional<Real> lower{}, upper{};  // of the coordinate: lower <= 0 <= upper
+    std::optional<BodyHandle> second{};    // another rigid body; if not given, the world
+    Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
+    Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world, any length but zero
+    std::optional<Real> lower{}, upper{};  // limits of the coordinate, lower <= upper
     std::optional<JointMotor> motor{};
-    bool bodies_touch = false;  // else contacts of the two are switched off while the joint is there
+    bool bodies_touch = false;  // false: the two do not collide while the joint exists
 };
 
-/// What a joint is and does. Forces are those of the last step, on the first body, as the world sees them.
+/// State of a joint. Force and moment are those of the last step on the first body, in world axes.
 struct JointState {
     JointKind kind = JointKind::ball;
     BodyHandle first{};
     std::optional<BodyHandle> second{};
-    Vec3 point = Vec3::Zero();   // m, of the first body
-    Vec3 axis = {0, 0, 1};       // of the second
-    Real coordinate = 0;         // rad or m
-    Real speed = 0;              // rad/s or m/s
-    Vec3 force = Vec3::Zero();   // N, at the point
-    Vec3 moment = Vec3::Zero();  // N m
-    Real error = 0;              // m: how far the points are apart that should be one
+    Vec3 point = Vec3::Zero();   // point of the joint on the first body, in the world [m]
+    Vec3 axis = {0, 0, 1};       // axis on the second body, in the world
+    Real coordinate = 0;         // [rad or m]
+    Real speed = 0;              // [rad/s or m/s]
+    Vec3 force = Vec3::Zero();   // at `point` [N]
+    Vec3 moment = Vec3::Zero();  // [N m]
+    Real error = 0;              // distance of the points that should coincide; for a slider, normal to the axis [m]
 };
 
-/// The joints of a world: a view, valid as long as the world is where it is. What changes them is allowed between calls
-/// of advance, as in World, and throws SceneError, with nothing changed, for a handle that is stale and for values out
-/// of range. They are state: saved, cloned and hashed.
+/// The joints of a world: a view, valid until the world is moved or destroyed. As in World, functions that change
+/// joints may be called between calls of advance only. They throw SceneError and change nothing if a handle is stale or
+/// a value is out of range. Joints are part of the state: saved, cloned and hashed.
 class Joints {
 public:
     explicit Joints(World& world) : world_(&world) {}
 
-    /// Joins two rigid bodies, or one and the world, where they are now. Goes with either of its bodies.
+    /// Joins two rigid bodies, or one and the world, in their present poses. The joint is removed with either body.
     JointHandle add(const JointSettings& joint);
     void remove(JointHandle joint);
     bool alive(JointHandle joint) const;
     std::vector<JointHandle> all() const;  // in the order added
-    /// Where it is, and what it gave in the last step.
+    /// Present pose and motion of a joint, and its force and moment in the last step.
     JointState state(JointHandle joint) const;
-    /// What drives a hinge or a slider from now on; nothing where none is given. A motor that it has already changes no
-    /// bit.
+    /// Sets the motor of a hinge or a slider, or removes it if none is given. Setting the present motor again changes
+    /// no bit.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);
-    /// How far it goes: where it is beyond, it is taken back at its speed and recovery_speed.
+    /// Sets or removes the limits of the coordinate. A joint beyond a limit is pulled back at a bounded speed. For a
+    /// slider it is recovery_speed plus the speeds at the joint due to the spins of both bodies, for a hinge 1 rad/s
+    /// plus both spins.
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
 
 private:

@@ -13,112 +13,114 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`; a positive tetrahedron has det(n1 - n0, n2 - n0, n3 -
-/// n0) > 0.
+/// A tetrahedral mesh in its own frame. Tetrahedra index `nodes`. A tetrahedron is positive if
+/// det(n1 - n0, n2 - n0, n3 - n0) > 0.
 struct Mesh {
-    std::vector<Vec3> nodes;                       // m
-    std::vector<std::array<Index, 4>> tetrahedra;  // rows of nodes
-    // A number of each tetrahedron, for example of its material: BodySettings::materials goes by it. Or empty: no
-    // labels
+    std::vector<Vec3> nodes;                       // [m]
+    std::vector<std::array<Index, 4>> tetrahedra;  // indices of nodes
+    // Label of each tetrahedron, for example the number of its material; BodySettings::materials refers to it. Empty:
+    // no labels.
     std::vector<int> label{};
 };
 
-/// A closed or open triangle surface, counter-clockwise seen from outside.
+/// A closed or open triangle surface. Triangles are counter-clockwise as seen from outside.
 struct SurfaceMesh {
-    std::vector<Vec3> nodes;                      // m
-    std::vector<std::array<Index, 3>> triangles;  // rows of nodes
+    std::vector<Vec3> nodes;                      // [m]
+    std::vector<std::array<Index, 3>> triangles;  // indices of nodes
 };
 
-/// Built-in meshes. All are centred at the origin unless said, axes along z, with positive tetrahedra. Lengths in
-/// metres. `resolution` counts elements along the smallest extent unless said. Throw std::invalid_argument for sizes
-/// that are not positive and for meshes too large for 32-bit indices.
+/// Built-in meshes with positive tetrahedra. Unless stated otherwise they are centred at the origin, their axis is z,
+/// and `resolution` is the number of elements along the smallest extent. Lengths are in metres. The functions throw
+/// std::invalid_argument for sizes that are not positive and for meshes too large for 32-bit indices.
 namespace mesh {
 
-/// A box of the given edge lengths, cut into cells (i, j, k) of six tetrahedra each: cells alike in each eighth of the
-/// box, eighths that mirror each other where the number of cells is even.
+/// A box of the given edge lengths, divided into cells (i, j, k) of six tetrahedra each. All cells of an octant of the
+/// box are cut alike. Octants mirror each other where the number of cells is even.
 Mesh box(const Vec3& size, const std::array<int, 3>& cells);
 
-/// A ball: `resolution` elements across the diameter (an odd number counts as the next even one). All boundary nodes
-/// lie on the sphere.
+/// A ball: `resolution` elements across the diameter, an odd number rounded up to even. All boundary nodes lie on the
+/// sphere.
 Mesh ball(Real radius, int resolution);
 
-/// What a rigid sphere is drawn with: its first node is in the middle, the next twelve are the corners of an
-/// icosahedron, all others lie between these on the sphere. Its faces are flat, a tetrahedron each.
+/// A mesh that represents a rigid sphere in output. The first node is the centre, the next twelve are the corners of an
+/// icosahedron, and all others lie between these on the sphere. Faces are flat, with one tetrahedron each.
 Mesh sphere_picture(Real radius);
 
-/// What a rigid capsule is drawn with: its first two nodes are the ends of its axis, at z = -length/2 and length/2, all
-/// others lie on its surface; the next ten are the pole of either end and four places of the rim there. Its faces are
-/// flat, and `length` (m) is that of the straight part.
+/// A mesh that represents a rigid capsule in output. The first two nodes are the ends of the axis at z = -length/2 and
+/// length/2; all others lie on the surface. The next ten are the pole and four rim nodes of either end. Faces are flat.
+/// `length` is the length of the straight part [m].
 Mesh capsule_picture(Real radius, Real length);
 
-/// What a rigid cylinder is drawn with: its first node is in the middle, the second in the middle of the upper end, at
-/// z = height/2, all others but one lie on its rims. Its faces are flat.
+/// A mesh that represents a rigid cylinder in output. The first node is the centre, the second the centre of the upper
+/// end at z = height/2. All others lie on the rims, except the centre of the lower end. Faces are flat.
 Mesh cylinder_picture(Real radius, Real height);
 
-/// A solid cylinder of the given radius and height: `resolution` elements across the diameter (odd: the next even
-/// number).
+/// A solid cylinder of the given radius and height: `resolution` elements across the diameter, an odd number
+/// rounded up to even.
 Mesh cylinder(Real radius, Real height, int resolution);
 
-/// A body of revolution about z: `profile` lists (radius, z) from bottom to top, z ascending and radii positive;
-/// between the points the outline is linear. `resolution` elements across the largest diameter (odd: the next even
-/// number), about as long along z; kinks closer together than that are rounded, and an end narrower than a third of an
-/// element closes to a point.
+/// A solid of revolution about z. `profile` lists (radius, z) from bottom to top, z ascending and radii positive; the
+/// outline is linear between these points. There are `resolution` elements across the largest diameter (an odd number
+/// is rounded up to even), and layers along z are about as high. Kinks closer together than 0.6 elements are rounded.
+/// An end with a radius below 0.3 elements closes to a point.
 Mesh lathe(std::span<const std::array<Real, 2>> profile, int resolution);
 
 /// A skittle (a lathe with the outline of a ninepin) of the given height, standing on z = 0.
 Mesh skittle(Real height, int resolution);
 
-/// A table: a top of size x by y by thickness on four square legs, standing on z = 0. `cells_per_leg` elements across a
+/// A table on z = 0: a top of length by width by thickness on four square legs, with `cells_per_leg` cells across a
 /// leg.
 struct TableShape {
-    Real length = 0.5;      // m, along x
-    Real width = 0.3;       // m, along y
-    Real height = 0.3;      // m
-    Real thickness = 0.05;  // m, of the top
-    Real leg = 0.05;        // m, edge of a leg
+    Real length = 0.5;      // along x [m]
+    Real width = 0.3;       // along y [m]
+    Real height = 0.3;      // top included [m]
+    Real thickness = 0.05;  // of the top [m]
+    Real leg = 0.05;        // edge length of the section of a leg [m]
     int cells_per_leg = 1;
 };
 Mesh table(const TableShape& shape);
 
 /// Reads Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele (either
-/// name). Linear tetrahedra are taken, other element kinds are passed over, curved tetrahedra refused; nodes no
-/// tetrahedron uses are dropped. If no tetrahedron is positive the file counts the other way round and all are turned
-/// over; if some are, the mesh is as in the file and `inspect` says what is wrong with it.
+/// name). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused nodes are
+/// dropped. If no tetrahedron is positive, the file has the opposite node order and all tetrahedra are reoriented. If
+/// some are positive and others not, the mesh is left as in the file, and `inspect` counts the faults.
 ///
-/// Labels are, of Gmsh: the number of the physical group (the first, if a volume is in several), 0 outside of all; of
-/// the elementary volume where no tetrahedron is in a group. Of VTK: the first array of cell data that is called
-/// region, gmsh:physical, medit:ref or CellEntityIds and has one whole number a cell. Of TetGen: the last attribute of
-/// the .ele, where all are whole numbers. Without any of these the mesh has no labels.
+/// Sources of the labels; without them the mesh has no labels:
+/// - Gmsh: the number of the physical group (of the first one, if a volume is in several), 0 outside of all groups. If
+///   no tetrahedron is in a group: the number of the elementary volume.
+/// - VTK: the first array of cell data that is called region, gmsh:physical, medit:ref or CellEntityIds and has one
+///   whole number per cell.
+/// - TetGen: the last attribute in the .ele file, if it is a whole number for all tetrahedra.
 ///
-/// Throws SceneError that names the file, the place and what was found and expected.
+/// Throws SceneError that names the file, the place, and the found and the expected text.
 Mesh read(const std::string& path);
 
-/// Reads the triangles of a file of the same kinds, or of a Wavefront .obj or an STL; of a tetrahedral file its
-/// boundary. Polygons fan out into triangles. Throws SceneError.
+/// Reads the triangles of a file in one of the formats of `read`, or in Wavefront .obj or .stl format. A tetrahedral
+/// file gives its boundary. Polygons are split into triangles around their first corner. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path);
 
-/// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` gives the same mesh back: the whole file or none. The
-/// name ends in .msh. Throws SceneError.
+/// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns the same mesh. The file is written as a whole
+/// or not at all. Its name must end in .msh. Throws SceneError.
 void write(const std::string& path, const Mesh& mesh);
 
-/// The boundary of a tetrahedral mesh. Throws SceneError when a tetrahedron names nodes that do not exist or one twice,
-/// or a node is not finite; so does `inspect`.
+/// The boundary of a tetrahedral mesh. Throws SceneError if a tetrahedron has a node twice or one that does not exist,
+/// or if a position is not finite; `inspect` does the same.
 SurfaceMesh boundary(const Mesh& mesh);
 
 }  // namespace mesh
 
-/// What `skerry inspect` prints of a mesh.
+/// Statistics of a mesh, as printed by `skerry inspect`.
 struct MeshReport {
     std::size_t nodes = 0, tetrahedra = 0, boundary_triangles = 0, components = 0;
-    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // m
-    Real volume = 0;                                  // m^3
-    Real mean_edge = 0, min_edge = 0, max_edge = 0;   // m
-    Real min_altitude = 0;                            // m
-    // 12 (3 V)^(2/3) / sum of squared edges: 1 is regular, < 0 inverted
+    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
+    Real volume = 0;                                  // [m^3]
+    Real mean_edge = 0, min_edge = 0, max_edge = 0;   // edge lengths [m]
+    Real min_altitude = 0;                            // smallest altitude of a tetrahedron [m]
+    // 12 (3 V)^(2/3) / (sum of squared edge lengths): 1 for a regular tetrahedron, < 0 for an inverted one
     Real min_quality = 0, mean_quality = 0;
-    std::size_t inverted = 0, flat = 0;  // tetrahedra of negative, of no volume
-    bool closed_manifold = false;        // of the boundary: edges of two triangles, a ring of them at each node
-    std::map<int, std::size_t> labels;   // tetrahedra with each label; none without labels
+    std::size_t inverted = 0, flat = 0;  // tetrahedra of negative and of zero volume
+    bool closed_manifold = false;        // boundary: two triangles at each edge, one ring of them at each node
+    std::map<int, std::size_t> labels;   // number of tetrahedra by label; empty without labels
 };
 MeshReport inspect(const Mesh& mesh);
 

@@ -1,4 +1,4 @@
-// Time series of a run: where points are, what forces act, how much energy there is (docs/outputs.md).
+// Time series of a run: positions of points, forces and energies (docs/outputs.md).
 #pragma once
 
 #include <array>
@@ -15,94 +15,96 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Position, displacement and velocity of a point of a body that moves with its material: with nodes, by weights that
-/// sum to one.
+/// Records position, displacement and velocity of a material point of a body: a weighted mean of up to four nodes. The
+/// weights must sum to one.
 struct PointProbe {
     BodyHandle body{};
-    std::array<Index, 4> node{};   // local
-    std::array<Real, 4> weight{};  // of each
-    std::optional<Vec3> origin{};  // m, of its displacement; by default where it is when the recorder is made
+    std::array<Index, 4> node{};   // local node numbers
+    std::array<Real, 4> weight{};  // weight of each node
+    std::optional<Vec3> origin{};  // origin of the displacement [m]; default: position when the recorder is made
 };
-/// A point of the world, m, as the body is now: in the tetrahedron that it lies in. One outside of all of them, but no
-/// further from a node than the mean edge of the surface, is that node; others are refused with SceneError.
+/// Probe of the material point that is now at `point` (world, [m]), interpolated in the tetrahedron that contains it. A
+/// point outside of all tetrahedra is replaced by the nearest node, if that is no further away than the mean surface
+/// edge. Otherwise throws SceneError.
 PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point);
 
-/// Of the centre of mass.
+/// Records position, displacement and velocity of the centre of mass of a body.
 struct BodyProbe {
     BodyHandle body{};
-    std::optional<Vec3> origin{};  // as PointProbe::origin
+    std::optional<Vec3> origin{};  // see PointProbe::origin
 };
-/// What contacts exert on a body: all of them, or those with one other body or collider.
+/// Records the contact forces on a body: of all contacts, or of those with one other body or collider.
 struct BodyForceProbe {
     BodyHandle body{};
     std::optional<std::variant<BodyHandle, ColliderHandle>> by{};
 };
+/// Records the contact forces on a collider: of all contacts, or of those with one body.
 struct ColliderForceProbe {
     ColliderHandle collider{};
     std::optional<BodyHandle> by{};
 };
-/// What an attachment exerts on its body.
+/// Records the force of an attachment on its body.
 struct ReactionProbe {
     AttachmentHandle attachment{};
 };
-/// Kinetic, elastic and potential energy of the world, and what was dissipated.
+/// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
-/// The largest von Mises stress of nodes (local) of a body; of all without any.
+/// Records the largest von Mises stress at the given nodes (local numbers) of a body, or at all nodes if none is given.
 struct StressProbe {
     BodyHandle body{};
     std::vector<Index> nodes{};
 };
-/// The smallest ratio of volume of the elements of a body to that at rest; below 0 one is turned inside out.
+/// Records the smallest ratio of present volume to rest volume of the tetrahedra of a body; below 0 one is inverted.
 struct VolumeProbe {
     BodyHandle body{};
 };
 
 struct RecordedProbe {
-    std::string name;  // of its own, not empty, without '/' and control characters
+    std::string name;  // unique, not empty, "." or "time", without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, EnergyProbe, StressProbe,
                  VolumeProbe>
         what;
 };
 
-/// A column of a series: "PROBE.QUANTITY [UNIT]", "time [s]" the first.
+/// A column of a series. Its heading is "PROBE.QUANTITY [UNIT]"; the first column is "time [s]".
 struct SeriesColumn {
-    std::string probe;  // empty: time
+    std::string probe;  // empty for the time
     std::string quantity;
-    std::string unit;  // SI; 1 of counts and ratios
+    std::string unit;  // SI unit; 1 for counts and ratios
 
     std::string heading() const;
 };
 
-/// Records a row whenever time has come to the next multiple of `every`, at the end of a call of advance. Forces are
-/// those of all calls since the row before: impulses are sums, forces and moments means, largest_force the largest of a
-/// step. Rows stay in memory until it is written or thrown away.
+/// Records a row of values after the first call of advance that reaches the next multiple of `every`. Forces cover all
+/// calls since the previous row: impulses are sums, forces and moments are means, and largest_force is the
+/// largest of any step. All rows stay in memory as long as the Recorder exists.
 class Recorder {
 public:
-    /// `every`: s, >= 0; 0: at every sample. Where a probe is of forces and the world does not measure them, it does
-    /// from now on, moments about the origin. Throws SceneError that names the probe.
+    /// `every`: time between rows, >= 0 [s]; with 0 every sample makes a row. If a probe needs forces and the world
+    /// does not measure them, measuring is switched on, with moments about the origin. Throws SceneError that names the
+    /// probe.
     Recorder(World& world, std::vector<RecordedProbe> probes, Real every = 0);
     ~Recorder();
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
 
-    /// To be called after every call of advance, so that no impulse is missed; before the first it records how things
-    /// begin, with forces that are not a number.
+    /// Must be called after every call of advance, so that no impulse is missed. A call before the first step records
+    /// the initial state, with NaN as forces.
     void sample(const World& world);
     const std::vector<SeriesColumn>& columns() const;
     std::size_t row_count() const;
-    /// One value a column; valid until the next sample.
+    /// The values of a row, one per column; valid until the next sample.
     std::span<const Real> row(std::size_t number) const;
 
-    /// From now on each row goes to a CSV file as soon as it is there, those so far at once: a run that is killed
-    /// leaves a file of whole rows. With `keep_until` (s) rows that the file has up to that time stay before them:
-    /// headings have to be the same. What was there is replaced as write_csv does. Throws SceneError, here and in
-    /// sample.
+    /// Writes the rows so far to a CSV file, and from now on each row as soon as it is recorded: a run that is killed
+    /// leaves a file of complete rows. The file is replaced as in write_csv. With `keep_until` [s] its rows up to that
+    /// time are kept at the beginning; its headings must be the same. Throws SceneError, here and in sample.
     void stream_csv(const std::filesystem::path& file, std::optional<Real> keep_until = {});
-    /// Headings with units in the first line, then numbers with all their digits, "nan" where there is none. The file
-    /// is replaced as a whole or not at all. Throws SceneError.
+    /// Writes CSV: headings with units in the first line, then numbers with all their digits, "nan" for missing values.
+    /// The file is replaced as a whole or not at all. Throws SceneError.
     void write_csv(const std::filesystem::path& file) const;
-    /// HDF5: a data set "/time" and one "/PROBE/QUANTITY" for each other column, with the attribute "unit". The file is
-    /// replaced as a whole or not at all. Throws SceneError.
+    /// Writes HDF5: a data set "/time" and a data set "/PROBE/QUANTITY" for each other column, with the attribute
+    /// "unit". The file is replaced as a whole or not at all. Throws SceneError.
     void write_hdf5(const std::filesystem::path& file) const;
 
 private:

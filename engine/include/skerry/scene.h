@@ -24,9 +24,10 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};
     std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
-    std::optional<ElementKind> element{};  // of all bodies
-    // PLACE=VALUE, such as bodies[0].position=[0,0,1], in their order and before all above: of the file itself, not of
-    // what it includes. PLACE as messages write it, VALUE in JSON or a text.
+    std::optional<ElementKind> element{};  // element kind of all bodies
+    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They change the scene file itself, not the files
+    // that it includes, in this order and before all members above. PLACE is written as in error messages. VALUE is
+    // JSON, else it is taken as a string.
     std::vector<std::string> assignments{};
 };
 
@@ -34,24 +35,24 @@ struct SceneOverrides {
 struct Probe {
     std::string name;
     BodyHandle body;
-    std::vector<Index> nodes;  // local
+    std::vector<Index> nodes;  // local node numbers
 };
 
-/// A scene as built.
+/// A scene with its world built.
 struct Scene {
     std::string name;
     std::string description;
-    std::vector<std::string> materials;  // names, in the order added
-    Real seconds = 2;                    // s, length of a run unless asked otherwise
-    Real frame_step = 1.0 / 60;          // s, between frames of output
+    std::vector<std::string> materials;  // names of the materials, in the order added
+    Real seconds = 2;                    // default length of a run [s]
+    Real frame_step = 1.0 / 60;          // time between frames of output [s]
     World world;
     std::vector<Probe> probes;
-    std::vector<RecordedProbe> recorded;  // what a Recorder takes, in the order of the file
-    Real probe_step = 1.0 / 60;           // s, between two looks at the probes, or two rows
+    std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
+    Real probe_step = 1.0 / 60;           // time between two samples of the probes, or two rows [s]
 };
 
-/// Reads and builds a scene. Mesh files are looked for beside it. Throws SceneError for anything it does not
-/// understand: unknown keys name the nearest known one.
+/// Reads a scene and builds its world. Mesh files are searched beside the scene file. Throws SceneError for any input
+/// that it does not understand; for an unknown key the message names the nearest known one.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
 /// The JSON schema of scene files.

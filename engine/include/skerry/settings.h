@@ -1,5 +1,5 @@
-// What can be set about materials, bodies, colliders and the step. SI units everywhere. Every member has an
-// initialiser, so that naming some of them warns about none.
+// Settings of materials, bodies, colliders and the step, in SI units. Every member has an initialiser, so that a
+// designated initialiser of some members causes no compiler warning about the others.
 #pragma once
 
 #include <array>
@@ -23,31 +23,33 @@ namespace skerry {
 inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
 struct MaterialSettings {
-    Real young_modulus = 1e5;                // Pa, > 0
+    Real young_modulus = 1e5;                // > 0 [Pa]
     Real poisson_ratio = 0.4;                // > -1 and < 0.5
-    Real density = 1000;                     // kg/m^3, > 0
-    Real friction = 0.5;                     // Coulomb's mu, >= 0; both of the next two unless they are given
+    Real density = 1000;                     // > 0 [kg/m^3]
+    Real friction = 0.5;                     // Coulomb's mu, >= 0: default of the next two
     std::optional<Real> static_friction{};   // >= dynamic_friction
     std::optional<Real> dynamic_friction{};  // >= 0
-    Real restitution = 0;                    // of a surface point at an impact, in [0, 1]; not of the body as a whole
-    Real damping = 0;                        // 1/s, >= 0: decay rate of deformation velocities; momentum is kept
-    // Tangent of the angle by which strain is behind stress, at every frequency that a body of this material has: a
-    // free vibration loses about 2 pi times this of its energy in a period. Rubber has 0.05 to 0.2, soft tissue 0.1 to
-    // 0.3, wood 0.01, steel below 0.001. Makes the step a few per cent shorter (docs/methods/elasticity.md 6).
+    Real restitution = 0;                    // of a surface point in an impact, in [0, 1]; not of the body as a whole
+    Real damping = 0;                        // decay rate of deformation velocities, >= 0 [1/s]; momentum is kept
+    // Tangent of the phase angle between stress and strain, at all natural frequencies of a body. A free vibration
+    // loses about 2 pi times this share of its energy in a period. Rubber has 0.05 to 0.2, soft tissue 0.1 to 0.3, wood
+    // 0.01, steel below 0.001. Makes the step a few per cent shorter (docs/methods/elasticity.md 6).
     Real loss_factor = 0.05;  // from 0 to 0.3
-    // Damping ratio that an element has at its own highest frequency, where its volume changes.
+    // Damping ratio of volume changes of an element at its own highest frequency.
     Real bulk_viscosity = 0.06;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 
-/// How a body moves. explicit_elastic: it deforms, in steps that its stiffest element stands. implicit_elastic: it
-/// deforms by linear elasticity in the frame that moves with it, and by Newton's method where strain is large, by
-/// backward Euler, in any step; for what is stiff (docs/methods/implicit_bodies.md). rigid: as a whole, with the mass
-/// and the inertia of its mesh; of its materials only density, friction and restitution count
-/// (docs/methods/rigid_bodies.md). Rigid and implicit bodies set no step and do not touch themselves. automatic:
-/// implicit where that is predicted to cost less than half as much and the body deforms by little, else explicit;
-/// decided when the body is added, for the step that the bodies which are there then allow (World::dynamics_choice;
-/// docs/methods/implicit_bodies.md 6).
+/// How a body moves. Rigid and implicit bodies do not limit the step and have no self-contact.
+/// - explicit_elastic: it deforms; the step must be stable for its stiffest element.
+/// - rigid: it moves as a whole, with the mass and the inertia of its mesh. Of its materials only density, friction and
+///   restitution count (docs/methods/rigid_bodies.md).
+/// - implicit_elastic: it deforms by backward Euler (see Settings::theta), which is stable at any step size; for stiff
+///   bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by Newton's method
+///   (docs/methods/implicit_bodies.md).
+/// - automatic: implicit if the predicted cost is less than half and the body deforms little, else explicit. This is
+///   decided when the body is added, for the step that the other bodies then allow (World::dynamics_choice;
+///   docs/methods/implicit_bodies.md 6).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
 template <>
 struct EnumNames<BodyDynamics> {
@@ -59,21 +61,22 @@ struct EnumNames<BodyDynamics> {
     }};
 };
 
-/// Where a body is put. The rotation is applied first.
+/// Settings of a body. Its mesh is first rotated about the origin, then moved by `position`.
 struct BodySettings {
-    // Of all that `materials` does not name. Friction, restitution and damping of the whole body are those of this one,
-    // whichever material its surface has.
+    // Material of all tetrahedra that `materials` does not name. Friction, restitution and damping of the whole body
+    // are those of this material, whichever material its surface has.
     MaterialHandle material{};
-    // By the label of tetrahedra (Mesh::label), each of which the mesh must have: their elasticity, density, losses
+    // Materials of tetrahedra by their label (Mesh::label): elasticity, density and losses. The mesh must have each of
+    // these labels.
     std::map<int, MaterialHandle> materials{};
-    Vec3 position = Vec3::Zero();            // m
-    Vec3 rotation = Vec3::Zero();            // rad, axis times angle
-    Vec3 velocity = Vec3::Zero();            // m/s
-    Vec3 angular_velocity = Vec3::Zero();    // rad/s, about the centre of mass
-    std::optional<Real> contact_distance{};  // m, >= 0; by default 2 % of the mean surface edge
+    Vec3 position = Vec3::Zero();            // [m]
+    Vec3 rotation = Vec3::Zero();            // axis times angle [rad]
+    Vec3 velocity = Vec3::Zero();            // [m/s]
+    Vec3 angular_velocity = Vec3::Zero();    // about the centre of mass [rad/s]
+    std::optional<Real> contact_distance{};  // >= 0 [m]; by default 2 % of the mean surface edge
     bool self_contact = false;
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
-    // Two touch each other if each is in a group that the mask of the other has. A bit is a group.
+    // Bit sets of groups. Two objects can touch only if each is in a group that the mask of the other contains.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
     ElementKind element = ElementKind::smoothed;
@@ -82,107 +85,112 @@ struct BodySettings {
 
 struct Plane {
     Vec3 normal = {0, 0, 1};    // any length but zero
-    Vec3 point = Vec3::Zero();  // m
+    Vec3 point = Vec3::Zero();  // [m]
 };
 struct Sphere {
-    Real radius = 1;  // m
+    Real radius = 1;  // [m]
 };
 struct Box {
-    Vec3 size = {1, 1, 1};  // m, edge lengths
+    Vec3 size = {1, 1, 1};  // edge lengths [m]
 };
 struct Capsule {
-    Real radius = 0.5;  // m
-    Real length = 1;    // m, of the straight part, along z
+    Real radius = 0.5;  // [m]
+    Real length = 1;    // length of the straight part, along z [m]
 };
 struct Cylinder {
-    Real radius = 0.5;  // m
-    Real height = 1;    // m, along z, centred
+    Real radius = 0.5;  // [m]
+    Real height = 1;    // along z, centred [m]
 };
-/// An open cylinder to put things into: its floor is at z = 0 of its frame.
+/// An open cylindrical container. The inner side of its floor is at z = 0 of its frame.
 struct Bucket {
-    Real radius = 0.5;      // m, inner
-    Real height = 1;        // m, inner
-    Real thickness = 0.05;  // m, of wall and floor
+    Real radius = 0.5;      // inner [m]
+    Real height = 1;        // inner [m]
+    Real thickness = 0.05;  // of wall and floor [m]
 };
 using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, SurfaceMesh>;
 
-/// One key of a scripted motion; between keys position is linear and the rotation turns about a fixed axis.
+/// One key of a scripted motion. Between keys the position is linear and the rotation turns about a fixed axis.
 struct MotionKey {
-    Real time = 0;                 // s, ascending
-    Vec3 position = Vec3::Zero();  // m
-    Vec3 rotation = Vec3::Zero();  // rad, axis times angle
+    Real time = 0;                 // ascending from key to key [s]
+    Vec3 position = Vec3::Zero();  // [m]
+    Vec3 rotation = Vec3::Zero();  // axis times angle [rad]
 };
 
-/// A scripted motion: constant velocities from now on, or keys at absolute times (then the velocities must be zero).
+/// A scripted motion: constant velocities from now on, or keys at absolute times. With keys the velocities must be
+/// zero.
 struct Motion {
-    Vec3 velocity = Vec3::Zero();          // m/s
-    Vec3 angular_velocity = Vec3::Zero();  // rad/s
+    Vec3 velocity = Vec3::Zero();          // [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
     std::vector<MotionKey> keys{};
 };
 
 struct ColliderSettings {
-    Vec3 position = Vec3::Zero();  // m
-    Vec3 rotation = Vec3::Zero();  // rad, axis times angle
+    Vec3 position = Vec3::Zero();  // [m]
+    Vec3 rotation = Vec3::Zero();  // axis times angle [rad]
     Motion motion{};
-    std::optional<Real> friction{};  // by default the body's own; else the geometric mean of both counts
+    std::optional<Real> friction{};  // default: the value of the body; if given, the geometric mean of both is used
     std::optional<Real> static_friction{}, dynamic_friction{};
-    std::optional<Real> restitution{};  // by default the body's own; else the larger of both counts
-    Real contact_distance = 0;          // m, shell of a mesh collider
-    std::uint32_t collision_group = 1;  // as BodySettings::collision_group
+    std::optional<Real> restitution{};  // default: the value of the body; if given, the larger of both is used
+    Real contact_distance = 0;          // thickness of the contact shell of a mesh collider [m]
+    std::uint32_t collision_group = 1;  // see BodySettings::collision_group
     std::uint32_t collision_mask = 0xffffffffu;
     std::string name{};
 };
 
-/// Settings of the world and its step. Defaults work.
+/// Settings of the world and its step. The defaults suit most scenes.
 struct Settings {
-    Vec3 gravity = {0, 0, -9.81};  // m/s^2
-    // s, at most; by default the stable step of the stiffest body, which is never exceeded, and no more than 1/120
-    // where a body is rigid or implicit
+    Vec3 gravity = {0, 0, -9.81};  // [m/s^2]
+    // Upper bound of the step [s]. The stable step of the stiffest body is never exceeded and is the default; with a
+    // rigid or implicit body the default is at most 1/120 s.
     std::optional<Real> step_size{};
     Real step_safety = 1.0;  // fraction of the stable step that is used, in (0, 1]
-    // Of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as much. Less than 1 with
-    // symplectic_euler only (docs/methods/implicit_bodies.md 2).
+    // Parameter of the theta method for implicit bodies, from 0.5 to 1. 1 (backward Euler) damps vibrations, 0.55 a
+    // tenth as much. Values below 1 require symplectic_euler (docs/methods/implicit_bodies.md 2).
     Real theta = 1;
-    // s, of the steps of implicit bodies that nothing holds, at most; 0: they take those of the others. With shorter
-    // ones they take one while others take several (docs/methods/implicit_bodies.md 9). With symplectic_euler only.
+    // Upper bound of the step of implicit bodies that nothing holds [s]; 0: they take the steps of the other bodies. If
+    // those are shorter, implicit bodies take one step while the others take several (docs/methods/implicit_bodies.md
+    // 9). Requires symplectic_euler.
     Real implicit_step = 0;
     Integrator integrator = Integrator::symplectic_euler;
-    // The few elements that would make all steps several times shorter couple the nodes around them instead
-    // (docs/methods/clusters.md).
+    // Treat the few elements that would make all steps several times shorter implicitly, by coupling the nodes around
+    // them (docs/methods/clusters.md).
     bool clusters = true;
-    Backend backend = Backend::automatic;  // the first that this build has: tbb unless it was left out
-    int threads = 0;                       // 0: those of the caller's task arena
+    Backend backend = Backend::automatic;  // automatic: the first that this build has, tbb unless it was left out
+    int threads = 0;                       // number of threads; 0: those of the caller's task arena
     ContactRegions contact_regions = ContactRegions::separate;
     SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;          // relative error of a region, docs/architecture.md
-    int max_iterations = 200;       // sweeps of a region
+    int max_iterations = 200;       // largest number of sweeps of a region
     bool fixed_iterations = false;  // do exactly max_iterations sweeps
-    Real relaxation = 1;            // of the sweeps, > 0 and < 2; only for methods that sweep
-    Real restitution_speed = 0.05;  // m/s, >= 0: slower impacts do not bounce, whatever the restitution
-    // m/s, > 0: what overlaps, or lies within the contact distance, is pushed apart no faster
+    Real relaxation = 1;            // relaxation factor of the sweeps, > 0 and < 2; only for methods that sweep
+    Real restitution_speed = 0.05;  // >= 0 [m/s]: slower impacts do not bounce, whatever the restitution
+    // largest speed at which surfaces that overlap or are closer than the contact distance are pushed apart, > 0 [m/s]
     Real recovery_speed = 0.5;
-    // Bodies that overlap each other or colliders when they are added. What is attached, or has made a step, stays.
+    // Treatment of bodies that overlap each other or colliders when they are added. Bodies that are attached or have
+    // made a step are not moved.
     StartOverlaps start_overlaps = StartOverlaps::resolve;
-    Real max_strain_step = 0.2;  // a step in which F of an element changes by more (Frobenius norm) is refused
-    // A body that has been still for sleep_time is put to rest, together with all that it touches: it is left out of
-    // the step, with its contacts as they were, until something presses on it or changes it. With `sleep` a body is
-    // still that hardly moves, and neither more and more nor on and on: what stands is a thousandth of its deflection
-    // from its place at most (docs/methods/skipping.md 3.1). Where sleep_speed is above 0, one all of whose nodes are
-    // slower than that.
+    // Bound on the change of F of an element in a step (Frobenius norm). A step that exceeds it is repeated shorter.
+    Real max_strain_step = 0.2;
+    // A body that has been still for sleep_time is put to rest, together with all bodies that it touches. It is left
+    // out of the step, and its contacts stay as they are, until something presses on it or changes it. With `sleep` a
+    // body is still if it hardly moves and its motion neither grows nor goes on steadily. Its distance from
+    // equilibrium is then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). If sleep_speed is
+    // above 0, a body is still if all its nodes are slower than that, whatever `sleep` says.
     bool sleep = true;
-    Real sleep_speed = 0;   // m/s, >= 0
-    Real sleep_time = 0.5;  // s, >= 0
-    // Skip what cannot have come close, and steps in which nothing moves; off searches everything.
+    Real sleep_speed = 0;   // >= 0 [m/s]
+    Real sleep_time = 0.5;  // >= 0 [s]
+    // Skip searches of pairs that cannot have come close, and steps in which nothing moves. If off, everything is
+    // searched in every step.
     bool contact_budgets = true;
-    // A step in which surfaces would go through each other is tried again with what crossed as contacts. Only fast
-    // pairs are looked at.
+    // Repeat a step in which surfaces would go through each other, with the crossing features as contacts. Only fast
+    // pairs are tested.
     bool continuous_collision = true;
-    // What the solver leaves out where it can; off changes no result beyond the tolerance.
-    bool certify_warm_start = true;  // no sweep where last step's impulses still solve a region
-    bool skip_separating = true;     // no impulse where no contact closes
-    bool frictionless_rows = true;   // one row a contact instead of three where there is no friction
+    // Shortcuts of the solver. Switching one off changes no result beyond the tolerance.
+    bool certify_warm_start = true;  // no sweep if the impulses of the last step still solve a region
+    bool skip_separating = true;     // no impulse in a region if none of its contacts closes
+    bool frictionless_rows = true;   // one row per contact instead of three in a region without friction
     // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
     bool small_regions_in_lanes = true;
 };
