@@ -9,12 +9,12 @@ namespace skerry {
 /// A block prepared for many right-hand sides: the normal is eliminated from the tangents, and these are rotated to
 /// their principal axes.
 struct LocalBlock {
-    Real normal;          // first entry of the block [s/kg]
+    Real normal;          // first entry of the block [1/kg]
     Real inverse_normal;  // 0: no mobility along the normal [kg/s]
-    Real coupling[2];     // coupling of tangents and normal, along the principal axes [s/kg]
-    Real eigenvalue[2];   // eigenvalues > 0 of the tangential Schur complement [s/kg]
+    Real coupling[2];     // coupling of tangents and normal, along the principal axes [1/kg]
+    Real eigenvalue[2];   // eigenvalues > 0 of the tangential Schur complement [1/kg]
     Real cosine, sine;    // rotation to the principal axes
-    // |u_t| / |r_t| of the last sliding solution, the start of the next search. It affects only speed [s/kg]
+    // |u_t| / |r_t| of the last sliding solution, the start of the next search. It affects only speed [1/kg]
     Real slip;
 };
 

@@ -20,7 +20,7 @@ namespace skerry {
 struct BlockSystem {
     std::span<const Index> row_offset;  // contacts + 1 entries
     std::span<const Index> column;
-    std::span<const Mat3> block;  // [s/kg]
+    std::span<const Mat3> block;  // [1/kg]
     std::span<const Vec3> q;      // [m/s]
     std::span<const Real> mu;
 };

@@ -67,7 +67,7 @@ concept ContactOperator = SweptOperator<Op> &&
     { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) of (19)
     { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
-    // scalar substitute for W_ii: a third of its trace; 0: the contact moves nothing [s/kg]
+    // scalar substitute for W_ii: a third of its trace; 0: the contact moves nothing [1/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;
     { constant.law() } -> std::same_as<Friction>;
     constant.assemble(matrix);  // dense W with 3 size() rows
