@@ -107,7 +107,7 @@ private:
                    arm = point - collider_motion_.position;
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        Real along = 0;  // m
+        Real along = 0;  // [m]
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;
             stencil.node[count] = node[i];

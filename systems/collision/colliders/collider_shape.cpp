@@ -14,7 +14,7 @@ namespace {
 constexpr Index points_of_rim = 5;
 
 struct Rim {
-    Real radius;  // m
+    Real radius;  // [m]
     Real z;       // m
 };
 

@@ -79,7 +79,7 @@ private:
     Real from_axis(Real s) const { return (start_ + s * edge_).head<2>().norm(); }
     Real height(Real s) const { return start_[2] + s * edge_[2]; }
 
-    const Real inner_, outer_, bottom_, rim_;  // m
+    const Real inner_, outer_, bottom_, rim_;  // [m]
     const Vec3 start_, edge_;                  // m
     Real nearest_to_axis_;
 };

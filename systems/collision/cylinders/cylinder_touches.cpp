@@ -27,7 +27,7 @@ constexpr Real over_fraction = 1e-9;
 // A distance along a rim that changes by less than this is constant.
 constexpr Real level_slope = 1e-9;
 constexpr int looks_around = 16;                           // at a rim, between which a minimum is looked for
-constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // rad
+constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
 // Numbers of touches with a shape.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
