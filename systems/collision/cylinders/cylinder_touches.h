@@ -37,8 +37,8 @@ private:
 
 /// Points of the rims of a cylinder that can touch a flat side whose outward unit normal in the frame of the cylinder
 /// is `normal`. Each rim has the point that reaches furthest towards the side and, where an end nearly faces the side,
-/// some points that support it there. A turn about the axis by less than a radian per step brings none of them nearer
-/// to the side, as it would a point that turns with the cylinder.
+/// some points that support it there. None of them comes nearer to the side when the cylinder turns about its axis by
+/// less than a radian per step; a point that turns with the cylinder would.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
