@@ -38,7 +38,7 @@ public:
 private:
     using Kind = TouchingFeature::Kind;
 
-    /// `least`: lower bound of the distance, or of the motion before which only nodes can touch [m].
+    /// `least`: lower bound of the distance, or of the motion up to which only nodes can touch [m].
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of(candidate, node);

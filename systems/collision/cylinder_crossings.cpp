@@ -136,8 +136,8 @@ private:
         return true;
     }
 
-    /// Adds the touches that would overlap at the end of the step, which are exact, and those that would nearly touch
-    /// beside them: otherwise the latter would come in next. Returns true if any would overlap.
+    /// Adds the exact overlaps at the end of the step and the near touches beside them: if only the former were held,
+    /// the cylinder would come in at the latter. Returns true if anything would overlap.
     bool add_end(const Candidate& candidate, const ColliderGeometry& other, Index part, const RigidMotion& other_motion,
                  const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
         const RigidMotion end = at_end(cylinder_.motion);
@@ -240,8 +240,8 @@ private:
         put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
     /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
-    /// the start of the step; `left`: distance there at its end [m]. If a contact of an earlier try has left a
-    /// penetration, the turn of the cylinder has caused it. It is then subtracted from the distance of that contact.
+    /// the start of the step; `left`: distance there at its end [m]. If `left` is negative although an earlier try had
+    /// this contact, the turn of the cylinder has used up the difference. The distance is then reduced by that, too.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {

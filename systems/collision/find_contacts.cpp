@@ -26,7 +26,7 @@ constexpr Index candidates_worth_of_one_at_collider = 5;
 
 constexpr std::size_t rows_per_block = 256;
 constexpr Index pairs_ahead = 3;                      // the lists of pairs this far ahead are prefetched
-constexpr std::size_t counted_pairs_per_block = 512;  // when work is counted and cut into blocks
+constexpr std::size_t counted_pairs_per_block = 512;  // pairs whose work is counted together
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
     return inputs.collider.motion[collider].stands_still();

@@ -22,13 +22,13 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t checked_pairs_per_block = 512;  // when it is checked how far they move
+constexpr std::size_t checked_pairs_per_block = 512;  // pairs whose motion is checked together
 
 /// Nearest points of the features at some time of the step.
 struct Nearest {
     Stencil stencil;
-    Vec3 offset;  // m, from the second feature to the first
-    Vec3 point;   // m, on the second
+    Vec3 offset;  // from the second feature to the first [m]
+    Vec3 point;   // on the second [m]
 };
 
 // The lanes and their scalar twin, which decides, may differ by rounding, by much less than this fraction.
@@ -225,7 +225,7 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from >= to) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
-        // Those candidates of the block that were awake in find_contacts have D >= block_nearest, so that a motion
+        // Candidates of the block that were awake in find_contacts have D >= block_nearest, so that a motion
         // below slow_fraction * block_nearest cannot bring them together. Those asleep have g > reach as long as the
         // motion stays within the front of find_contacts.
         const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
@@ -290,8 +290,7 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
             if (pairs.kind[p] == PairKind::collider) continue;  // their distances are signed
             pairs.state[p] = PairState::overlapping;
-            pairs.valid_until[p] =
-                -std::numeric_limits<Real>::infinity();  // lists of overlapping pairs have to hold more
+            pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // an overlapping pair needs a longer list
         }
 }
 

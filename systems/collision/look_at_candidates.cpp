@@ -83,7 +83,7 @@ private:
     /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front
     /// of the far side of a thin part, or be pushed out through a nearer face.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In a body's contact with itself it may simply be on the other side of a thin part.
+        // In self-contact the point may simply be on the other side of a thin part.
         if (kind_ == PairKind::self && !was_far_at_rest(inputs_, scale_, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs_.surface.triangles.node[candidates_[i].second];

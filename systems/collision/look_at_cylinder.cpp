@@ -16,11 +16,11 @@ namespace skerry {
 
 namespace {
 
-// The travel of the nodes of the rims is more than this fraction of the way of points between them.
+// The travel of the nodes of the rims is more than this fraction of the motion of the points between them.
 constexpr Real of_rim_nodes = 0.95;
 
 // An edge counts as parallel to the axis if the sine of their angle is below this. It touches the side along a stretch,
-// or hardly.
+// or hardly at all.
 constexpr Real parallel_sine = 1e-3;
 
 // Slopes of the distance along an edge below this count as zero.

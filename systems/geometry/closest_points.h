@@ -13,7 +13,7 @@ enum class TriangleRegion : std::uint8_t { face, edge01, edge12, edge20, vertex0
 struct PointTriangle {
     std::array<Real, 3> weight;  // barycentric, sum 1, each in [0, 1]
     TriangleRegion region;
-    Vec3 nearest;           // m
+    Vec3 nearest;           // [m]
     Real distance_squared;  // [m^2]
 };
 
@@ -24,8 +24,8 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
 struct SegmentSegment {
     Real s, t;              // places along the first and the second segment, in [0, 1]
     bool interior;          // both nearest points are inside their segments and the segments are not parallel
-    Vec3 on_first;          // m
-    Vec3 on_second;         // m
+    Vec3 on_first;          // [m]
+    Vec3 on_second;         // [m]
     Real distance_squared;  // [m^2]
 };
 

@@ -30,9 +30,9 @@ struct KeptApart {
 /// Time in [0, 1] at which features that move in straight lines from `position` by `displacement` come near contact, or
 /// nothing if they do not. Uses additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section
 /// 5). A round also advances as long as a slab separates the features, so that sliding takes few rounds. The time is
-/// never later than the contact. At that time the gap is at most `contact_slack` of the gap at the start; gaps are
-/// measured beyond the kept distance. The time is 0 if the features touch at the start. After some thousand rounds the
-/// search gives up and reports contact at the time reached.
+/// never later than the contact. At that time the gap is at most `contact_slack` of the gap at the start, and at most
+/// kept.near; gaps are measured beyond the kept distance. The time is 0 if the features touch at the start. After some
+/// thousand rounds the search gives up and reports contact at the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept = {});
 

@@ -15,7 +15,7 @@ constexpr Index points_of_rim = 5;
 
 struct Rim {
     Real radius;  // [m]
-    Real z;       // m
+    Real z;       // [m]
 };
 
 /// The convex rims. The inner rim of a bucket is not convex: only edges of bodies touch it.

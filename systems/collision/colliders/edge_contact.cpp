@@ -26,7 +26,7 @@ constexpr Real shortest_stretch = 0.1;
 // The wall of a bucket is not convex: an edge across its rim has two minima. They are searched in this many intervals.
 constexpr int wall_intervals = 16;
 
-/// Places below and above a place that is searched.
+/// An interval that contains the place searched for.
 struct Bracket {
     Real low, high;
 };

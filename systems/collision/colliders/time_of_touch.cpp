@@ -80,7 +80,7 @@ private:
     Real height(Real s) const { return start_[2] + s * edge_[2]; }
 
     const Real inner_, outer_, bottom_, rim_;  // [m]
-    const Vec3 start_, edge_;                  // m
+    const Vec3 start_, edge_;                  // [m]
     Real nearest_to_axis_;
 };
 
@@ -221,7 +221,7 @@ private:
     const RigidMotion& motion_;
     const TouchingFeature& feature_;
     const Vec3 shift_;  // of the collider in the step [m]
-    const Vec3 turn_;   // rad
+    const Vec3 turn_;   // [rad]
 };
 
 /// True if the whole part or point that the feature is tested against lies behind the plane of a touch.

@@ -14,7 +14,7 @@ namespace skerry {
 
 namespace {
 
-// An end tilted by less than this stands on points that turn with the cylinder, which keeps them at rest [rad].
+// An end tilted by less than this stands on points that turn with the cylinder; at rest they stay the same [rad].
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end and a side exceeds this, the end lies on one point of its rim only.
 constexpr Real lying_tilt = 0.5;
@@ -39,7 +39,7 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
 
 /// A circle around z: the edge between a side around the axis and one across it.
 struct CylinderRim {
-    Real radius, z;       // m
+    Real radius, z;       // [m]
     Real outward, along;  // 1 or -1: direction of the normals of its sides
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;

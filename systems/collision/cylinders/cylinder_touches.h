@@ -43,7 +43,7 @@ struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
         Index number;  // below 2 * most_of_rim
-        Vec3 at;       // m
+        Vec3 at;       // [m]
     };
     std::array<Point, 2 * most_of_rim> point;
     std::size_t count = 0;

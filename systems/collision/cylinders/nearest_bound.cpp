@@ -55,8 +55,7 @@ Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeomet
         const Vec3 normal = place.rotation.col(2);
         return -normal.dot(place.position) - reach(normal);
     }
-    const Vec3 middle =
-        -(place.rotation.transpose() * place.position);  // middle of the cylinder in the frame of the other
+    const Vec3 middle = -(place.rotation.transpose() * place.position);  // of the cylinder, in the frame of the other
     Real bound = local_distance(other, middle, part).distance - ball_radius(cylinder);
     const auto look_along = [&](const Vec3& normal) {
         bound = std::max(bound, -normal.dot(place.position) - reach(normal) -

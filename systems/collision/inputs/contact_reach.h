@@ -53,7 +53,7 @@ struct PairScale {
     Real shell;             // kept between the surfaces
     Real edge;              // smaller one of the mean surface edges
     Real face_depth;        // a point at most this deep behind a face is pushed out of it
-    Real edge_depth;        // the same behind an edge or vertex, and for two edges
+    Real edge_depth;        // the same depth behind an edge or vertex, and for two edges
     // features nearer than this, on either side, are tested in each step; for points of a collider see face_zone
     Real zone;
     Real radii = 0;  // of round bodies, whose cores are the features

@@ -27,7 +27,7 @@ Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>&
     return triangle[0];
 }
 
-/// Zero for a triangle without area.
+/// Unit normal of a triangle; zero if it has no area.
 Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& node) {
     const Vec3 normal = (position[node[1]] - position[node[0]]).cross(position[node[2]] - position[node[0]]);
     const Real length = normal.norm();

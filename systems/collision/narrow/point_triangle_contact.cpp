@@ -34,7 +34,7 @@ struct Query {
     Real tie(const Vec3& direction) const {
         return (tie_fraction * distance + tie_edge_fraction * scale.edge) * direction.norm();
     }
-    /// Zero for a triangle without area.
+    /// Unit normal of a triangle; zero if it has no area.
     Vec3 unit_normal(Index triangle) const {
         const auto& n = surface.triangles.node[triangle];
         const Vec3 normal = (at(n[1]) - at(n[0])).cross(at(n[2]) - at(n[0]));

@@ -1,4 +1,4 @@
-// A point against a triangle of a closed surface (docs/methods/collision.md 4.1 to 4.3).
+// Contact of a point with a triangle of a closed surface (docs/methods/collision.md 4.1 to 4.3).
 #pragma once
 
 #include <span>

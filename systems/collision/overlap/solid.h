@@ -17,7 +17,7 @@ struct SolidTriangle {
 };
 
 struct Solid {
-    std::vector<Vec3> point;                    // m
+    std::vector<Vec3> point;                    // [m]
     std::vector<std::array<Index, 4>> simplex;  // tetrahedra; or triangles, with no_index as their last node
     std::vector<SolidTriangle> surface;
     std::vector<Index> surface_point;  // rows of `point` on the surface, ascending

@@ -170,7 +170,7 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     return best;
 }
 
-/// Distance the first has to move to come out of what it meets, and again out of all it meets there [m].
+/// Distance the first has to move to come out of the simplices it meets, and again of those it meets there [m].
 Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int most_tries = 16;
     Real gone = 0;

@@ -20,7 +20,7 @@ public:
             return squared <= outer * outer && squared >= inner * inner;
         });
     }
-    /// Those points of the plane where coordinate `axis` is `at` that belong to the piece.
+    /// The points of the plane where coordinate `axis` is `at` that belong to the piece.
     void flat(int axis, Real at, Real side, auto&& belongs) {
         if (ray_.direction[axis] == 0) return;
         const Real t = (at - ray_.origin[axis]) / ray_.direction[axis];

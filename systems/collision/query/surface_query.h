@@ -12,7 +12,7 @@ namespace skerry {
 
 /// The points origin + t direction with t >= 0.
 struct Ray {
-    Vec3 origin;     // m
+    Vec3 origin;     // [m]
     Vec3 direction;  // unit
 };
 
@@ -22,9 +22,9 @@ struct SurfaceTree {
     Range triangles;  // rows of `triangle_node`
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
-    std::span<const Aabb> box;                            // m
+    std::span<const Aabb> box;                            // [m]
     std::span<const std::array<Index, 3>> triangle_node;  // rows of `position`
-    std::span<const Vec3> position;                       // m
+    std::span<const Vec3> position;                       // [m]
 };
 
 struct TrianglePoint {

@@ -139,8 +139,8 @@ private:
 
     void compare_leaves(Index a, Index b) {
         // The core of a sphere, or of the ball around a cylinder, is a point that is tested against faces and axes.
-        // That test also finds a node that is nearest, and a node within a flat face holds nothing back. For two
-        // spheres the first is tested against the second.
+        // That test also finds a node that is nearest, and a node within a flat face does not obstruct the sphere. For
+        // two spheres the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
