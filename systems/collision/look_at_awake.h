@@ -87,7 +87,7 @@ private:
     ByPlace<Real> distance_;  // [m]
     ByPlace<Real> speed_;     // of the close candidates [m/s]
     Places points_{FeaturePair::point_triangle}, edges_{FeaturePair::edge_edge};
-    // those of them that are near enough to meet at the greatest speeds of their pair
+    // candidates that are near enough to meet at the greatest speeds of their pair
     Places close_points_{FeaturePair::point_triangle}, close_edges_{FeaturePair::edge_edge};
 };
 

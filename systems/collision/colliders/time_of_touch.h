@@ -42,7 +42,7 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
 
 /// True if the end of the step alone decides about a crossing. Nothing gets around a plane: a feature that has passed
 /// it ends behind it, and one that a contact stops before it has not crossed, however near. A round body is excluded,
-/// since no part of it may enter the plane at any time of the step.
+/// since no part of it may come behind the plane at any time of the step.
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of how much nearer any point of the feature comes to the collider while both move for h seconds [m].

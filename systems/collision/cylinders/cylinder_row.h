@@ -25,8 +25,7 @@ bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, Index p
 // second for a shape; the upper half of the latter is for crossings.
 inline constexpr Index touches_of_triangle = 64, touches_of_shape = 2 * CylinderTouches::most;
 
-/// One touch of a cylinder, which is the first partner. `distance`: between the surfaces; `shell`: kept between them
-/// [m].
+/// One touch of a cylinder, which is the first partner. `distance`: of the surfaces; `shell`: kept between them [m].
 struct CylinderRow {
     std::uint64_t feature;  // of the candidate
     Index number;

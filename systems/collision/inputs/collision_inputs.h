@@ -54,9 +54,9 @@ struct CollisionInputs {
 /// Settings of the collision stages.
 struct CollisionSettings {
     Real gravity = 0;  // norm; bounds how much faster a body can become in a step [m/s^2]
-    // candidates are kept up to this far beyond the distance at which they matter, as a fraction of the mean edge
+    // extra distance at which candidates are kept, beyond that at which they matter, as a fraction of the mean edge
     Real pair_skin = 0.3125;
-    Real broad_skin = 4.0;    // pairs of bodies are kept up to this far beyond it, as a fraction of the mean edge
+    Real broad_skin = 4.0;    // extra distance at which pairs of bodies are kept, as a fraction of the mean edge
     bool use_budgets = true;  // off: every step searches everything (the simple twin, for tests)
     bool continuous = true;   // off: the motion of a step is not tested for crossings
 };

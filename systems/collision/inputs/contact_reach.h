@@ -56,7 +56,7 @@ struct PairScale {
     Real edge_depth;        // the same depth behind an edge or vertex, and for two edges
     // features nearer than this, on either side, are tested in each step; for points of a collider see face_zone
     Real zone;
-    Real radii = 0;  // of round bodies, whose cores are the features
+    Real radii = 0;  // sum of the radii of round bodies, whose cores are the features
 };
 
 // Overlap is rare, because the contact distance keeps surfaces apart. Deeper points may belong to the other side of a

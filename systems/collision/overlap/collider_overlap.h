@@ -29,7 +29,7 @@ struct RoundSolid {
 };
 
 /// Overlap of a round body with a collider by more than `tolerance` [m]. The kind is inside if both ends of the core
-/// are, else crossing.
+/// lie in the collider, else crossing.
 std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
                                         const RigidMotion& motion, Real tolerance);
 
