@@ -1,4 +1,4 @@
-// Candidates that crossings are looked for among (systems/collision/inputs/contact_reach.h, 4).
+// Selection of the candidates that are tested for crossings (systems/collision/inputs/contact_reach.h, 4).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Of a range, those that can have met by `travel_bound`: `test(c)` says whether it had to look. Returns how many it
-/// looked at.
+/// Calls `test(c)` for those candidates of a range that can have met by `travel_bound` [m]. `test` returns true if it
+/// needed a full test. Returns the number of full tests.
 std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
     std::uint64_t tested = 0;
     for (Index c = range.begin; c < range.end; ++c)

@@ -21,12 +21,12 @@ std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k)
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// Whether side k is an edge: of the core of a round body the first at most.
+/// True if side k of a triangle is an edge. The core of a round body has at most its first side as an edge.
 bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
     return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
 
-/// One more than the highest node.
+/// One more than the highest node number.
 Index end_of(std::span<const BoundaryTriangle> triangles) {
     Index end = 0;
     for (const BoundaryTriangle& triangle : triangles)
@@ -50,10 +50,10 @@ struct BoundaryNodes {
     }
 };
 
-/// Edges of a boundary by their nodes, and which of them each triangle has.
+/// Edges of a boundary, sorted by their nodes, and the edges of each triangle.
 struct BoundaryEdges {
     std::vector<std::array<Index, 2>> node;
-    std::vector<std::array<Index, 3>> of_triangle;  // no_index of a side that is none
+    std::vector<std::array<Index, 3>> of_triangle;  // no_index for a side that is not an edge
 
     BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
         : of_triangle(triangles.size(), {no_index, no_index, no_index}) {

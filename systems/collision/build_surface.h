@@ -16,17 +16,17 @@ namespace skerry {
 struct TetrahedronFace {
     std::array<Index, 3> node;  // ascending
     Index tetrahedron;
-    std::uint8_t corner;  // the one it lies opposite of
-    bool turned;          // seen from outside its nodes come clockwise
+    std::uint8_t corner;  // the corner opposite of the face
+    bool turned;          // true if its nodes are clockwise as seen from outside
 };
-/// Those of all tetrahedra by their nodes; those with the same nodes in the order of the tetrahedra.
+/// Faces of all tetrahedra, sorted by their nodes. Faces with the same nodes are in the order of the tetrahedra.
 std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> tetrahedra);
 
 /// The boundary triangles of a tetrahedral mesh (faces of exactly one tetrahedron), counter-clockwise seen from
 /// outside, in element order.
 struct BoundaryTriangle {
-    std::array<Index, 3> node;  // local
-    Index element;              // local
+    std::array<Index, 3> node;  // local numbers
+    Index element;              // local number
 };
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra);
 
@@ -35,12 +35,12 @@ struct SurfaceRanges {
 };
 
 /// Appends the triangles, edges and vertices of a new body. Triangle nodes and elements are local; `first_node` and
-/// `first_element` are the rows that local 0 stands for (first_element may be no_index: a surface without elements).
+/// `first_element` are the rows of local number 0 (first_element is no_index for a surface without elements).
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
-/// The same as append_surface of a body whose mesh is that of an earlier one with the rows `like`. Adds to `behind` how
-/// far it lies behind that one on the surface.
+/// Appends the surface of a body with the same mesh as an earlier one, whose rows are `like`; the result equals that of
+/// append_surface. Stores in `behind` the row offsets of the new surface from the earlier one.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

@@ -38,11 +38,11 @@ public:
 private:
     using Kind = TouchingFeature::Kind;
 
-    /// `least`: m, the distance is not below it, or only nodes can touch before it is used up.
+    /// `least`: lower bound of the distance, or of the motion up to which only nodes can touch [m].
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of(candidate, node);
-        // Of a rim all points are looked at, by the candidate of the one that follows the face.
+        // All points of a rim are tested by the candidate of the point that follows the face.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_collider);
@@ -102,12 +102,12 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // where what touches is at the start of the step
+        // place and normal of the touch at the start of the step
         const Vec3 normal = collider_motion_.rotation * touch.normal, point = world(touch.point),
                    arm = point - collider_motion_.position;
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        Real along = 0;  // m
+        Real along = 0;  // [m]
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;
             stencil.node[count] = node[i];

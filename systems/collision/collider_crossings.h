@@ -1,4 +1,4 @@
-// Features of a body that would go through an analytic collider in the motion of the step.
+// Features of a body that would pass through an analytic collider in the motion of the step.
 #pragma once
 
 #include "components/pair_table.h"
@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Looks at the candidates of pair p in a range that can have come near by `travel_bound` (m); what would cross is
-/// appended as a contact. Returns how many were tested.
+/// Tests the candidates of pair p in a range that can have come near by `travel_bound` [m]. Features that would cross
+/// are appended as contacts. Returns the number of candidates tested.
 std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, Column<ContactRow>& found);
 

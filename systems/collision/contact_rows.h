@@ -1,4 +1,4 @@
-// Rows of contacts: how they are made and put in order.
+// Creation and ordering of contact rows.
 #pragma once
 
 #include <vector>
@@ -16,20 +16,21 @@ struct ContactPair {
     Index first, second;
 };
 
-/// A contact of two bodies or of a body with a collider (which has no velocity yet). `point`, `distance` and
-/// `contact_distance` are of the features: a round body is its core.
+/// A contact of two bodies or of a body with a collider; its surface velocity is zero. `point`, `distance` and
+/// `contact_distance` refer to the features: for a round body to its core.
 ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate,
                        ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
                        Real contact_distance, const SurfaceProperties& surface);
 
-/// `node`: the point, then the corners. Nodes without weight are left out: they join no regions.
+/// Stencil of a point and a triangle. `node`: the point, then the corners. Nodes with weight 0 are left out, so that
+/// they join no regions.
 Stencil stencil_of_point(const std::array<Index, 4>& node, const PointTriangle& closest);
 
-/// `node`: the ends of the first edge, then of the second. Nodes without weight are left out.
+/// Stencil of two edges. `node`: the ends of the first edge, then of the second. Nodes with weight 0 are left out.
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
-/// The rows of all blocks and `more`, all in key order, in one; `prefer_blocks` says which of two rows with the same
-/// key stays.
+/// Merges the rows of all blocks with `more`, all in key order, into one column. `prefer_blocks` tells which of two
+/// rows with the same key is kept.
 void merge_rows(const std::vector<Column<ContactRow>>& blocks, const Column<ContactRow>& more, bool prefer_blocks,
                 Column<ContactRow>& merged);
 

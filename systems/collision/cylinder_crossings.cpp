@@ -20,13 +20,13 @@ namespace skerry {
 
 namespace {
 
-// Crossings stand beside what touches at the start of the step. Of a triangle: three corners, edges and two rims; of a
-// shape what touches at the end, and one on the way.
+// Crossings are numbered after the touches at the start of the step. A triangle has eight: three corners, three edges
+// and two rims. A shape has those of the touches at the end of the step, and one on the way.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
                 crossing_of_facets = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
 
-// What comes less far than this part of what is thinner does not come through it between the start and the end.
+// A motion below this fraction of the smaller half thickness passes through nothing between the start and the end.
 constexpr Real thin_fraction = 0.5;
 
 class CylinderCrossings {
@@ -108,7 +108,7 @@ private:
         return true;
     }
 
-    /// `stencil`: of the pair, where the other is a body.
+    /// `stencil`: that of the pair, if the other partner is a body.
     bool against_shape(const Candidate& candidate, const ColliderGeometry& other, const RigidMotion& other_motion,
                        Index part, const std::optional<Stencil>& stencil) {
         if (!(inputs_.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
@@ -136,8 +136,8 @@ private:
         return true;
     }
 
-    /// What would overlap at the end of the step, exactly, and what would nearly touch beside it: held by the one it
-    /// would come into the other. Returns whether anything would overlap.
+    /// Adds the exact overlaps at the end of the step and the near touches beside them: if only the former were held,
+    /// the cylinder would come in at the latter. Returns true if anything would overlap.
     bool add_end(const Candidate& candidate, const ColliderGeometry& other, Index part, const RigidMotion& other_motion,
                  const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
         const RigidMotion end = at_end(cylinder_.motion);
@@ -157,7 +157,7 @@ private:
         return true;
     }
 
-    /// What its facets would meet first on the way.
+    /// Adds the first crossing between the cylinder and facets of the other shape on the way.
     void add_facets(const Candidate& candidate, const ColliderGeometry& other, Index part,
                     const RigidMotion& other_motion, const RigidMotion& other_end, const Stencil& stencil,
                     auto&& velocity) {
@@ -182,7 +182,7 @@ private:
         if (first) add(candidate, crossing_of_facets, stencil, of_first, *first, velocity(along_of(of_first, *first)));
     }
 
-    /// No way leads around it: the end tells.
+    /// Tests only the end of the step, because nothing gets around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
         if (!(greatest_way_of_cylinder() + motion_.h * plane.velocity.norm() +
                   motion_.h * plane.angular_velocity.norm() *
@@ -222,11 +222,11 @@ private:
         return greatest_approach(cylinder_.motion, motion_.h, feature) > slow_fraction * distance;
     }
 
-    /// How the cylinder is turned when it is met.
+    /// Orientation of the cylinder at a time of the step (fraction).
     Mat3 rotation_at(Real time) const {
         return rotation_matrix(time * motion_.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
-    /// m: the place of the feature that is met, at the start of the step.
+    /// Position of the touched point of the feature at the start of the step [m].
     static Vec3 along_of(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
@@ -239,9 +239,9 @@ private:
         const Real along = normal.dot(cylinder_.motion.position + arm - along_of(feature, hit)) - feature.kept.distance;
         put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
-    /// `arm`: m, from the middle to what is touched, at the start of the step as the other places here; `along`: the
-    /// distance there at the start of the step; `left`: at its end. What a contact of the try before has not held off
-    /// is lost by the turn, and asked of it beside what it asked then.
+    /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
+    /// the start of the step; `left`: distance there at its end [m]. If `left` is negative although an earlier try had
+    /// this contact, the turn of the cylinder has used up the difference. The distance is then reduced by that, too.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
@@ -251,7 +251,7 @@ private:
                 {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
                 surface_);
         };
-        // features that turn by more than a right angle have not overlapped
+        // A feature that turns by more than a right angle can have a negative distance here without an overlap.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (left < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -261,7 +261,7 @@ private:
         found_.push_back(row);
     }
 
-    /// What a contact stops at the shell has not crossed, however far it came.
+    /// Kept distance of a feature. If a contact stops it at the shell, it has not crossed, however far it came.
     KeptApart kept(Real radius) const {
         return {radius, scale_.shell > 0 ? contact_slack * scale_.shell : std::numeric_limits<Real>::infinity()};
     }
@@ -286,7 +286,7 @@ private:
         return {motion.position + motion_.h * motion.velocity,
                 rotation_matrix(motion_.h * motion.angular_velocity) * motion.rotation, Vec3::Zero(), Vec3::Zero()};
     }
-    /// m: none of its parts is thinner, halved.
+    /// Half of the thickness of the thinnest part [m].
     static Real thickness(const ColliderGeometry& geometry) {
         const Vec3& size = geometry.size;
         switch (geometry.shape) {
@@ -321,7 +321,7 @@ private:
     const SurfaceProperties surface_;
     std::span<const Candidate> candidates_;
     std::span<const Real> asleep_until_;
-    std::span<const ContactRow> known_;  // of earlier tries, in the order of their keys
+    std::span<const ContactRow> known_;  // of earlier tries, in key order
     Column<ContactRow>& found_;
     CylinderTouches touches_;
 };

@@ -19,10 +19,10 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;  // a refit takes microseconds, a box and sphere less
-// A block of either takes some microseconds.
+// A block of any of these takes some microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
-/// Which rows nothing is known of. Returns whether there are any.
+/// Marks the rows about which nothing is known. Returns true if there are any.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
     if (all) valid_until.clear();
     SKERRY_CHECK(valid_until.size() <= count);
@@ -33,7 +33,7 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-/// Adds those that are forgotten in this try.
+/// Adds the bodies that are forgotten in this try to those whose speeds are not measured.
 void note_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
@@ -72,7 +72,7 @@ bool all_below(const Column<Real>& travel_bound, const Column<Real>& valid_until
     return below;
 }
 
-/// A mesh collider moves as a body; its row among the colliders says nothing.
+/// True if all colliders are within their budgets. A mesh collider moves as a body, so its row here does not count.
 bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     bool below = true;
     for (std::size_t c = 0; c < search.memory.collider_travel_bound.size(); ++c)
@@ -81,13 +81,13 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     return below;
 }
 
-/// How far a pair may have come, and may come in this step.
+/// Computes how far a pair may have moved, and how far it may move in this step.
 void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Real h, Index p, PairTable& pairs) {
     const Index a = pairs.first[p], b = pairs.second[p];
     if (pairs.kind[p] == PairKind::collider) {
         pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
         pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
-        // Not the difference: a shape that turns may have travelled without bounds.
+        // The difference of bound and travel is not used: a shape that turns may have travelled without bounds.
         pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
@@ -100,7 +100,7 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
 }
 
-/// Of those that are marked.
+/// Lists the bodies that are marked for a refit.
 void list_bodies(SearchMemory& memory) {
     for (std::size_t b = 0; b < memory.needs_refit.size(); ++b)
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
@@ -114,7 +114,7 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
             pairs.fresh[p] = !(pairs.travel_bound[p] < pairs.valid_until[p]);
         }
     });
-    // without a branch, which is hard to predict
+    // without a branch, which would be hard to predict
     memory.expired.resize(pairs.size() + 1);
     std::size_t expired = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -132,7 +132,7 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
     list_bodies(memory);
 }
 
-/// Boxes and spheres around bodies of expired pairs, as they are.
+/// Fits boxes and spheres to the bodies of expired pairs at their present positions.
 void fit_bounds(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -150,12 +150,12 @@ void fit_bounds(Executor& executor, const CollisionInputs& inputs, std::span<Aab
     });
 }
 
-/// What both partners may close in this step, m: of two bodies what frames tell, which is less than by their speeds.
+/// Bound of how much a pair may close in this step [m]. For two bodies the frames give less than their speeds do.
 Real closing(const PairTable& pairs, Index p) {
     return pairs.kind[p] == PairKind::collider ? pairs.closing[p] : pairs.travel_bound[p] - pairs.travel[p];
 }
 
-/// m, by what is around two bodies: no features of theirs are nearer to each other.
+/// Lower bound of the distance between features of two bodies, by their boxes and spheres [m].
 Real least_distance(const CollisionInputs& inputs, std::span<const Aabb> box, const SearchMemory& memory, Index first,
                     Index second) {
     const Range a = inputs.body.bvh_nodes[first], b = inputs.body.bvh_nodes[second];
@@ -176,20 +176,20 @@ PairToSearch pair_to_search(const CollisionInputs& inputs, const CollisionSettin
     return pair;
 }
 
-/// Whether what is around two bodies tells that none of their features is looked for.
+/// True if the boxes and spheres of two bodies show that none of their features have to be searched.
 bool is_far(const PairToSearch& pair) {
     return pair.apart - pair.scale.zone >= pair.margin;
 }
 
-/// Tells those that are searched from those that are far apart: a tree that several of them share is fitted once, and
-/// none of the latter.
+/// Separates the expired pairs to be searched from those that are far apart. A tree that several of the former share is
+/// refit once; trees of the latter are not refit.
 void list_refits(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
                  SearchMemory& memory, const PairTable& pairs) {
     memory.refit.clear();
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
     memory.near.clear();
     memory.far.clear();
-    memory.near.reserve(pairs.size());  // whichever expire in a later step
+    memory.near.reserve(pairs.size());  // any of them may expire in a later step
     memory.far.reserve(pairs.size());
     for (Index p : memory.expired) {
         const bool surfaces = pairs.kind[p] != PairKind::collider;
@@ -211,7 +211,7 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
-        // before the search: what is apart is looked for less far
+        // before the search, because features of surfaces that are apart are searched less far
         const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
@@ -226,8 +226,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     }
 }
 
-/// One that is near at a time, which takes some ten microseconds, and with each its part of those that are far, which
-/// take next to nothing: so every worker's share of the blocks is about as much work.
+/// Each block searches one near pair, which takes some ten microseconds, and a share of the far ones, which take almost
+/// no time. So every worker's share of the blocks is about as much work.
 void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
@@ -254,7 +254,7 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Bodies whose displacement has cost a searched pair a good part of its skin.
+/// Marks the bodies whose displacement has cost a searched pair more than a quarter of its skin.
 void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                     const PairTable& pairs) {
     constexpr Real good_part = 0.25;
@@ -283,7 +283,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     broad |= !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     if (broad) {
         find_pairs(executor, inputs, settings, h, search, pairs);
-        bound_collider_travels(inputs, h, memory);  // of a plane that turns, by where the bodies are now
+        bound_collider_travels(inputs, h, memory);  // for a plane that turns they depend on where the bodies are now
     }
     list_expired(executor, inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;

@@ -17,15 +17,16 @@ namespace skerry {
 
 namespace {
 
-// Of one block, asleep or not; a pair counts as some more, and a candidate against a collider as several: it
-// is looked at in every step, by itself. Asleep a block takes a microsecond, awake a hundred.
+// Work of one block, asleep or not. A pair counts as some candidates more. A candidate against a collider counts as
+// several, because it is tested in every step, by itself. A block takes a microsecond if asleep, and a hundred if
+// awake.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
 
 constexpr std::size_t rows_per_block = 256;
-constexpr Index pairs_ahead = 3;                      // lists are asked for, before they are looked at
-constexpr std::size_t counted_pairs_per_block = 512;  // of which it is looked up what is to be looked at
+constexpr Index pairs_ahead = 3;                      // the lists of pairs this far ahead are prefetched
+constexpr std::size_t counted_pairs_per_block = 512;  // pairs whose work is counted together
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
     return inputs.collider.motion[collider].stands_still();
@@ -36,19 +37,19 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
-/// Of one candidate, in candidates of two surfaces.
+/// Work of one candidate, in candidates of two surfaces.
 Index work_of_one(const PairTable& pairs, std::size_t p) {
     return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
 }
 
-/// What a pair adds to the work of the blocks, in such candidates.
+/// Share of a pair in the work of the blocks, in candidates of two surfaces.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     const Index count = pairs.looked_at[p];
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
-/// Pairs of which neither partner moves: what is between them is in equilibrium, or they would not rest. Of the others,
-/// how many candidates they have, and what work they are together.
+/// Marks pairs neither partner of which moves: the contacts between them are in equilibrium, or they would not rest.
+/// For the other pairs it counts the candidates and adds up their work.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());
@@ -75,7 +76,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     pairs.block[blocks] = {static_cast<Index>(pairs.size()), 0};
     parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         std::int64_t before = pairs.work[begin / counted_pairs_per_block];
-        std::int64_t next = (before + candidates_per_block - 1) / candidates_per_block;  // block, where it begins
+        std::int64_t next = (before + candidates_per_block - 1) / candidates_per_block;  // the next block to begin
         for (std::size_t p = begin; p < end; ++p) {
             const std::int64_t until = before + work_of(pairs, p);
             for (; next * candidates_per_block < until; ++next) {
@@ -89,14 +90,14 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     return blocks;
 }
 
-/// Has the beginning of a pair's list fetched, the rest follows by itself: each lies elsewhere, and waiting for them
-/// was a good part of the stage.
+/// Prefetches the beginning of a pair's list; the rest follows by itself. Each list lies elsewhere in memory, and
+/// waiting for the lists takes a good part of the stage.
 void ask_for_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
     if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
 }
 
-/// Whether features of two surfaces are held against each other, as they are of most pairs.
+/// True if features of two surfaces are tested against each other, as for most pairs.
 bool is_of_surfaces(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
     return pairs.kind[p] != PairKind::collider && !has_cylinder(inputs, pairs, p);
 }
@@ -119,7 +120,7 @@ void look_at_block(const CollisionInputs& inputs, const CollisionSettings& setti
             awake.add(p, {from, to});
             continue;
         }
-        awake.look();  // contacts are in the order of their pairs
+        awake.look();  // contacts have to be in the order of their pairs
         nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found));
     }
     awake.look();
@@ -151,7 +152,7 @@ void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTab
     }
 }
 
-/// Crossings take the place of what was found of the same features.
+/// Writes the contacts, where crossings replace contacts found for the same features.
 void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
     for (std::size_t b = blocks; b < pairs.found.size(); ++b) pairs.found[b].clear();
     merge_rows(pairs.found, crossings.row, false, crossings.merged);
@@ -180,7 +181,7 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
         write_with_crossings(static_cast<std::size_t>(blocks), pairs, crossings, contacts);
         return true;
     }
-    // Pairs are in key order, candidates in feature order, blocks in both: so are the contacts.
+    // Pairs are in key order, candidates in feature order, blocks in both orders: so are the contacts.
     pairs.block_first.resize(static_cast<std::size_t>(blocks));
     std::size_t count = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {

@@ -9,10 +9,10 @@
 namespace skerry {
 
 /// Fills the contact table, in key order, with every candidate whose gap could close within the step of length h (with
-/// a margin for the velocity that forces can add), and with those that crossed in an earlier try of this step, as they
-/// met then. Candidates proven to stay apart for some travel are skipped by one comparison. Fills all columns but
-/// impulse (zero), region (no_index), slip and state. Returns false when there are no candidates (skipped). Parallel
-/// over pairs.
+/// a margin for the velocity that forces can add). Crossings from an earlier try of this step are added as they were
+/// found. Candidates proven to stay apart for some travel are skipped by one comparison. Impulse and slip are set to
+/// zero, region to no_index and state to open. Returns false if there are no candidates (skipped). Parallel over blocks
+/// of candidates.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

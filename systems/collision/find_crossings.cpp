@@ -22,16 +22,16 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t checked_pairs_per_block = 512;  // of which it is looked up how far they come
+constexpr std::size_t checked_pairs_per_block = 512;  // pairs whose motion is checked together
 
-/// Where the features are at some time of the step, and how they are nearest.
+/// Nearest points of the features at some time of the step.
 struct Nearest {
     Stencil stencil;
-    Vec3 offset;  // m, from the second feature to the first
-    Vec3 point;   // m, on the second
+    Vec3 offset;  // from the second feature to the first [m]
+    Vec3 point;   // on the second [m]
 };
 
-// Lanes and the scalar twin that decides may differ by rounding, by much less than this.
+// The lanes and their scalar twin, which decides, may differ by rounding, by much less than this fraction.
 constexpr Real lane_rounding = 1e-6;
 
 class PairCrossings {
@@ -50,14 +50,14 @@ public:
           found_(found),
           scale_(pair_scale(inputs, kind_, first_, second_)) {}
 
-    /// Looks at the candidates that can have met by `travel_bound`. Returns how many were tested.
+    /// Tests the candidates that can have met by `travel_bound` [m]. Returns the number tested.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
                             [&](Index c) { return test(candidates_[c], asleep_until_[c] - travel_); });
     }
 
-    /// The same of what find_contacts has looked at, as long as the pair closes no more than that took into account;
-    /// `motion`: m, by which the pair moves. What is fast enough for its distance is found eight at a time.
+    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed.
+    /// `motion`: distance the pair may move [m]. Candidates fast enough for their distance are found eight at a time.
     std::uint64_t run(std::span<const NearCandidate> near, Real motion, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    /// Candidates of a kind are tested together, in their order.
+    /// Collects candidates of one kind. They are tested together, in their order.
     std::uint64_t wait(const NearCandidate& at) {
         const FeaturePair kind = features_of(candidates_[at.candidate]);
         const std::uint64_t tested = waiting_count_ == waiting_.size() || kind != waiting_kind_ ? test_waiting() : 0;
@@ -92,7 +92,7 @@ private:
         return tested;
     }
 
-    /// `least`: m, no distance of what they are the middles or parts of is below it.
+    /// `least`: lower bound of the distance between the surfaces, which for round bodies lie around the features [m].
     bool test(const Candidate& candidate, Real least) {
         const FeaturePair kind = features_of(candidate);
         const CandidateNodes node = nodes_of(inputs_.surface, candidate);
@@ -102,7 +102,7 @@ private:
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
         const Real apart = nearest(kind, node, x).offset.norm();
-        // of what is pressed into a round body the core must not get through
+        // if the surface of a round body is pressed in already, only its core must not get through
         const KeptApart kept = apart > scale_.radii ? kept_of_radii(scale_) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
         const std::optional<Real> time = time_of_contact(kind, x, displacement, kept);
@@ -137,10 +137,10 @@ private:
         const Real length = met.offset.norm();
         if (!(length > 0)) return;  // they touched before the step
         const Vec3 normal = met.offset / length;
-        Real along = 0;  // m, of the two points at the start of the step
+        Real along = 0;  // distance of the two points along the normal at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
-        // features that turn by more than a right angle have not overlapped
+        // features that turn by more than a right angle have a negative distance without an overlap
         const Real distance = std::max(along, scale_.radii);
         found_.push_back(contact_row(
             inputs_, {key_, kind_, first_, second_}, candidate,
@@ -164,13 +164,13 @@ private:
     FeaturePair waiting_kind_ = FeaturePair::point_triangle;
 };
 
-/// How far a pair can come in this step, m.
+/// Bounds of how far a pair can move in this step [m].
 struct PairReach {
-    Real motion;        // of both together
-    Real travel_bound;  // travel of both with it
+    Real motion;        // both partners together
+    Real travel_bound;  // travel of both with this motion
 };
 
-/// m, how far what touches is from the collider's origin: of a plane, which has no end, the furthest node.
+/// Distance of the furthest point that can touch from the collider's origin [m]. For a plane it is the furthest node.
 Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -206,7 +206,7 @@ bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) 
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
-/// What of a block's pair find_contacts has looked at, `next` the first that is not yet passed.
+/// Returns the candidates of a block's pair that find_contacts has tested; `next`: the first that is not yet passed.
 std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, Index p, std::size_t& next) {
     while (next < near.size() && near[next].pair < p) ++next;
     const std::size_t first = next;
@@ -225,9 +225,9 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from >= to) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
-        // Of the block's candidates, those awake in find_contacts have D >= block_nearest, so that a motion below
-        // slow_fraction block_nearest cannot bring them together; those asleep have g > reach as long as the motion
-        // stays within the front of find_contacts.
+        // Candidates of the block that were awake in find_contacts have D >= block_nearest, so that a motion
+        // below slow_fraction * block_nearest cannot bring them together. Those asleep have g > reach as long as the
+        // motion stays within the front of find_contacts.
         const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
         const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
@@ -244,17 +244,17 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
     return tested;
 }
 
-/// Whether a pair moves further in this step than its list is good for.
+/// True if a pair moves further in this step than its list is valid for.
 bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
-    // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. Where the list was made from the very
-    // positions of this step nothing has moved since, d0 is not lost, and T + m is the bound.
+    // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. If the list was made from the positions of
+    // this very step, nothing has moved since, d0 is not lost, and T + m is the bound.
     const Real drifted =
         pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     return !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
 }
 
-/// Almost never.
+/// True if any pair moves further than its list is valid for, which almost never happens.
 bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const PairTable& pairs, Real h) {
     std::atomic<bool> any{false};
     parallel_for(executor, pairs.size(), checked_pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -264,8 +264,8 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Pa
     return any;
 }
 
-/// Has the lists of pairs made anew that move further than they are good for. Returns how many; those whose list was
-/// made for such a motion already, or all where none is `allowed`, are added to `hopeless`.
+/// Requests new lists for the pairs that move further than theirs are valid for. Returns their number. Pairs whose list
+/// was made for such a motion already, or all of them if none is `allowed`, are added to `hopeless`.
 Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
@@ -288,9 +288,9 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            if (pairs.kind[p] == PairKind::collider) continue;  // distances are signed
+            if (pairs.kind[p] == PairKind::collider) continue;  // their distances are signed
             pairs.state[p] = PairState::overlapping;
-            pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // of what overlaps more is listed
+            pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // an overlapping pair needs a longer list
         }
 }
 

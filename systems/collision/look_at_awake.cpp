@@ -19,7 +19,7 @@ void AwakeCandidates::add(Index p, Range range) {
             look();
             begin = 0;
         }
-        __builtin_prefetch(list + c);  // asked for one after the other each would be waited for
+        __builtin_prefetch(list + c);  // without it each load would wait for the one before
         row_[count_++] = c;
     });
     close_pair();
@@ -40,7 +40,7 @@ void AwakeCandidates::look() {
     count_ = pair_count_ = 0;
 }
 
-/// In each list points come before edges.
+/// Lists the points and the edges. In each pair's list points come before edges.
 void AwakeCandidates::list_kinds() {
     points_.count = edges_.count = 0;
     const SurfaceTables& surface = inputs_.surface;
@@ -96,7 +96,7 @@ PairScale AwakeCandidates::scale_of(Index p) const {
                                pair_scale(inputs_, pairs_.kind[p], pairs_.first[p], pairs_.second[p]));
 }
 
-/// Until they may be contacts as far as the greatest speeds of their pair tell.
+/// Stores until when the candidates of a pair may sleep, judged by the greatest speeds of the pair.
 void AwakeCandidates::put_to_sleep(AwakePair& awake) {
     const PairScale scale = scale_of(awake.pair);
     put_to_sleep(awake, awake.begin, awake.edges_begin, scale.zone, scale, close_points_);
@@ -105,7 +105,7 @@ void AwakeCandidates::put_to_sleep(AwakePair& awake) {
     awake.close_edges_end = close_edges_.count;
 }
 
-/// Without branches, which are hard to predict.
+/// Stores until when candidates of one kind may sleep. There are no branches, since they would be hard to predict.
 void AwakeCandidates::put_to_sleep(const AwakePair& awake, std::size_t begin, std::size_t end, Real zone,
                                    const PairScale& scale, Places& close) {
     if (begin == end) return;
@@ -131,7 +131,8 @@ void AwakeCandidates::put_to_sleep(const AwakePair& awake, std::size_t begin, st
     for (std::size_t i = 0; i < meeting_count; ++i) near_.push_back({p, row_[meeting[i]], distance_[meeting[i]]});
 }
 
-/// Those that are not too slow. Of surfaces that may overlap slow ones count, too: they may have come through.
+/// Tests the close candidates that are not too slow. If surfaces may overlap, slow ones are tested, too: they may have
+/// come through.
 void AwakeCandidates::wake(const AwakePair& awake, std::size_t& next_point, std::size_t& next_edge) {
     if (next_point == awake.close_points_end && next_edge == awake.close_edges_end) return;
     const Index p = awake.pair;

@@ -1,5 +1,5 @@
-// Candidates of many pairs of bodies looked at side by side, whatever pair they are of: how far apart they are, and
-// which of them may be contacts of this step.
+// Tests of the awake candidates of many pairs of bodies side by side: their distances, and which of them may be
+// contacts of this step.
 #pragma once
 
 #include <array>
@@ -16,29 +16,30 @@
 
 namespace skerry {
 
-/// Does for ranges of candidates that are added one after the other what look_at_candidates does for each, step by step
-/// for all of them: most pairs have few that are awake, and what is asked for early is there when it is needed.
+/// Does the work of look_at_candidates for several ranges of candidates at once, pass by pass. Most pairs have few
+/// awake candidates, and memory that one pass prefetches is there for the next.
 class AwakeCandidates {
 public:
     AwakeCandidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
                     Column<ContactRow>& found, Column<NearCandidate>& near)
         : inputs_(inputs), settings_(settings), h_(h), pairs_(pairs), found_(found), near_(near) {}
 
-    /// Of a pair of bodies, none of them a cylinder. Those that are awake are looked at with those of other pairs.
+    /// Adds a range of candidates of two bodies, neither of them a cylinder. The awake ones are tested with those of
+    /// other pairs.
     void add(Index p, Range range);
-    /// Looks at what was added.
+    /// Tests the candidates that were added.
     void look();
 
-    /// m, of all that were looked at.
+    /// Least distance of all candidates tested [m].
     Real least_distance() const { return least_distance_; }
 
 private:
-    static constexpr std::size_t most_candidates = 256;  // what is known of them stays in the nearest cache
+    static constexpr std::size_t most_candidates = 256;  // so that their data stays in the first-level cache
 
     template <class T>
     using ByPlace = std::array<T, most_candidates>;
 
-    /// Places of candidates of one kind, in order.
+    /// Indices of candidates of one kind in the ByPlace arrays, ascending.
     struct Places {
         explicit Places(FeaturePair of_kind) : kind(of_kind) {}
 
@@ -52,10 +53,10 @@ private:
         }
     };
 
-    /// Some candidates of one pair, in the order of its list: points and triangles, then edges.
+    /// The awake candidates of one pair in the order of its list: points and triangles, then edges.
     struct AwakePair {
         Index pair;
-        std::size_t begin, edges_begin, end;  // places
+        std::size_t begin, edges_begin, end;  // indices in the ByPlace arrays
         std::size_t close_points_end, close_edges_end;
     };
 
@@ -79,14 +80,14 @@ private:
     Real least_distance_ = std::numeric_limits<Real>::infinity();
 
     std::size_t count_ = 0, pair_count_ = 0;
-    ByPlace<AwakePair> pair_;       // each has a place at least
-    ByPlace<Index> row_;            // in the list of the pair
+    ByPlace<AwakePair> pair_;       // each pair has at least one candidate
+    ByPlace<Index> row_;            // row in the list of the pair
     ByPlace<Candidate> candidate_;  // copies
     ByPlace<CandidateNodes> node_;
-    ByPlace<Real> distance_;  // m
-    ByPlace<Real> speed_;     // m/s, of those that are close
+    ByPlace<Real> distance_;  // [m]
+    ByPlace<Real> speed_;     // of the close candidates [m/s]
     Places points_{FeaturePair::point_triangle}, edges_{FeaturePair::edge_edge};
-    // of these, what is near enough for the greatest speeds of its pair
+    // candidates that are near enough to meet at the greatest speeds of their pair
     Places close_points_{FeaturePair::point_triangle}, close_edges_{FeaturePair::edge_edge};
 };
 

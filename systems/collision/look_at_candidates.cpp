@@ -21,17 +21,17 @@ namespace skerry {
 
 namespace {
 
-// Faces around a place may seem to lie before it by rounding.
+// Up to this fraction of the distance, faces around a place may seem to lie before it by rounding.
 constexpr Real sight_slack = 1e-6;
 
-/// Looks at candidates of two bodies, one by one.
+/// Tests candidates of two bodies, one by one.
 class PairContacts : PairLook {
 public:
     PairContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
                  Column<ContactRow>& found)
         : PairLook(inputs, settings, h, pairs, p, found), state_(pairs.state[p]) {}
 
-    /// Returns the least distance of what was looked at, m.
+    /// Returns the least distance of the features tested [m].
     Real run(Range range) {
         for_each_awake(range, [&](Index c) { wake(c); });
         return std::sqrt(nearest_squared_) - scale_.radii;
@@ -83,7 +83,7 @@ private:
     /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front
     /// of the far side of a thin part, or be pushed out through a nearer face.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In a body's contact with itself it may simply be on the other side of a thin part.
+        // In self-contact the point may simply be on the other side of a thin part.
         if (kind_ == PairKind::self && !was_far_at_rest(inputs_, scale_, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs_.surface.triangles.node[candidates_[i].second];
@@ -93,8 +93,8 @@ private:
         });
     }
 
-    /// Whether the core of a round body is touched by this point. Where an end of an axis is nearest, that is what is
-    /// held against the other surface; two ends are held once.
+    /// True if this point touches the core of a round body. If an end of an axis is nearest, that end is tested against
+    /// the other surface instead. Two ends are tested against each other once.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs_.body;
@@ -108,8 +108,8 @@ private:
                                             inputs_.position[b] - inputs_.position[a], scale_);
     }
 
-    /// Whether a round body meets a place from behind because the other is inside out there: a face between its core
-    /// and the place would hold it off. Others may be nearer: it lies on many faces at once.
+    /// True if a round body meets a place from behind because the other body is inside out there. A face between its
+    /// core and the place would hold it off. Other faces may be nearer: it lies on many faces at once.
     bool is_in_sight(Index c, Index core, const Vec3& place) const {
         const Vec3& from = inputs_.position[core];
         const Vec3 until = from + (1 - sight_slack) * (place - from);

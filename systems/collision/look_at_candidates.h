@@ -1,4 +1,4 @@
-// Which candidates of a pair are contacts of this step.
+// Selection of the candidates of a pair that are contacts of this step.
 #pragma once
 
 #include <span>
@@ -10,14 +10,15 @@
 
 namespace skerry {
 
-/// Looks at those candidates of pair p (row of `pairs`) in a range of its list that are awake, without use_budgets at
-/// all of them, one by one: appends what may close within the step of length h to `found`, in their order, and notes
-/// until when the others may sleep. Returns the least distance of the features that were looked at, m. Of two bodies
+/// Tests the awake candidates of pair p (row of `pairs`) in a range of its list one by one; without use_budgets it
+/// tests all. Candidates whose gap may close within the step of length h are appended to `found`, in order. It stores
+/// until when the tested candidates may sleep. Returns the least distance of the tested features [m]. For two bodies
 /// this is the simple twin of look_at_awake.h.
 Real look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                         PairTable& pairs, Column<ContactRow>& found);
 
-/// The same of some candidates of two bodies, none of them a cylinder; `rows` of their list.
+/// Tests some candidates of two bodies, neither of them a cylinder, and appends contacts to `found`. `rows`: places in
+/// the list of the pair.
 void look_at_candidates(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                         std::span<const Index> rows, PairTable& pairs, Column<ContactRow>& found);
 

@@ -22,7 +22,7 @@ public:
           geometry_(inputs.collider.geometry[second_]),
           motion_(inputs.collider.motion[second_]) {}
 
-    /// Returns the least distance of what was looked at, m; how far it may move in a flat place where that is more.
+    /// Returns the least distance of the features tested, or how far they may move in a flat place if that is more [m].
     Real run(Range range) {
         for_each_awake(range, [&](Index c) { wake(c); });
         return nearest_;
@@ -66,7 +66,7 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            nearest_ = std::min(nearest_, distance - scale_.radii);  // no point of it is nearer
+            nearest_ = std::min(nearest_, distance - scale_.radii);  // a bound for the whole edge
             return;
         }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
@@ -95,7 +95,7 @@ private:
         const Vec3 point = world(contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        const Real depth = -(contact.distance + contact.point.radius);  // of the middle, behind the face
+        const Real depth = -(contact.distance + contact.point.radius);  // of the point's centre behind the face
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;
         add(candidate, ContactKind::face_collider,
@@ -103,8 +103,8 @@ private:
             -(motion_.rotation * contact.normal), contact.distance, scale_.contact_distance, velocity);
     }
 
-    /// As of two bodies: the point may be in front of the far side of a thin part, or nearer to another face; or
-    /// outside, in a fold.
+    /// True if the point has come through this face. Otherwise it may be in front of the far side of a thin part,
+    /// nearer to another face, or outside in a fold.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale_.face_depth &&
                is_nearest(c, depth,
@@ -124,7 +124,7 @@ private:
     Vec3 velocity_at(const Vec3& point) const {
         return motion_.velocity + motion_.angular_velocity.cross(point - motion_.position);
     }
-    /// The greatest of some nodes, m/s.
+    /// Greatest speed of some nodes relative to `velocity` [m/s].
     Real speed_against(const Vec3& velocity, const auto& nodes) const {
         Real squared = 0;
         for (Index n : nodes) squared = std::max(squared, (inputs_.velocity[n] - velocity).squaredNorm());

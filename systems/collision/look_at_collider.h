@@ -1,4 +1,4 @@
-// Which candidates of a body and an analytic collider are contacts of this step.
+// Selection of the candidates of a body and an analytic collider that are contacts of this step.
 #pragma once
 
 #include "components/contact_table.h"
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// look_at_candidates of a pair with a collider.
+/// Version of look_at_candidates for a pair with an analytic collider.
 Real look_at_collider(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                       PairTable& pairs, Column<ContactRow>& found);
 

@@ -16,20 +16,21 @@ namespace skerry {
 
 namespace {
 
-// Of what comes nearer than this the travel of the nodes of the rims tells more than the way of what lies between them.
+// The travel of the nodes of the rims is more than this fraction of the motion of the points between them.
 constexpr Real of_rim_nodes = 0.95;
 
-// An edge that is this parallel to the axis (sine of the angle) touches the side along a stretch, or hardly.
+// An edge counts as parallel to the axis if the sine of their angle is below this. It touches the side along a stretch,
+// or hardly at all.
 constexpr Real parallel_sine = 1e-3;
 
-// A slope of the distance along an edge below this is none.
+// Slopes of the distance along an edge below this count as zero.
 constexpr Real straight_slope = 1e-7;
 
-// Of a triangle: three corners, eight places of each edge, nine of each rim.
+// Numbers of the touches with a triangle: three corners, eight places of each edge, nine of each rim.
 constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
 static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
 
-constexpr Real seam_fraction = 1e-9;  // of an edge: places are over the one or the other face beside it, or both
+constexpr Real seam_fraction = 1e-9;  // of an edge: places this near to a seam are over one or both of its faces
 
 class CylinderContacts : PairLook {
 public:
@@ -57,13 +58,14 @@ private:
             against_core(c, candidate);
     }
 
-    /// `distance`: m, of the surfaces, none of the candidate is less. Returns whether it matters in this step.
+    /// `distance`: lower bound of the distance between the surfaces [m]. Returns true if the candidate matters in this
+    /// step.
     bool note(Index c, Real distance) {
         nearest_ = std::min(nearest_, distance);
         asleep_until_[c] = travel_base_ + (distance > 0 ? of_rim_nodes : 1) * distance - scale_.shell;
         return distance <= near();
     }
-    /// By a bound that what touches makes sharper.
+    /// True if a bound shows that the candidate does not matter in this step. Else its touches give a sharper bound.
     bool is_far(Index c, Real bound) { return bound > near() && !note(c, bound); }
     Real near() const { return near_ - scale_.radii; }
     bool is_reached(Real distance, Real speed) const { return within_reach(distance + scale_.radii, speed); }
@@ -109,7 +111,8 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // what rolls or slides over a flat place is held by its faces alone: an edge ahead would be a bump
+            // A cylinder that rolls or slides over a flat place is held by its faces alone: an edge ahead would be a
+            // bump.
             const CylinderPlace place = place_of(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
@@ -142,7 +145,8 @@ private:
         }
     }
 
-    /// As of bodies and colliders; of what is held apart nothing is behind.
+    /// True if the point has come through this face, as for bodies and colliders. In pairs held apart nothing is behind
+    /// a face.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return !held_apart_ && depth <= scale_.face_depth && is_nearest(c, depth, [&](Index i) {
             const auto& node = inputs_.surface.triangles.node[candidates_[i].second];
@@ -169,7 +173,8 @@ private:
                         surface_));
     }
 
-    /// A sphere, a capsule or another cylinder. The middle of the pair's other may be the point of the candidate.
+    /// Tests a sphere, a capsule or another cylinder. The point of the candidate may be the middle of the other
+    /// partner.
     void against_core(Index c, const Candidate& candidate) {
         const Index core = inputs_.body.core_nodes[of_.other], first = inputs_.body.nodes[of_.other].begin;
         const Real radius = inputs_.body.round_radius[of_.other];

@@ -1,4 +1,4 @@
-// A rigid cylinder against what is near it.
+// Contacts between a rigid cylinder and the bodies and colliders near it.
 #pragma once
 
 #include "components/pair_table.h"
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// As look_at_candidates, of a pair with a cylinder.
+/// Version of look_at_candidates for a pair with a cylinder.
 Real look_at_cylinder(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, Range range,
                       PairTable& pairs, Column<ContactRow>& found);
 

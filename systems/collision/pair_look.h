@@ -1,4 +1,4 @@
-// What looking at candidates needs of their pair, whatever its kind.
+// Data of a pair, of any kind, that the tests of its candidates share.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace skerry {
 
-// Candidates whose sleep is tested together, without a branch for each.
+// Number of candidates whose sleep is tested together, without a branch for each.
 inline constexpr Index candidates_at_once = 16;
 
-// Another triangle is nearer to a point only if it is by more than rounding.
+// Another triangle counts as nearer to a point only if the difference exceeds rounding.
 inline constexpr Real nearer_fraction = 1e-9;
 
-/// A bit for each of the candidates from `begin` on that are tested together.
+/// Mask of the awake candidates, with a bit for each of those from `begin` on that are tested together.
 inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
     static_assert(candidates_at_once == 2 * element_lanes);
     const Real* const until = asleep_until.data() + begin;
@@ -28,7 +28,7 @@ inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Rea
     return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
 }
 
-/// Calls `wake` for each candidate of a range that is awake, in order.
+/// Calls `wake` for each awake candidate of a range, in order.
 void for_each_awake(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& wake) {
     Index c = range.begin;
     for (; c + candidates_at_once <= range.end; c += candidates_at_once)
@@ -38,12 +38,12 @@ void for_each_awake(std::span<const Real> asleep_until, Range range, Real travel
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) wake(c);
 }
 
-/// m, how far apart features of a pair may be that are looked at closely: it closes by `closing` in this step.
+/// Distance up to which features get a close test, if the pair closes by `closing` in this step [m].
 inline Real nearness(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
 
-/// One pair in one step; contacts are appended to a list.
+/// Contact tests of one pair in one step. Contacts are appended to a list.
 class PairLook {
 public:
     PairLook(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs, Index p,
@@ -63,7 +63,7 @@ public:
           found_(found) {}
 
 protected:
-    /// Calls `wake` for each candidate of a range that is awake; without budgets for all.
+    /// Calls `wake` for each awake candidate of a range; without budgets for all of them.
     void for_each_awake(Range range, auto&& wake) const {
         if (settings_.use_budgets) {
             skerry::for_each_awake(asleep_until_, range, travel_bound_, wake);
@@ -72,7 +72,8 @@ protected:
         for (Index c = range.begin; c < range.end; ++c) wake(c);
     }
 
-    /// What all candidates of the pair share, once one is awake. Returns whether it was not there yet.
+    /// Computes the data that all candidates of the pair share, once one is awake. Returns false if it was there
+    /// already.
     bool prepare() {
         if (prepared_) return false;
         scale_ = pair_scale(inputs_, kind_, first_, second_);
@@ -99,14 +100,15 @@ protected:
         if (moves(row.stencil)) found_.push_back(row);
     }
 
-    /// Whether no other triangle among the candidates of the same point is nearer than `depth`: all that are as near
-    /// are candidates, in one row. `squared(i)`: distance of the point of candidate c to the triangle of candidate i.
+    /// True if no other triangle among the candidates of the same point is nearer than `depth`: all triangles as near
+    /// are candidates, side by side in the list. `squared(i)`: squared distance of the point of candidate c to the
+    /// triangle of candidate i.
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale_.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });
     }
 
-    /// Whether something holds of no other candidate of the point of candidate c.
+    /// True if `holds` is false for every other candidate of the point of candidate c.
     bool none_of_point(Index c, auto&& holds) const {
         const std::uint64_t group = point_of_feature(candidates_[c].feature);
         const Index count = static_cast<Index>(candidates_.size());

@@ -1,27 +1,28 @@
-// Distances of eight pairs of features at a time: twins of closest_points.h that know how far, not where.
+// Distances of eight pairs of features at a time. They are twins of the functions in closest_points.h that return the
+// distance but not the nearest points.
 #pragma once
 
 #include "systems/geometry/lane_vec3.h"
 
 namespace skerry {
 
-/// x within [0, 1]; 0 where it is not a number.
+/// x clamped to [0, 1]; 0 if x is not a number.
 [[gnu::always_inline]] inline Real8 clamped_to_unit(const Real8& x) {
     const Real8 zero{}, one = zero + 1.0;
     const Real8 low = x > zero ? x : zero;
     return low < one ? low : one;
 }
 
-/// m^2, of the points a0 a1 and b0 b1 of two segments each (Ericson, Real-Time Collision Detection, 5.1.9). Not a
-/// number where a position is none.
+/// Squared distances of the segments a0 a1 and b0 b1 [m^2] (Ericson, Real-Time Collision Detection, 5.1.9). The result
+/// is not a number where a position is not a number.
 [[gnu::always_inline]] inline Real8 segment_distance_squared(const LaneVec3<Real8>& a0, const LaneVec3<Real8>& a1,
                                                              const LaneVec3<Real8>& b0, const LaneVec3<Real8>& b1) {
-    constexpr Real noise_sine_squared = 1e-14;  // below it the crossing of the lines is rounding
+    constexpr Real noise_sine_squared = 1e-14;  // below it rounding decides where the lines cross
     const Real8 zero{}, one = zero + 1.0;
     const LaneVec3<Real8> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
     const Real8 a = dot(ea, ea), e = dot(eb, eb), b = dot(ea, eb), c = dot(ea, r), f = dot(eb, r);
     const Real8 denominator = a * e - b * b;  // |ea x eb|^2
-    // The crossing of the lines, clamped to the first segment; then to the second, and back.
+    // The crossing of the lines is clamped to the first segment, then to the second, and back.
     const Real8 crossing = clamped_to_unit((b * f - c * e) / denominator);
     const Real8 free_s = denominator > noise_sine_squared * a * e ? crossing : zero;
     const Real8 along = (b * free_s + f) / e, free_t = e > zero ? along : zero;
@@ -33,7 +34,7 @@ namespace skerry {
     return dot(apart, apart);
 }
 
-/// m^2, of the points p and the segments that begin at p - from and go along `edge`.
+/// Squared distances of the points p from the segments that begin at p - from and run along `edge` [m^2].
 [[gnu::always_inline]] inline Real8 point_segment_distance_squared(const LaneVec3<Real8>& from,
                                                                    const LaneVec3<Real8>& edge) {
     const Real8 zero{}, squared = dot(edge, edge);
@@ -42,18 +43,19 @@ namespace skerry {
     return dot(apart, apart);
 }
 
-/// How far points are from triangles, and on which side.
+/// Distances of points from triangles, and the side of the triangle's plane.
 struct PointTriangleLanes {
-    Real8 distance_squared;  // m^2; not a number where a position is none
-    Real8 height;            // m^3: twice the area times the height above the plane, above 0 on the side of the normal
+    Real8 distance_squared;  // not a number where a position is not a number [m^2]
+    Real8 height;            // height above the plane times twice the area; positive on the side of the normal [m^3]
 };
 
-/// Of the points p and the triangles abc. One lower than 1e-6 of its longest edge counts as its three edges.
+/// Distances of the points p from the triangles abc. A triangle lower than 1e-6 of its longest edge counts as its three
+/// edges.
 [[gnu::always_inline]] inline PointTriangleLanes point_triangle_distance(const LaneVec3<Real8>& p,
                                                                          const LaneVec3<Real8>& a,
                                                                          const LaneVec3<Real8>& b,
                                                                          const LaneVec3<Real8>& c) {
-    constexpr Real min_height_squared = 1e-12;  // over the square of the longest edge
+    constexpr Real min_height_squared = 1e-12;  // relative to the square of the longest edge
     const Real8 zero{};
     const LaneVec3<Real8> ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
     const LaneVec3<Real8> normal = cross(ab, bc);
@@ -63,12 +65,12 @@ struct PointTriangleLanes {
     const Real8 to_ab = point_segment_distance_squared(ap, ab), to_bc = point_segment_distance_squared(bp, bc),
                 to_ca = point_segment_distance_squared(cp, ca);
     const Real8 nearer = to_ab < to_bc ? to_ab : to_bc, to_edges = nearer < to_ca ? nearer : to_ca;
-    // Above the face: on the inner side of all three edges.
+    // The point is above the face if it is on the inner side of all three edges.
     const auto above = (dot(cross(normal, ab), ap) > zero) & (dot(cross(normal, bc), bp) > zero) &
                        (dot(cross(normal, ca), cp) > zero) &
                        (area_squared > min_height_squared * longest_squared * longest_squared);
     const Real8 to_plane = height * height / area_squared;
-    // A minimum passes over what is not a number, a sum does not.
+    // Comparisons ignore values that are not numbers; the added sum passes them on.
     return {(above ? to_plane : to_edges) + 0.0 * (ab2 + bc2 + ca2), height};
 }
 

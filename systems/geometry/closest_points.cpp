@@ -8,11 +8,11 @@ namespace skerry {
 
 namespace {
 
-// A triangle lower than this fraction of its longest edge counts as that edge: the sums below lose all digits before
+// A triangle lower than this fraction of its longest edge counts as that edge: the sums below have lost all digits at
 // 1e-8.
 constexpr Real min_height_fraction = 1e-6;
 
-// Segments this close to parallel have no crossing worth naming.
+// Segments this close to parallel have no well-defined crossing.
 constexpr Real min_sine_squared = 1e-6;
 
 // Below this the denominator of the crossing is rounding noise.
@@ -26,7 +26,7 @@ PointTriangle at(const Vec3& p, const Vec3& nearest, TriangleRegion region, Real
     return {{w0, w1, w2}, region, nearest, (p - nearest).squaredNorm()};
 }
 
-/// The longest edge stands for the triangle.
+/// Nearest point on the longest edge, which stands for the triangle.
 PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
     constexpr std::array<TriangleRegion, 3> edge_region{TriangleRegion::edge01, TriangleRegion::edge12,
                                                         TriangleRegion::edge20};
@@ -56,7 +56,7 @@ PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec
 PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const Real longest_squared = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
-    // 2 area = height * longest edge. Also taken by numbers that are not finite.
+    // 2 area = height * longest edge. Numbers that are not finite take this branch, too.
     if (!(ab.cross(ac).squaredNorm() > min_height_fraction * min_height_fraction * longest_squared * longest_squared))
         return closest_point_on_flat_triangle(p, {a, b, c});
 
@@ -83,7 +83,8 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
         return at(p, b + s * (c - b), TriangleRegion::edge12, 0, 1 - s, s);
     }
     const Real scale = 1 / (va + vb + vc);
-    // Beside an edge rounding takes a weight below zero, and its sign says whose node it is.
+    // Beside an edge rounding can make a weight negative. The sign must stay, because it tells to which body a node
+    // belongs.
     const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
     return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }

@@ -1,4 +1,4 @@
-// What a comparison of eight lanes gives, and what is asked of it.
+// Masks from comparisons of eight lanes, and operations on them.
 #pragma once
 
 #include <bit>
@@ -9,17 +9,17 @@
 
 namespace skerry {
 
-/// By lane: all bits where it holds, else none. What comparing two Real8 gives.
+/// Result of comparing two Real8: all bits of a lane are set where the comparison holds, else none.
 typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 
-/// All lanes or-ed together. By halves: as a loop over lanes it went through memory, and was a good part of a search.
+/// All lanes or-ed together. It works by halves, because a loop over the lanes would go through memory.
 [[gnu::always_inline]] inline std::int64_t any_bits(const LaneBits& mask) {
     const LaneBits four = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3),
                    two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5);
     return two[0] | two[1];
 }
 
-/// Bit l for lane l. One instruction where registers are wide enough to have one for it.
+/// Mask with bit l set for lane l. It takes one instruction where AVX-512DQ is available.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
 #if defined(__AVX512DQ__)
     typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));
@@ -30,7 +30,7 @@ typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 #endif
 }
 
-/// Calls visit(lane) for each bit, in rising order.
+/// Calls visit(lane) for each set bit, in ascending order.
 void for_each_lane(unsigned bits, auto&& visit) {
     for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }

@@ -1,4 +1,4 @@
-// Vectors whose parts are registers: the same source works on one row (T = Real) and on several side by side.
+// Vectors whose components are registers: the same source works on one row (T = Real) and on several side by side.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,8 @@ requires(lanes_of<T> > 1) [[gnu::always_inline]] inline T square_root(const T& x
     return load_part<T>(root, 0);
 }
 
-/// A vector of three T. The parts are named, not indexed, so that they live in registers at every optimisation level.
+/// A vector of three T. Its components are named, not indexed, so that they stay in registers at every optimisation
+/// level.
 template <class T>
 struct LaneVec3 {
     T x, y, z;

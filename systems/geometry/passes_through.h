@@ -1,4 +1,4 @@
-// Whether a segment goes through a triangle.
+// Test of whether a segment passes through a triangle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,12 +7,12 @@
 
 namespace skerry {
 
-/// Six times the volume of a tetrahedron: its sign says on which side of abc the point d lies.
+/// Six times the signed volume of a tetrahedron. The sign tells on which side of abc the point d lies.
 inline Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a);
 }
 
-/// Whether the ends of pq lie on both sides of abc, and it goes through the inside.
+/// True if the ends of pq lie on opposite sides of abc and pq passes through the interior of abc.
 inline bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     if (!(orientation(a, b, c, p) * orientation(a, b, c, q) < 0)) return false;
     const Real u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);

@@ -9,25 +9,25 @@
 
 namespace skerry {
 
-/// The rotation about `rotation` by its length in radians.
+/// Matrix of the rotation about the axis `rotation` by its length [rad].
 inline Mat3 rotation_matrix(const Vec3& rotation) {
     const Real angle = rotation.norm();
     if (angle == 0) return Mat3::Identity();
     return Eigen::AngleAxis<Real>(angle, rotation / angle).toRotationMatrix();
 }
 
-/// Axis times angle (at most pi) of a rotation matrix.
+/// Rotation vector of a rotation matrix: axis times angle, at most pi [rad].
 inline Vec3 rotation_vector(const Mat3& rotation) {
     const Eigen::AngleAxis<Real> turn(rotation);
     return turn.axis() * turn.angle();
 }
 
-/// Of the vectors of a rotation, whole turns apart, the one nearest to another.
+/// Among the vectors of one rotation, which differ by whole turns, the one nearest to `to`.
 inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        const Real length = to.norm();  // no turn, or whole ones about the other's axis
+        const Real length = to.norm();  // no rotation, or whole turns about the axis of `to`
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }
     const Vec3 axis = rotation / angle;

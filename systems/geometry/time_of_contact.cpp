@@ -9,22 +9,21 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the way that surely is free which is taken at once. The rest keeps the features apart whatever the
-// rounding.
+// Fraction of the provably free motion that one round takes. The rest keeps the features apart in spite of rounding.
 constexpr Real advance = 0.9;
 
-// What needs more rounds rolls over the other one, nearer than a step is worth looking at.
+// Features that need more rounds roll over each other at a distance too small to be resolved in a step.
 constexpr int most_rounds = 4096;
 
-/// From the second feature to the first, where they are nearest, m.
+/// Vector from the second feature to the first between their nearest points [m].
 Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
     if (kind == FeaturePair::point_triangle) return x[0] - closest_point_on_triangle(x[0], x[1], x[2], x[3]).nearest;
     const SegmentSegment nearest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
     return nearest.on_first - nearest.on_second;
 }
 
-/// Until the points of one feature and those of the other leave less than `kept` between two planes across `normal`, in
-/// the time in which they move by `displacement`. As long nothing of the features is nearer, whatever the normal.
+/// Fraction of `displacement` after which the points of the two features leave less than `kept` between two planes
+/// across `normal`. Until then no points of the features are nearer than that, for any unit normal.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real kept) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;

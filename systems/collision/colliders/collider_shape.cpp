@@ -10,15 +10,15 @@ namespace skerry {
 
 namespace {
 
-// Points of a rim: the one that follows the face, then four at right angles.
+// Number of points of a rim: the one that follows the face, and four at right angles.
 constexpr Index points_of_rim = 5;
 
 struct Rim {
-    Real radius;  // m
-    Real z;       // m
+    Real radius;  // [m]
+    Real z;       // [m]
 };
 
-/// Rims that are convex: the inner one of a bucket touches by edges of bodies alone.
+/// The convex rims. The inner rim of a bucket is not convex: only edges of bodies touch it.
 Rim rim_of(const ColliderGeometry& geometry, Index rim) {
     const Vec3& size = geometry.size;
     if (geometry.shape == ColliderShape::bucket) return {size[0] + size[2], rim == 0 ? size[1] : -size[2]};
@@ -32,8 +32,8 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// How far a point may move and still be nearest to a flat side: `beside` m from where it ends, `above` m over it; the
-/// other side is `thickness` m behind it.
+/// Distance a point can move while staying nearest to a flat side [m]. The point is `beside` from the border of the
+/// side and `above` over it; the opposite side is `thickness` behind it.
 Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }
@@ -55,7 +55,7 @@ Index flat_place_count(ColliderShape shape) {
     return 0;
 }
 
-/// A convex shape around it.
+/// A convex shape around the collider.
 ColliderGeometry hull_of(const ColliderGeometry& geometry) {
     if (geometry.shape != ColliderShape::bucket) return geometry;
     const Vec3& size = geometry.size;

@@ -1,4 +1,4 @@
-// What of a collider touches where a body has no node: its points, and where its surface is flat.
+// Points of a collider that can touch a body between its nodes, and flat places where only nodes can touch.
 #pragma once
 
 #include <span>
@@ -7,47 +7,47 @@
 
 namespace skerry {
 
-/// A point of a collider that may touch a face of a body between its nodes: the corner of a box, the middle of a ball
-/// or of the end of a capsule, a point of the rim of a cylinder or bucket.
+/// A point of a collider that may touch a face of a body between its nodes: the corner of a box, the centre of a ball
+/// or of the end of a capsule, or a point on the rim of a cylinder or bucket.
 struct ColliderPoint {
-    Vec3 at;      // m, in the frame of the collider
-    Real radius;  // m, of the ball around it that is solid
+    Vec3 at;      // position in the frame of the collider [m]
+    Real radius;  // radius of the solid ball around it [m]
 };
 
-/// Points with numbers from 0 to below this; none of a plane, or of a mesh, which has nodes of its own.
+/// Number of the points, which are numbered from 0. A plane has none, nor has a mesh, which has nodes of its own.
 Index collider_point_count(ColliderShape shape);
 
-/// Point k for a face whose outward unit normal in the frame of the collider is `normal`: of a rim the point that is
-/// deepest behind the face, and four that stand still. Others do not depend on the face.
+/// Point k for a face whose outward unit normal in the frame of the collider is `normal`. A rim has one point that
+/// follows the face, the deepest behind it, and four fixed ones. Other points do not depend on the face.
 ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Vec3& normal);
 
-/// Whether the point of that number is another one for another face.
+/// True if the position of point k depends on the face.
 bool collider_point_follows(ColliderShape shape, Index k);
 
-/// Where a shape is flat, or hollow, the distance along a segment or triangle is least at one of its corners: only
-/// nodes touch. Such a place has a number: of a box the six faces, of a cylinder both ends, of a bucket its hollow and
-/// what is below it. The place in which a point may move furthest; no_index when there is none.
+/// Place in which a point can move furthest, or no_index if the shape has none. In a flat place the shape is flat or
+/// hollow: the distance along a segment or triangle is least at a corner, so that only nodes touch. A plane has one
+/// place, a box its six faces, a cylinder both ends, a bucket its hollow and the region below it.
 Index flat_place(const ColliderGeometry& geometry, const Vec3& point);
 
-/// How far a point may move, in the frame of the collider, and still be in that place, m; below zero outside of it.
+/// Distance a point can move in the frame of the collider while staying in that place; negative outside of it [m].
 Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& point);
 
-/// How far all of the points may move and still be in one place, m; below zero when they are in none.
+/// Distance all points can move while staying in the same flat place; negative if no place contains all of them [m].
 Real flat_reach(const ColliderGeometry& geometry, std::span<const Vec3> points);
 
-/// The signed distance of a convex shape lies above its tangents.
+/// Tangent plane of the signed distance of a convex shape. The signed distance is nowhere below it.
 struct HullTangent {
     Vec3 at, normal;
-    Real distance;  // m, of `at`
+    Real distance;  // signed distance of `at` [m]
 
-    /// The distance of a point to the shape is no smaller than this, m.
+    /// Lower bound of the signed distance of a point to the shape [m].
     Real bound(const Vec3& point) const { return distance + normal.dot(point - at); }
 };
 
-/// To the convex shape around a collider, which is it itself unless it is a bucket.
+/// Tangent plane for a convex shape around a collider. That shape is the collider itself unless it is a bucket.
 HullTangent hull_tangent(const ColliderGeometry& geometry, const Vec3& at);
 
-/// No point of the convex hull of `points` is nearer to the shape than this, m: by the tangent in their middle.
+/// Lower bound of the distance of the shape from the convex hull of `points`, by the tangent at their mean [m].
 Real hull_distance(const ColliderGeometry& geometry, std::span<const Vec3> points);
 
 }  // namespace skerry

@@ -10,29 +10,28 @@ namespace skerry {
 
 namespace {
 
-// A slope of the distance along the edge below this is none: over the whole edge it changes the distance by a hundredth
-// of the contact distance that bodies have by default, 0.02 of an edge.
+// Slopes of the distance along the edge below this count as zero. Over the whole edge such a slope changes the distance
+// by a hundredth of the default contact distance, which is 0.02 of an edge.
 constexpr Real flat_slope = 2e-4;
 
-// Beyond places where the slope becomes greater than this the edge is out of reach unless it turns.
+// Beyond places where the slope exceeds this, the edge is out of reach unless it turns.
 constexpr Real steep_slope = 0.05;
 
-// The end of a flat stretch, and a minimum, are found to this fraction of the edge.
+// Accuracy of the ends of a flat stretch, and of a minimum, as a fraction of the edge.
 constexpr Real place_tolerance = 1e-10;
 
-// Points nearer to each other than this fraction of the edge are one.
+// Points nearer to each other than this fraction of the edge count as one.
 constexpr Real shortest_stretch = 0.1;
 
-// The wall of a bucket is not convex: an edge across its rim has two minima. They are looked for between this many
-// places.
+// The wall of a bucket is not convex: an edge across its rim has two minima. They are searched in this many intervals.
 constexpr int wall_intervals = 16;
 
-/// What is on both sides of a place.
+/// An interval that contains the place searched for.
 struct Bracket {
     Real low, high;
 };
 
-/// The distance to the part at the places of an edge.
+/// Distance to the part as a function of the place on an edge.
 class Along {
 public:
     Along(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
@@ -40,11 +39,12 @@ public:
 
     Real length() const { return length_; }
     SurfacePoint at(Real s) const { return local_distance(geometry_, a_ + s * edge_, part_); }
-    /// Change of the distance by way along the edge; -1 to 1.
+    /// Derivative of the distance with respect to the length along the edge, -1 to 1.
     Real slope(const SurfacePoint& found) const { return found.normal.dot(edge_) / length_; }
     Real slope(Real s) const { return slope(at(s)); }
 
-    /// The minimum of a stretch, whose normal has no part along the edge: of a kink the one between those of its sides.
+    /// Minimum within an interval. At a kink its normal is combined from both sides so that it has no part along the
+    /// edge.
     EdgePoint minimum(Real low, Real high) const {
         EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
         const SurfacePoint before = at(low), after = at(high);
@@ -56,20 +56,22 @@ public:
         return found;
     }
 
-    /// Where the edge passes the planes of a box's sides: between two such places the same of them are nearest.
+    /// Visits the places where the edge passes the planes of a box's sides. Between them the nearest sides stay the
+    /// same.
     void for_each_kink(auto&& visit) const {
         if (geometry_.shape != ColliderShape::box) return;
         for (int i = 0; i < 3; ++i)
             for (const Real side : {-geometry_.size[i], geometry_.size[i]}) visit((side - a_[i]) / edge_[i]);
     }
 
-    /// Where the slope is this by closed form: of a ball, and of a box as long as the same of its sides are nearest as
-    /// at `near`. To what they share, seen from outside, the distance along the edge is f = sqrt(q^2 (s - s0)^2 +
-    /// f0^2), and its slope q^2 (s - s0) / (length f). Not a number where it is never reached, or not known.
+    /// Place with a given slope in closed form: for a ball, and for a box as long as the same of its sides are nearest
+    /// as at `near`. As seen from outside, the distance along the edge is f = sqrt(q^2 (s - s0)^2 + f0^2), and its
+    /// slope is q^2 (s - s0) / (length f). The result is not a number if the slope is never reached or has no closed
+    /// form.
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
-        Vec3 from = a_, along = edge_;  // as seen from what is nearest
+        Vec3 from = a_, along = edge_;  // relative to the nearest point, edge or side of the shape
         for (int i = 0; i < 3 && is_box; ++i) {
             const Real at = a_[i] + near * edge_[i];
             const bool beyond = std::abs(at) > geometry_.size[i];
@@ -87,11 +89,12 @@ private:
     const Real length_;
 };
 
-/// Where along an edge a slope is passed: first looks where a closed form expects it, then along the chord, by the
-/// Illinois rule. A kink, or a stretch of one value, is found by the halving of every fourth round.
+/// Finds the place along an edge where the slope passes a value. It first tests kinks and the prediction of a closed
+/// form, then uses the Illinois rule (regula falsi). Every fourth round halves the interval, which also finds kinks and
+/// stretches of constant slope.
 class PlaceOfSlope {
 public:
-    /// `below` and `above`: the slopes at both ends; `itself_is_below`: which side of the place the slope itself is on.
+    /// `below` and `above`: slopes at both ends. `itself_is_below`: side to which a slope equal to `slope` counts.
     PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
@@ -117,9 +120,9 @@ public:
     }
 
 private:
-    static constexpr Real least_step = 0.45 * place_tolerance;  // what is found from one side is passed by this
+    static constexpr Real least_step = 0.45 * place_tolerance;  // steps past a place that is approached from one side
 
-    /// Nothing where `s` is not between both sides.
+    /// Tests the place `s`, unless it is outside of the interval.
     void look(Real s) {
         if (!(s > on_.low && s < on_.high)) return;
         const Real value = along_.slope(s) - slope_;
@@ -140,7 +143,7 @@ private:
     int same_side_ = 0;
 };
 
-/// The points of one interval in which the slope rises.
+/// Finds the points of one interval in which the slope rises.
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -169,8 +172,8 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// Where the distance no longer falls by more than `slope`, and where it begins to rise by more; on the flatter
-    /// side of a kink, whose normal holds along the stretch.
+    /// Places where the distance no longer falls by more than `slope`, and where it begins to rise by more. They lie on
+    /// the flatter side of a kink, whose normal holds along the stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
@@ -190,8 +193,8 @@ private:
             add(1, last);
         }
     }
-    /// Only where the slope is not too steep a stretch away from the other point; that is known at one look, since
-    /// slopes rise.
+    /// Adds a point only if the slope is not too steep one stretch away from the other point. One evaluation tells
+    /// this, since slopes rise.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -216,7 +219,7 @@ private:
     EdgeContact& contact_;
 };
 
-/// Calls `visit(low, high)` for each interval in which the slope rises past one of those that count. Returns
+/// Calls `visit(low, high)` for each interval in which the slope rises past one of the limits above. Returns
 /// edge_distance.
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
@@ -226,7 +229,7 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const Real high = static_cast<Real>(i) / intervals;
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
-        // Of a convex part by the tangents at both ends, of any by the length in between.
+        // A convex part is bounded by the tangents at both ends, any other part by the length in between.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

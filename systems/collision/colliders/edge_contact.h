@@ -1,4 +1,4 @@
-// An edge of a body against a part of a collider, between its ends.
+// Contact of an edge of a body with a part of a collider, between the ends of the edge.
 #pragma once
 
 #include <array>
@@ -8,28 +8,29 @@
 
 namespace skerry {
 
-/// Whether the signed distance to a part is a convex function: of all but the wall of a bucket.
+/// True if the signed distance to a part is a convex function, as it is for all parts but the wall of a bucket.
 bool is_convex_part(const ColliderGeometry& geometry, Index part);
 
-/// No point of the edge from a to b (frame of the collider) is nearer to a part of the collider than this, m.
+/// Lower bound of the distance of the edge from a to b (frame of the collider) to a part of the collider [m].
 Real edge_distance(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
-/// A point of an edge that may touch first.
+/// A point of an edge at which it may touch first.
 struct EdgePoint {
-    Index number;     // below crossing_of_edge: which of the edge's points it is, from step to step
-    Real s;           // its place, 0 < s < 1 from the first end to the second
-    SurfacePoint on;  // of the collider, in its frame
+    Index number;     // identifies the point on the edge from step to step; below crossing_of_edge
+    Real s;           // place along the edge, 0 < s < 1 from the first end to the second
+    SurfacePoint on;  // nearest point of the collider, in its frame
 };
 
 struct EdgeContact {
-    Real nearest;                    // m: no point of the edge is nearer, by what was found
-    std::array<EdgePoint, 8> point;  // by number
+    Real nearest;                    // lower bound of the distance of the edge [m]
+    std::array<EdgePoint, 8> point;  // in ascending order of the numbers
     std::size_t count = 0;
 };
 
-/// Where along the edge from a to b (frame of the collider) the distance to a part has a minimum that is not at one of
-/// its ends; where it is nearly flat, as along a side of a box, both ends of that stretch. Also where it begins to
-/// rise: an edge that lies along a side and reaches beyond it has its other end held there, before it turns about it.
+/// Finds where along the edge from a to b (frame of the collider) the distance to a part has a minimum between the
+/// ends. Where the distance is nearly constant, as along a side of a box, it finds both ends of that stretch. It also
+/// finds where the distance begins to rise, so that an edge that lies along a side and reaches beyond it is held there
+/// before it turns about the side.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

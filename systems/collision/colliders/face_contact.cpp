@@ -16,7 +16,7 @@ FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalF
     const Real height = contact.normal.dot(contact.point.at - face[0]);
     contact.above = length > 0 && contact.closest.region == TriangleRegion::face;
     contact.distance = height - contact.point.radius;
-    // A point that follows the face goes round the rim as the face turns.
+    // A point that follows the face moves around the rim as the face turns.
     contact.nearest = collider_point_follows(geometry.shape, k)
                           ? hull_distance(geometry, face)
                           : std::sqrt(contact.closest.distance_squared) - contact.point.radius;

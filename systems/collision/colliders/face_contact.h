@@ -1,4 +1,4 @@
-// A face of a body against a point of a collider, between its nodes and edges.
+// Contact of a face of a body with a point of a collider, between the nodes and edges of the face.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@ namespace skerry {
 using LocalFace = std::array<Vec3, 3>;
 
 struct FaceContact {
-    Real nearest;           // m: no point of the face is nearer to the collider's point than this, nor to what moves it
-    bool above;             // the point is over the face, or behind it, not beside it
-    Real distance;          // m, from the face to the collider; below zero behind the face
-    Vec3 normal;            // unit, outward of the face
-    ColliderPoint point;    // m
-    PointTriangle closest;  // to the point's middle
+    // lower bound of the distance of the face to the point, or to the whole collider if the point follows the face [m]
+    Real nearest;
+    bool above;             // true if the point is over or behind the face, not beside it
+    Real distance;          // signed distance from the face to the collider; negative behind the face [m]
+    Vec3 normal;            // outward unit normal of the face
+    ColliderPoint point;    // of the collider
+    PointTriangle closest;  // point of the face nearest to `point.at`
 };
 
 FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalFace& face);

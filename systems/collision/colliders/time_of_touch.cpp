@@ -16,19 +16,19 @@ namespace {
 
 using Nodes = std::array<Vec3, 3>;
 
-// As in time_of_contact.cpp.
+// These constants have the values of time_of_contact.cpp.
 constexpr Real advance = 0.9;
 constexpr int most_rounds = 4096;
 
-// The least distance along an edge is found to this fraction of it.
+// Accuracy of the place of the least distance along an edge, as a fraction of the edge.
 constexpr Real least_place_tolerance = 1e-12;
 
 Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
     return {distance, weight, on.point, on.normal};
 }
 
-/// Of a convex part, whose distance is convex along the edge: where its slope passes zero. Outside of the part, where
-/// alone touches are looked for, it has no kink.
+/// Nearest point of an edge to a convex part. The distance is convex along the edge, so that it is least where its
+/// slope passes zero. It has no kink outside of the part, and only there touches are searched.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -50,7 +50,7 @@ Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Node
     return of_surface(last, last.distance, {1 - high, high, 0});
 }
 
-/// The wall of a bucket: between two distances from the axis and two heights.
+/// The wall of a bucket, which lies between two distances from the axis and between two heights.
 class Wall {
 public:
     Wall(const ColliderGeometry& geometry, const Nodes& end)
@@ -65,7 +65,7 @@ public:
             across > 0 ? std::clamp(-start_.head<2>().dot(edge_.head<2>()) / across, Real(0), Real(1)) : 0;
     }
 
-    /// No point of the edge between two places is nearer, m: by the ranges of its heights and distances from the axis.
+    /// Lower bound of the distance of the edge between two places, by the ranges of its height and axis distance [m].
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
                    r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -79,14 +79,14 @@ private:
     Real from_axis(Real s) const { return (start_ + s * edge_).head<2>().norm(); }
     Real height(Real s) const { return start_[2] + s * edge_[2]; }
 
-    const Real inner_, outer_, bottom_, rim_;  // m
-    const Vec3 start_, edge_;                  // m
+    const Real inner_, outer_, bottom_, rim_;  // [m]
+    const Vec3 start_, edge_;                  // [m]
     Real nearest_to_axis_;
 };
 
-/// Of the wall of a bucket, whose distance may have several minima: branch and bound. The distance given is a bound,
-/// and not below half of the one at the place; what was given up for taking too many looks counts as a quarter of it.
-/// Both less `kept`, m.
+/// Nearest point of an edge to the wall of a bucket, whose distance may have several minima; by branch and bound. The
+/// returned distance is a lower bound and at least half of the distance at the returned place. If the search ends
+/// early, intervals that are left count as a quarter of it. Both distances are less `kept` [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
     constexpr int most_looks = 1024;
     const Wall wall(geometry, end);
@@ -132,8 +132,9 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
     return nearest;
 }
 
-/// A face and the disc within a rim. The inside of the face is touched first where the rim reaches furthest towards its
-/// plane, on either side; else one of its edges is nearest, unless the rim has gone through it.
+/// Nearest points of a face and the disc within a rim. The inside of the face is touched first where the rim reaches
+/// furthest towards its plane, on either side. Otherwise one of its edges is nearest, unless the rim has gone through
+/// the face.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -168,7 +169,7 @@ bool touches_within(const TouchingFeature& feature, const Touch& touch, const No
            touch.normal.dot((nodes[1] - nodes[0]).cross(nodes[2] - nodes[0])) > 0;
 }
 
-/// Of a feature as seen from the collider. Times are fractions of the step.
+/// Motion of a feature as seen from the collider. Times are fractions of the step.
 class RelativeMotion {
 public:
     RelativeMotion(const RigidMotion& motion, Real h, const TouchingFeature& feature)
@@ -181,7 +182,7 @@ public:
         return local;
     }
 
-    /// No node moves faster, m a step.
+    /// Upper bound of the speed of all nodes [m per step].
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)
@@ -189,7 +190,7 @@ public:
         return greatest;
     }
 
-    /// From `time` on no node comes through the plane through the collider's nearest point for as long as this.
+    /// Time after `time` in which certainly no node passes the plane through the collider's nearest point.
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinite;
@@ -209,9 +210,9 @@ private:
         return feature_.position[i] + time * feature_.displacement[i] - (motion_.position + time * shift_);
     }
     Vec3 drift(std::size_t i) const { return feature_.displacement[i] - shift_; }
-    /// In the frame that turns, along the axes of the world, m a step.
+    /// In the rotating frame of the collider, along the axes of the world [m per step].
     Vec3 velocity(std::size_t i, Real time) const { return drift(i) - turn_.cross(arm(i, time)); }
-    /// Of the acceleration in that frame, m a step squared, a bound.
+    /// Upper bound of the acceleration in the rotating frame [m per step^2].
     Real greatest_turn(std::size_t i) const {
         const Real turning = turn_.norm(), drifting = drift(i).norm();
         return turning * (2 * drifting + turning * (arm(i, 0).norm() + drifting));
@@ -219,11 +220,11 @@ private:
 
     const RigidMotion& motion_;
     const TouchingFeature& feature_;
-    const Vec3 shift_;  // m, of the collider in the step
-    const Vec3 turn_;   // rad
+    const Vec3 shift_;  // of the collider in the step [m]
+    const Vec3 turn_;   // [rad]
 };
 
-/// Whether all of what the feature is looked at against lies behind the plane of a touch.
+/// True if the whole part or point that the feature is tested against lies behind the plane of a touch.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;

@@ -14,22 +14,22 @@ namespace skerry {
 
 namespace {
 
-// rad: an end that is tilted by less stands on places that turn with it, which a cylinder at rest keeps.
+// An end tilted by less than this stands on points that turn with the cylinder; at rest they stay the same [rad].
 constexpr Real standing_tilt = 1e-4;
-// Sine of the angle between an end and a side from which on it lies on one place of its rim alone.
+// If the sine of the angle between an end and a side exceeds this, the end lies on one point of its rim only.
 constexpr Real lying_tilt = 0.5;
-// rad: by how much what touches may lie beyond the normals of an edge or rim, as of capsules (4.5).
+// A touch may lie beyond the normals of an edge or rim by this, as for capsules (collision.md 4.5) [rad].
 constexpr Real rim_angle = 0.03;
-// A gradient this near to the axis, or to its plane, is that of an end or of the side.
+// A gradient this near to the axis is that of an end; one this near to the plane across the axis is that of the side.
 constexpr Real place_rounding = 1e-9;
-// Places are over a side, and beside its border by rounding, by this fraction of its size.
+// Tolerance of the border of a side, as a fraction of its size: places beside it by rounding count as over it.
 constexpr Real over_fraction = 1e-9;
-// A distance along a rim that changes by less than this is constant.
+// A distance along a rim that changes by less than this counts as constant.
 constexpr Real level_slope = 1e-9;
-constexpr int looks_around = 16;                           // at a rim, between which a minimum is looked for
-constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // rad
+constexpr int looks_around = 16;                           // samples of a rim, between which minima are searched
+constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
-// Numbers of touches with a shape.
+// Numbering of the touches with a shape. of_rim and of_side are sizes of groups, the others are first numbers.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 
@@ -37,17 +37,17 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
     return {radius * direction[0], radius * direction[1], z};
 }
 
-/// A circle about z, the edge between a side around the axis and one across it.
+/// A circle around z: the edge between a side around the axis and one across it.
 struct CylinderRim {
-    Real radius, z;       // m
-    Real outward, along;  // 1 or -1: where the normals of its sides point
+    Real radius, z;       // [m]
+    Real outward, along;  // 1 or -1: direction of the normals of its sides
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
     }
 };
 
-/// The least distances along a circle, each between two places of a round of looks; of a stretch of one distance both
-/// ends.
+/// Visits the minima of the distance along a circle, each found between two samples. If the distance is constant along
+/// a stretch, both ends of the stretch are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
     struct Look {
@@ -64,8 +64,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     };
     constexpr Real round = 2 * std::numbers::pi, between = round / looks_around;
     Index number = 0;
-    std::optional<Real> first, last;  // rad, where they were found
-    // where the slope passes a value between two places
+    std::optional<Real> first, last;  // places of the minima found first and last [rad]
+    // bisects for the place between two samples where the slope passes a value
     const auto find = [&](Real low, Real high, Real slope, const Look& behind) {
         Look found = behind;
         while (high - low > turn_tolerance) {
@@ -81,7 +81,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
         last = high;
         if (!first) first = high;
-        // a kink of the other is an edge of its own
+        // a kink in the distance is an edge of the other shape, which has its own touches
         if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
     };
     Look before = look(0);
@@ -89,7 +89,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const Look after = look(i * between);
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
-        // a look that is at a minimum is no stretch
+        // a sample at a minimum is not a stretch
         if (falls && after.slope >= -level_slope) {
             const Look beyond = rises ? after : look(high + same_place);
             if (beyond.slope > level_slope)
@@ -108,8 +108,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
 struct FlatSide {
     Vec3 normal, at;
     enum class Region : std::uint8_t { all, rectangle, disc } region;
-    Vec3 half;                  // m, of a rectangle
-    Real inner = 0, outer = 0;  // m, radii of a disc
+    Vec3 half;                  // of a rectangle [m]
+    Real inner = 0, outer = 0;  // radii of a disc [m]
 
     bool holds(const Vec3& p) const {
         switch (region) {
@@ -191,7 +191,7 @@ private:
         on.point = from_other(on.point);
         return on;
     }
-    /// A place behind a side may be nearer to another one.
+    /// True if a place over a side, or behind it, is nearest to that side; behind it another side may be nearer.
     static bool is_before(const FlatSide& side, Real height, const ColliderGeometry& geometry, Index part,
                           const Vec3& p) {
         return height >= 0 || local_distance(geometry, p, part).normal.dot(side.normal) > 1 - over_fraction;
@@ -200,7 +200,7 @@ private:
         if (distance <= near_) found_.add({number, distance, normal, on_other});
     }
 
-    /// Where the rims of the cylinder are nearest to the other.
+    /// Adds the places where the rims of the cylinder are nearest to the other shape.
     void touch_rims() {
         for (Index end = 0; end < 2; ++end) {
             const CylinderRim rim = rim_of(own_, end);
@@ -212,7 +212,7 @@ private:
         }
     }
 
-    /// Where a rim of the other is nearest to the cylinder.
+    /// Adds the places where a rim of the other shape is nearest to the cylinder.
     void touch_rim_of_other(Index rim_number, const CylinderRim& rim) {
         for_each_minimum(
             rim,
@@ -228,7 +228,8 @@ private:
             });
     }
 
-    /// Points of the rims over a flat side of the other, and where the rim of a disc passes them.
+    /// Adds the points of the rims over a flat side of the other shape, and the places where a rim passes the rim of a
+    /// disc.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = place_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -239,7 +240,7 @@ private:
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(of_sides + of_side * number + k, height, normal, foot);
         };
-        // of what is round the points that come furthest are found along the rims
+        // otherwise touch_rims finds the points of the rims that reach furthest
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
@@ -259,10 +260,10 @@ private:
             });
     }
 
-    /// Points of a rim of the other, a cylinder, over an end of this one.
+    /// Adds the points of a rim of the other shape, a cylinder, over an end of this one.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
-        const Vec3 normal = place_.rotation.transpose() * side.normal;  // as the other sees it
+        const Vec3 normal = place_.rotation.transpose() * side.normal;  // in the frame of the other shape
         if (normal.head<2>().norm() > lying_tilt) return;
         const auto over = [&](Index k, const Vec3& p) {
             const Vec3 here = from_other(p);
@@ -327,7 +328,8 @@ private:
             }
     }
 
-    /// Two sides that cross, of the other one between two heights; parallel ones touch at their rims.
+    /// Adds the touch of two round sides that cross, between two heights of the other. Parallel sides touch at their
+    /// rims.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =
@@ -335,7 +337,7 @@ private:
         const Real length = std::sqrt(nearest.distance_squared);
         if (!nearest.interior || !(length > 0)) return;
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
-        // what is within a hollow side does not touch it from outside
+        // a cylinder within a hollow side does not touch it from outside
         if (other_.shape == ColliderShape::bucket && length < radius) return;
         add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }

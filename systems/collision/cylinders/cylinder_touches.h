@@ -1,4 +1,4 @@
-// Where a cylinder and something else may touch first (docs/methods/rigid_bodies.md 6.3).
+// Places where a cylinder and another shape may touch first (docs/methods/rigid_bodies.md 6.3).
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace skerry {
 
-/// All in the frame of the cylinder.
+/// A possible touch, in the frame of the cylinder.
 struct CylinderTouch {
-    Index number;                  // which one it is, from step to step; ascending in a list
-    Real distance;                 // m, signed
-    Vec3 normal;                   // unit, from the other to the cylinder
-    Vec3 on_other;                 // m, on the surface of the other
-    std::array<Real, 2> weight{};  // of a capsule's ends
+    Index number;                  // identifies the touch from step to step; ascending in a list
+    Real distance;                 // signed [m]
+    Vec3 normal;                   // unit, from the other shape to the cylinder
+    Vec3 on_other;                 // on the surface of the other shape [m]
+    std::array<Real, 2> weight{};  // of the ends of a capsule's axis
 };
 
-/// Of one pair, or of one triangle. As many as there can be.
+/// The touches of one pair or of one triangle, with room for as many as there can be.
 class CylinderTouches {
 public:
     static constexpr Index most = 256;  // numbers are below this
@@ -35,15 +35,15 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Points of the rims of a cylinder for a flat side of something else whose outward unit normal in the frame of the
-/// cylinder is `normal`: of either rim the point that reaches furthest towards it, and where an end nearly faces the
-/// side some that hold it there. None of those comes nearer to the side by a turn about the axis that takes less than
-/// a radian a step, as a point that turns with the cylinder would.
+/// Points of the rims of a cylinder that can touch a flat side whose outward unit normal in the frame of the cylinder
+/// is `normal`. Each rim has the point that reaches furthest towards the side and, where an end nearly faces the side,
+/// some points that support it there. None of them comes nearer to the side when the cylinder turns about its axis by
+/// less than a radian per step; a point that turns with the cylinder would.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
-        Index number;  // below 2 most_of_rim
-        Vec3 at;       // m
+        Index number;  // below 2 * most_of_rim
+        Vec3 at;       // [m]
     };
     std::array<Point, 2 * most_of_rim> point;
     std::size_t count = 0;
@@ -53,18 +53,19 @@ struct RimPoints {
     const Point* end() const { return point.data() + count; }
 };
 
-/// How the surface of a cylinder is at the place with a gradient of its distance.
+/// Kind of surface of a cylinder at the place where its distance has the given gradient.
 enum class CylinderPlace : std::uint8_t { end, side, rim };
 CylinderPlace place_of(const Vec3& gradient);
 
-/// Of the ball of a radius around a point.
+/// Touch with the ball of radius `radius` around `middle`. It is left out if further than `near` [m].
 void touch_ball(const ColliderGeometry& cylinder, const Vec3& middle, Real radius, Real near, CylinderTouches& found);
 
-/// Of a capsule with an axis from `a` to `b`.
+/// Touches with a capsule whose axis runs from `a` to `b`. Touches further than `near` are left out [m].
 void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& b, Real radius, Real near,
                    CylinderTouches& found);
 
-/// Of a part of another shape that is at `place` in the frame of the cylinder, no mesh: what is nearer than `near`.
+/// Touches with a part of another shape, no mesh, at `place` in the frame of the cylinder. Touches further than `near`
+/// are left out [m].
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
 

@@ -15,7 +15,8 @@ Real ball_radius(const ColliderGeometry& cylinder) {
     return std::hypot(cylinder.size[0], cylinder.size[1]);
 }
 
-/// m: how far a shape reaches along a unit direction, all in its frame; a part of a bucket no further than its hull.
+/// Extent of a shape along a unit direction in its frame [m]. For a part of a bucket it is that of the part's convex
+/// hull.
 Real reach_along(const ColliderGeometry& geometry, Index part, const Vec3& direction) {
     const Vec3& size = geometry.size;
     const Real out = direction.head<2>().norm(), up = direction[2];
@@ -63,7 +64,7 @@ Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeomet
     for (const Vec3& axis :
          {Vec3(Vec3::UnitZ()), Vec3(place.rotation.col(0)), Vec3(place.rotation.col(1)), Vec3(place.rotation.col(2))})
         look_along(axis.dot(place.position) > 0 ? Vec3(-axis) : axis);
-    if (other.shape == ColliderShape::cylinder) {  // either is within the capsule around its axis
+    if (other.shape == ColliderShape::cylinder) {  // each lies within the capsule around its axis
         const Vec3 own = cylinder.size[1] * Vec3::UnitZ(), half = other.size[1] * place.rotation.col(2);
         const Real apart =
             closest_points_of_segments(-own, own, place.position - half, place.position + half).distance_squared;

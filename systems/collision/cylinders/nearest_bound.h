@@ -1,4 +1,4 @@
-// How near something can be to a cylinder, at most.
+// Lower bounds of the distance from a cylinder.
 #pragma once
 
 #include "systems/collision/colliders/face_contact.h"
@@ -6,11 +6,11 @@
 
 namespace skerry {
 
-/// No point of a triangle in the frame of the cylinder is nearer, m.
+/// Lower bound of the distance of a triangle, given in the frame of the cylinder [m].
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// No point of a part of a shape at `place` in the frame of the cylinder is nearer, m: as the axes of both tell, the
-/// planes of what touches, and the balls around.
+/// Lower bound of the distance of a part of a shape at `place` in the frame of the cylinder [m]. It uses the axes of
+/// both shapes and the normals of the touches as separating axes, and the bounding balls.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& place, const CylinderTouches& touches);
 

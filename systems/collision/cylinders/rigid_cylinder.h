@@ -1,4 +1,4 @@
-// Where the rigid cylinders are, from the nodes of their cores (BodyTable::core_nodes).
+// Positions and motions of the rigid cylinders, from the nodes of their cores (BodyTable::core_nodes).
 #pragma once
 
 #include "components/collider_table.h"
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// A rigid cylinder as a collider sees itself: features of others are looked at in its frame.
+/// A rigid cylinder in the form of a collider: features of others are tested in its frame.
 struct RigidCylinder {
     ColliderGeometry geometry;
     RigidMotion motion;
@@ -25,11 +25,11 @@ inline bool is_cylinder(const CollisionInputs& inputs, Index body) {
     return inputs.body.core_nodes[body] == cylinder_core_nodes;
 }
 
-/// At the start of the step, with its velocities then.
+/// The cylinder at the start of the step, with its velocities at that time.
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
-/// With the velocities that take it where it will be at the end of the step. It is round: the turn is the least that
-/// takes its axis there.
+/// The cylinder at the start of the step, with the velocities that take it to its position at the end of the step.
+/// Since it is round, the rotation is the smallest that takes its axis there.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Shapes as nodes, edges and triangles, for what looks at their motion.
+// Nodes, edges and triangles that stand for a shape in tests of its motion.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@ namespace skerry {
 /// A feature of a shape, in its frame.
 struct Facet {
     TouchingFeature::Kind kind;
-    std::array<Vec3, 3> at;  // m, as many as it has nodes
-    Real radius = 0;         // m, kept around a node or edge
+    std::array<Vec3, 3> at;  // as many as the feature has nodes [m]
+    Real radius = 0;         // kept around a node or edge [m]
 };
 
-/// Calls `visit(facet)` for those of a sphere, capsule, box, cylinder, or of one part of a bucket, in a fixed order.
-/// What is round about an axis has flat sides that lie within it.
+/// Calls `visit(facet)` for the facets of a sphere, capsule, box, cylinder, or of one part of a bucket, in a fixed
+/// order. Surfaces that are round about an axis are replaced by flat sides that lie within the solid.
 class ShapeFacets {
 public:
     static constexpr int around = 32;
@@ -58,7 +58,7 @@ public:
 private:
     using Kind = TouchingFeature::Kind;
     struct Ring {
-        Real radius, z;  // m
+        Real radius, z;  // [m]
     };
 
     static Real widening() {
@@ -77,13 +77,14 @@ private:
         for (int k = 0; k < 8; ++k)
             for (int bit = 1; bit < 8; bit *= 2)
                 if (!(k & bit)) visit(Facet{Kind::edge, {corner(k), corner(k | bit)}});
-        for (int bit = 1; bit < 8; bit *= 2) {  // the other two after it, round about
+        for (int bit = 1; bit < 8; bit *= 2) {  // b and c: the other two axes in cyclic order
             const int b = bit == 4 ? 1 : 2 * bit, c = b == 4 ? 1 : 2 * b;
             quad(corner(bit), corner(bit | b), corner(bit | b | c), corner(bit | c), visit);
             quad(corner(0), corner(c), corner(b | c), corner(b), visit);
         }
     }
-    /// Four rings, counter-clockwise in the half plane of radius and z; `closed`: the last is joined to the first.
+    /// Facets between four rings, counter-clockwise in the half plane of radius and z; `closed`: the last is joined to
+    /// the first.
     static void of_rings(const std::array<Ring, 4>& ring, bool closed, auto&& visit) {
         const auto at = [&](std::size_t i, int k) {
             const Real turn = 2 * std::numbers::pi * (k % around) / around;

@@ -1,4 +1,4 @@
-// What the collision stages read.
+// Inputs of the collision stages.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +27,14 @@ struct CollisionInputs {
     std::span<const LeafFeatures> leaf_features;
     std::span<const Vec3> position;            // by node, start of the step
     std::span<const Vec3> velocity;            // by node, start of the step
-    std::span<const Vec3> rest_position = {};  // by node; empty: self-contact has no rest shape to compare with
+    std::span<const Vec3> rest_position = {};  // by node; if empty, self-contact has no rest shape to compare with
     std::span<const std::uint64_t> disabled_pairs = {};  // ContactKey::pair, ascending
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
                                 const BvhLeafTable& bvh_leaf, const NodeTable& node,
                                 const DisabledPairTable& disabled) {
-        // find_inversions writes its budgets beside find_crossings
+        // uninverted_until is excluded, because find_inversions writes it in parallel with find_crossings
         return {.body = binder.read_but(body, body.uninverted_until),
                 .collider = binder.read(collider),
                 .surface = binder.read(surface),
@@ -51,14 +51,14 @@ struct CollisionInputs {
     }
 };
 
-/// How far apart things are looked at, all in metres or metres per second.
+/// Settings of the collision stages.
 struct CollisionSettings {
-    Real gravity = 0;  // m/s^2, norm: how much faster things may become in a step
-    // fraction of the mean edge: candidates are kept this much beyond the distance at which they matter
+    Real gravity = 0;  // norm; bounds how much faster a body can become in a step [m/s^2]
+    // extra distance at which candidates are kept, beyond that at which they matter, as a fraction of the mean edge
     Real pair_skin = 0.3125;
-    Real broad_skin = 4.0;    // fraction of the mean edge: pairs of bodies are kept this much beyond it
-    bool use_budgets = true;  // off: search everything in every step (the simple twin, for tests)
-    bool continuous = true;   // off: the motion of a step is not looked at for crossings
+    Real broad_skin = 4.0;    // extra distance at which pairs of bodies are kept, as a fraction of the mean edge
+    bool use_budgets = true;  // off: every step searches everything (the simple twin, for tests)
+    bool continuous = true;   // off: the motion of a step is not tested for crossings
 };
 
 }  // namespace skerry

@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// What is not below zero takes the place of what others say.
+/// Replaces those properties that are not negative in `given`.
 SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given) {
     if (given.static_friction >= 0) properties.static_friction = given.static_friction;
     if (given.dynamic_friction >= 0) properties.dynamic_friction = given.dynamic_friction;

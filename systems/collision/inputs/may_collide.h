@@ -1,4 +1,4 @@
-// Which pairs are looked at: by the groups of both, and by the pairs that are switched off.
+// Selection of the pairs that may collide, by the groups of both and by the pairs that are switched off.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// `first`: a row of BodyTable, deformable. `second`: of BodyTable, or of ColliderTable where the kind says so.
+/// Key of a pair. `first`: a deformable row of BodyTable. `second`: a row of BodyTable, or of ColliderTable if the kind
+/// is collider.
 inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collider, PairKind kind, Index first,
                               Index second) {
     if (kind == PairKind::collider) return collider_pair_key(body.slot[first], collider.slot[second]);
@@ -20,7 +21,8 @@ inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collid
     return body_pair_key(std::min(body.slot[first], body.slot[second]), std::max(body.slot[first], body.slot[second]));
 }
 
-/// `disabled`: of DisabledPairTable. A body and itself: that it has self-contact is asked elsewhere.
+/// True if both groups allow it and the pair is not in `disabled`, the keys of DisabledPairTable. A body paired with
+/// itself may always collide here: whether it has self-contact is checked elsewhere.
 inline bool may_collide(const BodyTable& body, const ColliderTable& collider, std::span<const std::uint64_t> disabled,
                         PairKind kind, Index first, Index second) {
     if (kind == PairKind::self) return true;

@@ -1,4 +1,4 @@
-// The motion that is about to be taken.
+// Motion of the step that is about to be taken.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 namespace skerry {
 
 struct StepMotion {
-    std::span<const Vec3> velocity_next, push_out;  // m/s, by node
-    Real h;                                         // s
+    std::span<const Vec3> velocity_next, push_out;  // by node [m/s]
+    Real h;                                         // length of the step [s]
 
     Vec3 of(Index node) const { return h * (velocity_next[node] + push_out[node]); }
 };

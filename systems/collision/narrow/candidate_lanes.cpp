@@ -21,7 +21,7 @@ using NodeLanes = std::array<Index, candidate_lanes>;
     return dot(d, d);
 }
 
-/// b where a is not a number.
+/// The greater one; b if a is not a number.
 [[gnu::always_inline]] inline Real8 greater(const Real8& a, const Real8& b) {
     return a > b ? a : b;
 }

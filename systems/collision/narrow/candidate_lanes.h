@@ -1,4 +1,4 @@
-// Eight pairs of features at a time: which of them are worth a closer look.
+// Measures of eight pairs of features at a time, which tell which of them need a closer test.
 #pragma once
 
 #include <array>
@@ -15,31 +15,31 @@ namespace skerry {
 
 inline constexpr std::size_t candidate_lanes = element_lanes;
 
-/// Of points and triangles the point and the three corners, of edges and edges the ends of the first and of the second.
+/// Nodes of a candidate: the point and the three corners, or the ends of the first and of the second edge.
 using CandidateNodes = std::array<Index, 4>;
 
-/// The same of eight.
+/// Nodes of eight candidates.
 using CandidateNodeLanes = std::array<std::array<Index, candidate_lanes>, 4>;
 
 inline void set_lane(CandidateNodeLanes& lanes, std::size_t lane, const CandidateNodes& node) {
     for (std::size_t i = 0; i < node.size(); ++i) lanes[i][lane] = node[i];
 }
 
-/// Of two bodies.
+/// Kind of features of a candidate of two bodies.
 inline FeaturePair features_of(const Candidate& candidate) {
     return is_edge_edge(candidate.feature) ? FeaturePair::edge_edge : FeaturePair::point_triangle;
 }
 CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate);
 
-/// m; not a number where a position is none.
+/// Distances of the features; not a number where a position is not a number [m].
 Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> position,
                                        const CandidateNodeLanes& node);
 
-/// m/s, the greatest difference of two velocities, one of each feature.
+/// Greatest differences between a velocity of the first feature and one of the second [m/s].
 Lanes<Real, candidate_lanes> relative_speeds(FeaturePair kind, std::span<const Vec3> velocity,
                                              const CandidateNodeLanes& node);
 
-/// m, greatest_approach of each while every node moves by h (velocity_next + push_out).
+/// The greatest_approach of each candidate while every node moves by h (velocity_next + push_out) [m].
 Lanes<Real, candidate_lanes> approaches(FeaturePair kind, const StepMotion& motion, const CandidateNodeLanes& node);
 
 }  // namespace skerry

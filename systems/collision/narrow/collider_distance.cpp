@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-// m: below it the direction from the nearest point is rounding noise, and a fixed one is taken.
+// Below this length the direction from the nearest point is rounding noise, and a fixed direction is used [m].
 constexpr Real min_length = 1e-14;
 
 Vec3 direction_or(const Vec3& v, Real length, const Vec3& otherwise) {
@@ -27,7 +27,7 @@ SurfacePoint distance_to_ball(const Vec3& p, const Vec3& centre, Real radius) {
 
 SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
     const Vec3 beyond = p.cwiseAbs() - half;
-    int face = 0;  // the nearest when inside, the lowest axis of equals
+    int face = 0;  // the nearest face if inside; among equals the lowest axis
     for (int i = 1; i < 3; ++i)
         if (beyond[i] > beyond[face]) face = i;
     Vec3 face_normal = Vec3::Zero();
@@ -41,8 +41,8 @@ SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
 
 /// A point of the half plane through the axis of a body of revolution.
 struct Flat {
-    Real r;  // m, from the axis
-    Real z;  // m, along it
+    Real r;  // distance from the axis [m]
+    Real z;  // height along the axis [m]
 };
 
 Real norm(const Flat& v) {
@@ -55,8 +55,8 @@ struct FlatDistance {
     Flat nearest;
 };
 
-/// Distance to r0 <= r <= r1, z0 <= z <= z1; r0 = -infinity for a solid one. Of equally near sides the end faces come
-/// first.
+/// Distance to r0 <= r <= r1, z0 <= z <= z1; r0 = -infinity for a solid without a hole. Among equally near sides the
+/// end faces come first.
 FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
     const bool outer = r0 == -infinite || p.r >= 0.5 * (r0 + r1);
@@ -74,7 +74,7 @@ FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Rea
     return {length, length > min_length ? Flat{offset.r / length, offset.z / length} : side, nearest};
 }
 
-/// The half plane through p. The nearest point of a body of revolution lies in it.
+/// The half plane through the axis and p. The nearest point of a body of revolution lies in it.
 struct AxialFrame {
     Vec3 radial;  // unit; +x on the axis itself
     Flat p;
@@ -93,7 +93,7 @@ FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p
     return distance_to_rectangle(p, size[0], size[0] + size[2], -size[2], size[1]);
 }
 
-/// Of the L-shaped profile. Outside, the nearer part; inside, the nearest side of the outline, the first of equals.
+/// Distance to the L-shaped profile: outside to the nearer part, inside to the nearest side, the first among equals.
 FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
     const FlatDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
     if (floor.distance > 0 && wall.distance > 0) return floor.distance <= wall.distance ? floor : wall;
@@ -113,7 +113,7 @@ FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
                            std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
         const Flat offset{nearest.r - p.r, nearest.z - p.z};
         const Real length = norm(offset);
-        if (!(-length <= best.distance))  // a length that is not a number shows
+        if (!(-length <= best.distance))  // a length that is not a number is passed on
             best = {-length, length > min_length ? Flat{offset.r / length, offset.z / length} : side.normal, nearest};
     }
     return best;

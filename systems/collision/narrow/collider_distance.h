@@ -7,9 +7,9 @@
 namespace skerry {
 
 struct SurfacePoint {
-    Real distance;  // m, > 0 outside
-    Vec3 normal;    // unit, world frame, gradient of the distance
-    Vec3 point;     // m, world frame, nearest point of the surface
+    Real distance;  // signed, positive outside [m]
+    Vec3 normal;    // unit gradient of the distance, in the frame of the query
+    Vec3 point;     // nearest point of the surface, in the frame of the query [m]
 };
 
 /// Signed distance of a world point to a plane, sphere, box, capsule, cylinder or bucket. Exact outside and inside (a
@@ -17,20 +17,21 @@ struct SurfacePoint {
 /// of them is chosen by a fixed rule.
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point);
 
-/// A bucket has two parts, floor and wall, so that a point in its corner touches both; every other shape is one part.
+/// Number of parts. A bucket has two, floor and wall, so that a point in its corner touches both; other shapes have
+/// one.
 Index collider_part_count(ColliderShape shape);
 
-/// Signed distance to one part. The distance to the collider outside of it is the least over its parts.
+/// Signed distance to one part. Outside of the collider its distance is the least over its parts.
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point);
 
-/// The same in the frame of the collider. Of a part, or of all of it.
+/// Signed distance in the frame of the collider, to one part or to all of it (no_index).
 SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
 
-/// World box around a collider of finite size; without bounds for a plane.
+/// World box around a collider of finite size; unbounded for a plane or a mesh.
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion);
 
-/// No point of a collider of finite size is further from its origin, m; 0 for a plane.
+/// Upper bound of the distance of a point of the collider from its origin [m]; 0 for a plane or a mesh.
 Real collider_radius(const ColliderGeometry& geometry);
 
 }  // namespace skerry

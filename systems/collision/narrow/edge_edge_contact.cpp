@@ -9,15 +9,16 @@ namespace skerry {
 
 namespace {
 
-// rad: an edge that bends less counts as flat. Left out, it lets two edges come nearer by at most a quarter of this
-// fraction of the width of its faces than the points around show: an eighth of the default contact distance.
+// An edge that bends by less than this counts as flat [rad]. Leaving it out lets two edges come nearer than the points
+// around show, by at most a quarter of this fraction of the width of its faces: an eighth of the default contact
+// distance.
 constexpr Real min_bend = 0.01;
 
-// rad: how far beyond the normals of its faces an edge still counts as nearest. An edge that lies on a face is on that
-// border exactly; one that lies on two edges of it is beyond, since the flatter of the two lets it come nearer: by a
-// hundredth of the width of the face where they are equally long. Would the other then count no more, it would fall
-// onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5). To this comes what the step
-// may turn: where a point is stopped, the edge behind it goes on and can cross another within the same step.
+// Angle beyond the normals of its faces up to which an edge still counts as nearest [rad]. An edge that lies on a face
+// is exactly on that border. One that lies on two edges of the face is beyond it, since the flatter of the two lets it
+// come nearer: by a hundredth of the width of the face if they are equally long. If the other then no longer counted,
+// it would fall onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5). The rotation of
+// the step is added: where a point is stopped, the edge behind it goes on and can cross another within the same step.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -26,7 +27,7 @@ Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>&
     return triangle[0];
 }
 
-/// Zero for a triangle without area.
+/// Unit normal of a triangle; zero if it has no area.
 Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& node) {
     const Vec3 normal = (position[node[1]] - position[node[0]]).cross(position[node[2]] - position[node[0]]);
     const Real length = normal.norm();
@@ -36,7 +37,7 @@ Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& nod
 /// The faces at one edge.
 class Wedge {
 public:
-    /// `closing`: m, how far things may move in this step; `against_axis`: the other edge is the axis of a capsule.
+    /// `closing`: how far features may move in this step [m]. `against_axis`: the other edge is the axis of a capsule.
     Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing, bool against_axis) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
@@ -50,7 +51,7 @@ public:
         into_[0] = across(along, position[opposite(first, ends)] - origin);
         border_[0] = border_angle * into_[0].norm() + closing;
         if (around[1] == no_index) {
-            // The rim of an open surface: as if a wall went down from it.
+            // The rim of an open surface is treated as if a wall went down from it.
             into_[1] = -into_[0].norm() * normal;
             border_[1] = border_[0];
             convex_ = true;
@@ -60,32 +61,33 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // The other face falls away below the plane of the first.
+        // `fall`: how far the other face falls away below the plane of the first.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
-        if (against_axis) {  // which lies on nearly flat places by their edges alone
+        if (against_axis) {  // an axis lies on nearly flat places by their edges alone
             convex_ = fall > -min_bend * other_width - closing;
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // Taken across from the one face or from the other, the bend is the same.
+        // The bend is the same as seen from either face.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
     }
 
-    /// Of the core of a round body, which is touched from all sides.
+    /// True for the core of a round body, which is touched from all sides.
     static bool is_axis(const SurfaceTables& surface, Index edge) {
         return is_core(surface.triangles.node[surface.edges.triangle[edge][0]]);
     }
 
     bool convex() const { return is_axis_ || convex_; }
 
-    /// m: how much nearer than the contact distance another edge may come that crosses this one at a fraction of its
-    /// length, so that an edge that bends by min_bend starts to count where its points have left the other, not with a
-    /// gap below zero: blocks that lie on each other would tremble for ever. Towards its ends the faces are narrower.
+    /// How much nearer than the contact distance another edge may come that crosses this one at a fraction of its
+    /// length [m]. With it an edge that bends by min_bend starts to count where its points have left the other body,
+    /// not with a negative gap, which would make stacked blocks vibrate for ever. Towards its ends the faces are
+    /// narrower.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
-    /// Whether a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
+    /// True if a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
     bool faces(const Vec3& direction) const {
         if (is_axis_) return true;
         // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
@@ -94,17 +96,17 @@ public:
     }
 
 private:
-    /// What of `v` is normal to the edge: a face may be much wider or narrower than the edge is long.
+    /// Component of `v` normal to the edge: a face may be much wider or narrower than the edge is long.
     static Vec3 across(const Vec3& along, const Vec3& v) {
         const Real squared = along.squaredNorm();
         return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
     }
 
-    std::array<Vec3, 2> into_;    // m, from the edge across either face
-    std::array<Real, 2> border_;  // m, how far the end of a face may stand out beyond the direction
+    std::array<Vec3, 2> into_;    // from the edge across either face [m]
+    std::array<Real, 2> border_;  // how far the end of a face may stand out beyond the direction [m]
     Vec3 outward_;                // sum of the unit normals of both
     bool is_axis_ = false, convex_ = false;
-    Real slack_ = 0;  // m, half way along the edge
+    Real slack_ = 0;  // half way along the edge [m]
 };
 
 }  // namespace
@@ -125,7 +127,7 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     contact.sleep = distance - scale.edge_depth;
     if (!contact.closest.interior || !(distance <= std::max(near, scale.edge_depth))) return contact;
 
-    // Along the connection, but well defined when the edges touch.
+    // The normal points along the connection, but is well defined even if the edges touch.
     Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;

@@ -1,4 +1,4 @@
-// How far apart features of one body were at rest.
+// Distances between features of one body at rest.
 #pragma once
 
 #include "systems/collision/inputs/collision_inputs.h"
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-// Half of an edge: nearer features of one body, such as the two sides of a thin part, belong to the same piece of it.
-// They may well change places when an element turns inside out, which is for the material to undo.
+// The limit is half of an edge: nearer features of one body, such as the two sides of a thin part, belong to the same
+// piece of it. They may change places when an element inverts, which the material has to undo.
 inline bool is_far_at_rest(const PairScale& scale, Real distance_squared) {
     return distance_squared > 4 * scale.face_depth * scale.face_depth;
 }

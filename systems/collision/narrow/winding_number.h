@@ -1,16 +1,16 @@
-// Whether a point is within a body.
+// Test of whether a point is inside a body.
 #pragma once
 
 #include "systems/collision/inputs/collision_inputs.h"
 
 namespace skerry {
 
-/// How often the surface of a body goes round a point, in parts of the solid angle: 1 within, 0 outside; 2 where the
-/// body overlaps itself. Jacobson, Kavan, Sorkine-Hornung 2013, Robust inside-outside segmentation using generalized
-/// winding numbers, equation 5; all of its triangles are summed up.
+/// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 where the body overlaps itself. It
+/// sums the solid angles of all triangles (Jacobson, Kavan, Sorkine-Hornung 2013, Robust inside-outside segmentation
+/// using generalized winding numbers, equation 5).
 Real winding_number(const CollisionInputs& inputs, Index body, const Vec3& point);
 
-/// Whether the point is in no part of the body, however it is folded.
+/// True if the point is in no part of the body, however the body is folded.
 bool is_outside(const CollisionInputs& inputs, Index body, const Vec3& point);
 
 }  // namespace skerry

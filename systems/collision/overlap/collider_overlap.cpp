@@ -17,12 +17,12 @@ namespace {
 
 /// A point inside a collider, in its own frame.
 Vec3 inner_point(const ColliderGeometry& geometry) {
-    // the middle of a bucket is empty; the middle of its floor is not
+    // the middle of a bucket is empty, but that of its floor is solid
     if (geometry.shape == ColliderShape::bucket) return {0, 0, -geometry.size[2] / 2};
     return Vec3::Zero();
 }
 
-/// From a point to the nearest one of a surface, m.
+/// Vector from a point to the nearest point of a surface [m].
 Vec3 to_surface(const Solid& solid, const Vec3& point) {
     Real least = std::numeric_limits<Real>::infinity();
     Vec3 way = Vec3::Zero();
@@ -43,12 +43,12 @@ struct ColliderAndBody {
     const RigidMotion& motion;
     const PlacedSolid& body;
 
-    /// A point of the body in the frame of the collider.
+    /// Position of a node of the body in the frame of the collider.
     Vec3 local(Index node) const {
         const Vec3 x = body.solid.point[static_cast<std::size_t>(node)] + body.shift;
         return motion.rotation.transpose() * (x - motion.position);
     }
-    /// A point of the collider.
+    /// Position of a point of the collider in the world.
     Vec3 world(const Vec3& point) const { return motion.position + motion.rotation * point; }
 };
 
@@ -66,7 +66,8 @@ public:
         }
         for (const SolidTriangle& t : solid.surface)
             for (std::size_t k = 0; k < 3; ++k)
-                // a closed surface has each edge twice, once in either direction; of others some are looked at twice
+                // A closed surface has each edge twice, once in either direction. In other surfaces some are tested
+                // twice.
                 if (!solid.closed || t.node[k] < t.node[(k + 1) % 3])
                     add_edge(pair_.local(t.node[k]), pair_.local(t.node[(k + 1) % 3]));
         if (!(overlap_.depth > 0)) return std::nullopt;
@@ -101,7 +102,7 @@ private:
     Overlap overlap_{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
 };
 
-/// Corners, ends and rims of a collider in a body.
+/// Corners, ends and rims of a collider that lie in a body.
 class PointsInside {
 public:
     PointsInside(const ColliderAndBody& pair, Real tolerance)
@@ -131,7 +132,7 @@ private:
         overlap_.direction = (within ? -way : way) / length;
         overlap_.place = at + body.shift;
     }
-    /// Where it is deepest behind each face.
+    /// Adds the point of a rim that is deepest behind each face.
     void add_rim(Index k) {
         for (const SolidTriangle& t : pair_.body.solid.surface) {
             const FaceContact face = face_contact(
@@ -158,7 +159,7 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
-    // The body goes against the way out of the collider, and past its other side.
+    // The body moves against the way out of the collider, and past the collider's other side.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }

@@ -54,13 +54,14 @@ SimplexOverlap::SimplexOverlap(const Simplex& first, const Simplex& second, Real
     overlapping_ = count_ > 0;
 }
 
-/// Whether they overlap no more than that along an axis. An axis of edges that are nearly parallel points anywhere, and
-/// is as good as any other: what it says of the two is true.
+/// True if the two overlap along an axis by no more than `tolerance`. The axis of two nearly parallel edges has an
+/// arbitrary direction, but it is as valid as any other: the overlap along it is true.
 bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance) {
     const Real length = along.norm();
     if (!(length > 0)) return false;
     const Vec3 axis = along / length;
-    const Vec3& origin = first.point[0];  // near both: their common distance from the world's origin does not round
+    // near both simplices, so that their common distance from the world's origin causes no rounding
+    const Vec3& origin = first.point[0];
     const auto [lower, upper] = interval(first, origin, axis);
     const auto [other_lower, other_upper] = interval(second, origin, axis);
     const Real forward = other_upper - lower, backward = upper - other_lower;

@@ -10,10 +10,10 @@ namespace skerry {
 
 namespace {
 
-/// Two simplices that overlap, and where.
+/// Two simplices that overlap, and the place where they do.
 struct Meeting {
     Index first, second;
-    Vec3 place;  // m, the middle of what their boxes share
+    Vec3 place;  // middle of the box that their boxes share [m]
 };
 
 Aabb box_of(const Simplex& s) {
@@ -33,9 +33,9 @@ Vec3 middle(const Aabb& box) {
 /// Calls meet(first, second, overlap) for the simplices of two solids that overlap.
 template <class Meet>
 void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
-    // in the second solid's own place
+    // relative to the second solid
     const Vec3 shift = first.shift - second.shift;
-    // A triangle that lies in a plane of the grid has a box of no thickness.
+    // A triangle in an axis-aligned plane has a box of no thickness.
     const Vec3 skin = Vec3::Constant(tolerance);
     const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
     first.solid.tree.for_each_overlap(of_second, [&](Index f) {
@@ -60,7 +60,7 @@ std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& 
     return found;
 }
 
-/// m: how far the first has to go in each direction to come out of what it meets now.
+/// Distance the first has to move in each direction to come out of the simplices that it meets now [m].
 std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                            std::span<const Vec3> direction) {
     std::vector<Real> way(direction.size(), 0);
@@ -86,7 +86,7 @@ OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real to
     return inside ? OverlapKind::inside : around ? OverlapKind::around : OverlapKind::crossing;
 }
 
-/// m: along a unit direction the first ends where the second begins.
+/// Distance the first has to move along a unit direction to begin where the second ends [m].
 Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
     Real lowest = infinite, highest = -infinite;
     for (const Index n : first.solid.surface_point)
@@ -131,7 +131,7 @@ void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Di
     }
 }
 
-/// From middle to middle, and out of the faces that are met.
+/// Directions that may lead out: from middle to middle, and the normals of the faces that are met.
 Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -143,7 +143,7 @@ Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second
     return directions;
 }
 
-/// How far apart the meetings lie along a direction, m.
+/// Extent of the meetings along a direction [m].
 Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     Real lowest = infinite, highest = -infinite;
     for (const Meeting& m : meetings) {
@@ -153,13 +153,13 @@ Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     return highest - lowest;
 }
 
-/// The direction in which what is shared is thinnest: that of the shortest way out for solids that are a bit in each
-/// other.
+/// The direction in which the shared region is thinnest. For solids that overlap slightly it is that of the shortest
+/// way out.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                     std::span<const Meeting> meetings) {
     const Directions directions = likely_directions(first, second, meetings);
     const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
-    constexpr Real shorter = 1 - 1e-6;  // by more than rounding; of equals the first
+    constexpr Real shorter = 1 - 1e-6;  // by more than rounding; the first among equals
     Vec3 best = Vec3::UnitZ();
     Real least = infinite;
     for (std::size_t d = 0; d < way.size(); ++d)
@@ -170,7 +170,7 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     return best;
 }
 
-/// m: goes out of what it meets, and again of what it meets there.
+/// Distance the first has to move to come out of the simplices it meets, and again of those it meets there [m].
 Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int most_tries = 16;
     Real gone = 0;
@@ -183,7 +183,7 @@ Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tol
     return way_out_of_points(first, second, direction);
 }
 
-/// Out of something that it is in, or around: past its end.
+/// Way out of a solid that the first is in or around: past the end of that solid.
 void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));

@@ -1,4 +1,4 @@
-// Rays and analytic shapes, in closed form.
+// Intersection of rays with analytic shapes, in closed form.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 namespace skerry {
 
 struct ShapePoint {
-    Real distance;  // m
-    Vec3 normal;    // unit, world frame, outwards
+    Real distance;  // [m]
+    Vec3 normal;    // unit, outward, world frame
 };
 
-/// Where a ray first meets the surface of a plane, sphere, box, capsule, cylinder or bucket, from either side, at no
-/// more than `limit` (m). A ray within a flat side does not meet that side.
+/// First intersection of a ray with the surface of a plane, sphere, box, capsule, cylinder or bucket, from either side,
+/// at no more than `limit` [m]. A ray within a flat side does not meet that side.
 std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const RigidMotion& motion, const Ray& ray,
                                    Real limit);
 

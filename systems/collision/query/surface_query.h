@@ -1,4 +1,4 @@
-// Rays and nearest points on the surface of one body or mesh, as it is now (docs/methods/collision.md 10).
+// Rays and nearest points on the present surface of one body or mesh (docs/methods/collision.md 10).
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Of a ray the points origin + t direction with t >= 0.
+/// The points origin + t direction with t >= 0.
 struct Ray {
-    Vec3 origin;     // m
+    Vec3 origin;     // [m]
     Vec3 direction;  // unit
 };
 
@@ -22,26 +22,26 @@ struct SurfaceTree {
     Range triangles;  // rows of `triangle_node`
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
-    std::span<const Aabb> box;                            // m
+    std::span<const Aabb> box;                            // [m]
     std::span<const std::array<Index, 3>> triangle_node;  // rows of `position`
-    std::span<const Vec3> position;                       // m
+    std::span<const Vec3> position;                       // [m]
 };
 
 struct TrianglePoint {
     Index triangle;  // row of `triangle_node`
     std::array<Real, 3> weight;
-    Real distance;  // m
+    Real distance;  // [m]
 };
 
-/// The first triangle that the ray meets at no more than `limit` (m, may be infinite), from either side; of equally
-/// near ones the lowest row. Watertight: a ray that meets an edge or a corner of several triangles meets one of them
-/// (Woop, Benthin and Wald 2013).
+/// The first triangle that the ray meets at no more than `limit` [m] (may be infinite), from either side. Among equally
+/// near ones it is the lowest row. The test is watertight: a ray that meets an edge or a corner of several triangles
+/// meets one of them (Woop, Benthin and Wald 2013).
 std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray, Real limit);
 
-/// The nearest point of the surface within `limit` (m); of equally near ones the lowest row.
+/// The nearest point of the surface within `limit` [m]; among equally near ones that of the lowest row.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
 
-/// The same without the tree: all triangles, one by one.
+/// Simple twins of cast_ray and nearest_point without the tree: they test all triangles, one by one.
 std::optional<TrianglePoint> cast_ray_at_all(const SurfaceTree& surface, const Ray& ray, Real limit);
 std::optional<TrianglePoint> nearest_point_of_all(const SurfaceTree& surface, const Vec3& point, Real limit);
 

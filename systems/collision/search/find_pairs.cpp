@@ -17,14 +17,14 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_block = 16;
-// A block of any takes some microseconds.
+// A block of any of these takes some microseconds.
 constexpr std::size_t rows_per_block = 64, groups_per_block = 256, pairs_per_block = 256;
 
 bool is_movable(const BodyTable& body, Index b) {
     return body.kind[b] == BodyKind::deformable;
 }
 
-/// Box and sphere of a body as it is.
+/// Fits box and sphere to the present shape of a body.
 void fit(const CollisionInputs& inputs, Index b, Aabb& box, BoundingSphere& sphere) {
     const Range vertices = inputs.body.vertices[b];
     const auto point_of = [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; };
@@ -49,7 +49,7 @@ Real mean_body_edge(const BodyTable& body) {
     return count > 0 ? sum / count : 0;
 }
 
-/// Boxes of bodies and until when they hold.
+/// Computes the boxes of the bodies, and until when they are valid.
 void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
@@ -67,8 +67,8 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
     });
 }
 
-/// How far the points of a collider that matter are from its origin: its own size; of a plane, the furthest point of
-/// any body's box.
+/// Distance of the furthest relevant point of a collider from its origin [m]: its own size; for a plane the furthest
+/// point of any body's box.
 Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<const Aabb> body_box) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -81,7 +81,7 @@ Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<co
     return extent;
 }
 
-/// Boxes of colliders, after those of the bodies.
+/// Computes the boxes of the colliders, stored after those of the bodies.
 void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_travel, SearchState& search) {
     const ColliderTable& collider = inputs.collider;
     const std::size_t body_count = inputs.body.slot.size();
@@ -89,7 +89,7 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // Not travel_bound minus travel: a shape that turns may have travelled without bounds.
+        // The difference of bound and travel is not used: a shape that turns may have travelled without bounds.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);
@@ -97,14 +97,14 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     }
 }
 
-/// Least distance of a box to a plane, m; negative when it reaches behind.
+/// Least distance of a box to a plane; negative if the box reaches behind it [m].
 Real distance_to_plane(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
     return normal.dot(lowest - plane.position);
 }
 
-/// Pairs of boxes that overlap go to memory.pairs, in key order.
+/// Search for pairs of boxes that overlap. The pairs go to memory.pairs, in key order.
 class BroadSearch {
 public:
     BroadSearch(Executor& executor, const CollisionInputs& inputs, SearchMemory& memory)
@@ -128,7 +128,7 @@ public:
 private:
     Index body_count() const { return static_cast<Index>(inputs_.body.slot.size()); }
 
-    /// Boxes of finite size that can be part of a pair. A body with a position that is not finite has none.
+    /// Lists the boxes of finite size that can be part of a pair. A body with a position that is not finite has none.
     void list_entries() {
         memory_.entry.clear();
         memory_.has_box.assign(memory_.box.size(), 0);
@@ -196,7 +196,7 @@ private:
                 collider, found);
     }
 
-    /// A new pair is searched at once: only that tells how far apart the two really are.
+    /// Adds a pair with a used up budget. It is searched at once: only a search tells how far apart the two really are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
@@ -206,7 +206,7 @@ private:
             {key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown, apart, 0});
     }
 
-    /// Those of one first body and kind beside each other, then each such group by itself.
+    /// Groups the pairs by kind and first body, then sorts each group by itself.
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
@@ -248,7 +248,7 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// What pairs that stay take along from their old rows. memory.old_row says which those are.
+/// Copies the values of pairs that stay from their old rows. memory.old_row tells which pairs those are.
 void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -266,7 +266,7 @@ void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pai
     });
 }
 
-/// Pairs that stay keep their lists; the memory of those that went serves new ones.
+/// Moves the lists of pairs that stay. New pairs reuse the memory of those that went.
 void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     const std::size_t count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
@@ -329,8 +329,7 @@ void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs
     });
 }
 
-/// Puts memory.pairs in place of the old rows. Pairs that stay take their lists along, unless one of the two is
-/// forgotten.
+/// Replaces the old rows by memory.pairs. Pairs that stay keep their lists, unless one of the two is forgotten.
 void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     recall_pairs(executor, memory, pairs);
     move_lists(executor, memory, pairs);
@@ -348,7 +347,7 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // What moves by a script may travel as far as a mean body.
+    // Bodies and colliders moved by a script may travel as far as a mean body.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

@@ -1,4 +1,4 @@
-// The broad search: which pairs of bodies, or of a body and a collider, are near enough to be looked into.
+// The broad search for pairs of bodies, or of a body and a collider, that are near each other.
 #pragma once
 
 #include "components/pair_table.h"
@@ -7,11 +7,11 @@
 
 namespace skerry {
 
-/// Lists every pair whose boxes are nearer than what both may travel until their travel_bound reaches body_valid_until
-/// or collider_valid_until, which are set here. Pairs in key order. A pair that stays keeps its candidates, unless one
-/// of its two is forgotten. Left out: bodies without a surface, pairs without a deformable body. Boxes
-/// that meet are looked up in a grid (BoxGrid); planes are compared with every body. Wants memory.body_travel_bound,
-/// body_forgotten and collider_forgotten of this step. In blocks of bodies, then of pairs.
+/// Lists every pair whose boxes are nearer than both may travel until their travel_bound reaches body_valid_until or
+/// collider_valid_until, which are set here. Pairs are in key order. A pair that stays keeps its candidates, unless one
+/// of its two is forgotten. Bodies without a surface and pairs without a deformable body are left out. Boxes that meet
+/// are found in a grid (BoxGrid); planes are compared with every body. Requires memory.body_travel_bound,
+/// body_forgotten and collider_forgotten of this step. Runs in blocks of bodies, then of pairs.
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                 SearchState& search, PairTable& pairs);
 

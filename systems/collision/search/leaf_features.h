@@ -1,4 +1,4 @@
-// The features of a leaf side by side, for comparing one with eight of them.
+// The features of a leaf side by side, so that one feature is compared with eight of them at once.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// Three coordinates (m) of eight points.
+/// Coordinates of eight points [m], by axis.
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
 inline LaneVec3<Real8> load(const PointLanes& points) {
@@ -28,7 +28,7 @@ inline LaneVec3<Real8> spread(const Vec3& point) {
     return a < b ? b : a;
 }
 
-/// Eight points of nodes.
+/// Positions of eight nodes.
 inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::array<Index, leaf_lanes>& node) {
     PointLanes lanes;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -40,7 +40,7 @@ inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::arr
     return lanes;
 }
 
-/// The corners of the triangles of a leaf. Lanes without a triangle repeat the first.
+/// The corners of the triangles of a leaf. Lanes without a triangle repeat the first triangle.
 struct LeafCorners {
     Index leaf = no_index;  // row of BvhLeafTable
     std::array<PointLanes, 3> corner;
@@ -58,7 +58,7 @@ struct LeafCorners {
     }
 };
 
-/// m^2, by lane, of points and a box, 0 within it.
+/// Squared distances of eight points from a box; 0 within it [m^2].
 inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
     const Real8 none{};
     Real8 sum{};
@@ -71,7 +71,7 @@ inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
     return sum;
 }
 
-/// Groups of eight features, of which the last may be shorter.
+/// Number of groups of eight features. The last group may be shorter.
 inline std::size_t groups_of(Index count) {
     return (static_cast<std::size_t>(count) + leaf_lanes - 1) / leaf_lanes;
 }
@@ -84,7 +84,7 @@ inline unsigned used_lanes(Index count, std::size_t group) {
 struct LeafPoints {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<PointLanes, 3> at;  // eight at a time; lanes behind the last repeat it
+    std::array<PointLanes, 3> at;  // groups of eight; lanes after the last point repeat it
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
@@ -105,7 +105,7 @@ struct LeafPoints {
 struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<LeafBoxes, 3> box;  // eight at a time; lanes behind the last edge repeat it
+    std::array<LeafBoxes, 3> box;  // groups of eight; lanes after the last edge repeat it
     std::array<std::array<PointLanes, 2>, 3> end;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {

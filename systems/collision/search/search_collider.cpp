@@ -28,7 +28,7 @@ public:
         const Real points = add_points();
         const Real between = distance_between_nodes();
         if (between < face_zone_ + pair_.margin) {
-            // around the axis of a capsule are its edge's points, and no face
+            // a round body has no faces; the axis of a capsule is an edge
             if (inputs_.body.core_nodes[pair_.first] == 0) add_faces();
             add_edges();
         }
@@ -40,7 +40,7 @@ private:
     Vec3 local(Index node) const { return motion_.rotation.transpose() * (position(node) - motion_.position); }
     Range vertices() const { return inputs_.body.vertices[pair_.first]; }
 
-    /// Returns the least distance of a node, m.
+    /// Adds the nodes near the collider. Returns the least distance of a node [m].
     Real add_points() {
         const Real radius = pair_.scale.zone + pair_.margin;
         Real nearest = infinite;
@@ -60,12 +60,12 @@ private:
         return nearest;
     }
 
-    /// No edge or face touches between its nodes before the body has moved as far as this, m.
+    /// Distance the body has to move before an edge or face can touch between its nodes [m].
     Real distance_between_nodes() const {
         const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
         if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinite;
         const Vec3 middle = local(nearest_node_);
-        // of the whole body at once: where the nearest node is, and while all lie over one face of a box
+        // bounds for the whole body: by the tangent at the nearest node, and while all nodes lie over one flat place
         Real hull = infinite, flat = infinite;
         const Index place = flat_place(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);

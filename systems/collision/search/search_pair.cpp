@@ -20,16 +20,16 @@ namespace skerry {
 
 namespace {
 
-// Two trees over at most 2^31 triangles are at most 2 * 32 levels deep together, and a level leaves at most two waiting
-// pairs.
+// Two trees over at most 2^31 triangles are together at most 2 * 32 levels deep, and each level leaves at most two
+// waiting pairs.
 constexpr std::size_t max_waiting = 192;
 
-// Two bodies that lie on each other do so with some ten leaves.
+// Number of leaves whose features are kept. Two bodies that lie on each other touch with some ten leaves.
 constexpr std::size_t kept_leaves = 16;
 template <class Features>
 using KeptLeaves = std::array<Features, kept_leaves>;
 
-// Pairs of leaves that are found before any is compared.
+// Number of pairs of leaves that are collected before any is compared.
 constexpr std::size_t most_near = 32;
 
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
@@ -82,10 +82,10 @@ private:
         if (distance_squared(box_[a], box_[b]) < radius_squared_) push(a, b);
     }
 
-    /// What leaves list lies further apart than caches reach: it is asked for when they are found, and they are
-    /// compared when some are.
+    /// Prefetches the data of a leaf, which lie too far apart for caches. Leaves are prefetched when they are found,
+    /// and compared when several have been found.
     void ask_for_leaf(Index a) const {
-        constexpr std::size_t owned_edges = 12, owned_points = 4;  // of eight triangles
+        constexpr std::size_t owned_edges = 12, owned_points = 4;  // average for eight triangles
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
         const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
         ask_for_lines(features.edge.data(), owned_edges);
@@ -103,7 +103,7 @@ private:
         push_if_near(a + 1, node(a).right);
     }
 
-    /// Opens the tree with more below it.
+    /// Replaces a pair of nodes by pairs with the children of the one that has more below it.
     void split(Index a, Index b) {
         const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
         if (leaf_a && leaf_b) {
@@ -138,9 +138,9 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // A sphere, or the ball around a cylinder, is the point that is held against faces and axes: where a node of
-        // them is nearest, that finds it, too, and a node within a flat face holds nothing back. Of two spheres the
-        // first is held against the second.
+        // The core of a sphere, or of the ball around a cylinder, is a point that is tested against faces and axes.
+        // That test also finds a node that is nearest, and a node within a flat face does not obstruct the sphere. For
+        // two spheres the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
@@ -152,7 +152,7 @@ private:
                 [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
-    /// A leaf with itself: points against all triangles, and every pair of edges once.
+    /// Compares a leaf with itself: points against all triangles, and every pair of edges once.
     void compare_within(Index a) {
         compare_points(a, a, false);
         const LeafEdges& own = features_of(a, edges_[0]);
@@ -175,7 +175,7 @@ private:
         return features;
     }
 
-    /// Which edges are near a box.
+    /// Marks the edges that are near a box. Returns true if there are any.
     bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
@@ -184,7 +184,7 @@ private:
         return any != 0;
     }
 
-    /// The points of one leaf with the triangles of another.
+    /// Compares the points of one leaf with the triangles of another.
     void compare_points(Index owner, Index other, bool of_second) {
         const LeafPoints& points = features_of(owner, points_[of_second]);
         for (std::size_t group = 0; group < points.groups(); ++group)
@@ -196,7 +196,7 @@ private:
                 });
     }
 
-    /// A point with the triangles of a leaf.
+    /// Compares a point with the triangles of a leaf.
     void compare_point(Index n, Index vertex, Index other, bool of_second) {
         const LeafCorners& corners = features_of(other, corners_[!of_second]);
         const Vec3& at = position(n);
@@ -218,7 +218,7 @@ private:
         });
     }
 
-    /// Edge i of one leaf with some of another.
+    /// Compares edge i of one leaf with some edges of another.
     void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
         const LaneVec3<Real8> a0 = spread(position(a.node(i)[0])), a1 = spread(position(a.node(i)[1]));
@@ -263,7 +263,7 @@ private:
         return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
-    /// It sleeps until it may have come within the zone in which it is looked at closely.
+    /// Adds a candidate. It sleeps until it may have come within the zone in which it gets a close test.
     void add(const Candidate& candidate, Real squared, Real zone) {
         found_.push_back({candidate, pair_.travel_base + std::sqrt(squared) - zone});
     }
@@ -275,16 +275,16 @@ private:
     Column<FoundCandidate>& found_;
     const Real radius_;
     const Real radius_squared_;
-    const Real edge_radius_squared_;  // edges are looked at less deep
+    const Real edge_radius_squared_;  // edges are tested to a smaller depth
     const bool self_;
-    const bool first_is_point_, second_is_point_;  // the core of a sphere or cylinder
-    // of the leaves at hand, of the first tree and of the second: each is compared with several of the other
+    const bool first_is_point_, second_is_point_;  // true for a sphere or a cylinder
+    // Data of recent leaves of the first and of the second tree: each leaf is compared with several of the other tree.
     std::array<KeptLeaves<LeafPoints>, 2> points_;
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
     std::array<KeptLeaves<LeafCorners>, 2> corners_;
     std::array<std::array<Index, 2>, max_waiting> waiting_;
     std::size_t waiting_count_ = 0;
-    std::array<std::array<Index, 2>, most_near> near_;  // leaves that are to be compared
+    std::array<std::array<Index, 2>, most_near> near_;  // pairs of leaves that are still to be compared
     std::size_t near_count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Features of one pair that are near each other.
+// Search for features of one pair that are near each other.
 #pragma once
 
 #include "components/pair_table.h"
@@ -12,15 +12,15 @@ struct PairToSearch {
     Index first;
     Index second;
     PairScale scale;
-    Real travel_base;  // m, pair_travel_base of both
-    Real margin;       // m: features nearer than scale.zone + margin are listed
-    Real apart;        // m, a lower bound of the distance of two bodies
+    Real travel_base;  // pair_travel_base of both [m]
+    Real margin;       // features nearer than scale.zone + margin are listed [m]
+    Real apart;        // lower bound of the distance of two bodies [m]
 };
 
 /// Lists the near features of a pair in feature order, each once: points against triangles both ways and edges against
-/// edges (by two trees whose boxes fit the present positions), or against a collider (search_collider). In a body's
-/// pair with itself features that share a node are left out, and those that are nearer than the contact distance at
-/// rest. Returns until which travel_bound the list is complete.
+/// edges (by two trees whose boxes fit the present positions), or against a collider (search_collider). If a body is
+/// paired with itself, features that share a node, or are nearer than the contact distance at rest, are left out.
+/// Returns the travel_bound up to which the list is complete [m].
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 

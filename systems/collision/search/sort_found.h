@@ -1,4 +1,4 @@
-// The order of what a search has found.
+// Sorting of the features that a search has found.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// As many are put in order by counting for each which others of its kind come before it: a pair of bodies has some
-/// hundreds, and what sorting guesses wrong of these takes longer than comparing all, eight at a time.
+/// Up to this many are sorted by counting for each the others of its kind that come before it. A pair of bodies has
+/// some hundreds: the branches that a sort mispredicts take longer than comparing all of them, eight at a time.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
@@ -21,7 +21,7 @@ inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
 
 namespace sort_found_detail {
 
-/// The kind is in the two highest bits; what is below them ascends as features of one kind do.
+/// The kind is in the two highest bits. The bits below ascend as features of one kind do.
 inline constexpr int kind_shift = 62;
 inline std::size_t kind_of(const FoundCandidate& found) {
     return static_cast<std::size_t>(found.candidate.feature >> kind_shift);
@@ -43,7 +43,7 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
     std::size_t first = 0;
     for (std::size_t kind = 0; kind < kinds; ++kind) {
         const std::size_t blocks = (count[kind] + lanes - 1) / lanes;
-        for (std::size_t i = 0; i < lanes * blocks; ++i)  // what is beyond the last comes before none
+        for (std::size_t i = 0; i < lanes * blocks; ++i)  // padding sorts last
             order[i / lanes][i % lanes] =
                 i < count[kind] ? order_of(found[row[kind][i]]) : std::numeric_limits<std::int64_t>::max();
         for (std::size_t i = 0; i < count[kind]; ++i) {
@@ -61,7 +61,7 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
 
 }  // namespace sort_found_detail
 
-/// Into feature order. No feature is found twice.
+/// Sorts into feature order. No feature may occur twice.
 inline void sort_by_feature(Column<FoundCandidate>& found) {
     if (found.size() <= counted_at_most)
         sort_found_detail::sort_by_counting(found);

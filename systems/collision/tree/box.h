@@ -1,5 +1,5 @@
-// Axis-aligned boxes that stand numbers which are not finite: such a point does not enter a box, and an empty box is
-// far from everything.
+// Axis-aligned boxes that tolerate coordinates that are not numbers: they do not enter a box. An empty box is far from
+// everything.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,8 @@ inline void grow(Aabb& box, const Aabb& other) {
     }
 }
 
-/// m^2, 0 when they overlap. Written out: half of a search is this, and no loop is unrolled at -O2.
+/// Squared distance; 0 if the boxes overlap [m^2]. Half of a search is spent here, so it is written without a loop: -O2
+/// unrolls none.
 inline Real distance_squared(const Aabb& a, const Aabb& b) {
     const auto gap = [&](int i) {
         return std::max(Real(0), std::max(a.lower[i] - b.upper[i], b.lower[i] - a.upper[i]));
@@ -40,12 +41,12 @@ inline Real distance_squared(const Aabb& a, const Aabb& b) {
     return x * x + y * y + z * z;
 }
 
-/// m^2, 0 when the point is inside.
+/// Squared distance; 0 if the point is inside [m^2].
 inline Real distance_squared(const Aabb& box, const Vec3& point) {
     return distance_squared(box, Aabb{point, point});
 }
 
-/// About the middle of the points' own box. Points that are not numbers do not count.
+/// Sphere around points, with its centre in the middle of their box. Points that are not numbers do not count.
 template <class PointOf>
 BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& point_of) {
     const Vec3 centre = 0.5 * (box.lower + box.upper);
@@ -57,7 +58,7 @@ BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& 
     return {centre, std::sqrt(squared)};
 }
 
-/// m, lower bound of the distance of what they hold. Not above 0 when they overlap or are not finite.
+/// Lower bound of the distance between the contents of two spheres; 0 if they overlap or are not finite [m].
 inline Real gap_between(const BoundingSphere& a, const BoundingSphere& b) {
     const Real gap = (a.centre - b.centre).norm() - a.radius - b.radius;
     return gap > 0 && gap < std::numeric_limits<Real>::infinity() ? gap : 0;

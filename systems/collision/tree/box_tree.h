@@ -1,4 +1,4 @@
-// A tree over boxes of anything, for sets that are looked at once and not step after step (tree/bvh.h is for those).
+// A tree over boxes of any items, for sets that are searched once and not in every step (tree/bvh.h is for those).
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Whether two boxes share more than a face. A box with a number that is not finite shares nothing.
+/// True if two boxes share more than a face. A box with a coordinate that is not a number shares nothing.
 inline bool boxes_overlap(const Aabb& a, const Aabb& b) {
     for (int i = 0; i < 3; ++i)
         if (!(a.lower[i] < b.upper[i] && b.lower[i] < a.upper[i])) return false;
@@ -20,8 +20,8 @@ public:
     BoxTree() = default;
     explicit BoxTree(std::span<const Aabb> boxes);
 
-    /// Calls visit(item) for every box for which touches(box) holds, which must hold for a box if it does for one
-    /// inside of it. In an order that depends on the boxes alone.
+    /// Calls visit(item) for every box for which touches(box) holds. If touches holds for a box, it must hold for any
+    /// box around it. The order depends on the boxes alone.
     template <class Touches, class Visit>
     void for_each(Touches&& touches, Visit&& visit) const {
         for (std::size_t row = 0; row < nodes_.size();) {
@@ -34,7 +34,7 @@ public:
             ++row;
         }
     }
-    /// The same for every box that overlaps another.
+    /// Calls visit(item) for every box that overlaps `box`.
     template <class Visit>
     void for_each_overlap(const Aabb& box, Visit&& visit) const {
         for_each([&box](const Aabb& other) { return boxes_overlap(box, other); }, visit);

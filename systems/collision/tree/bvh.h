@@ -16,15 +16,15 @@ struct BvhRanges {
 };
 
 /// Appends a tree over the triangles of one body, built from their present positions. A leaf holds up to eight
-/// triangles: a search compares a feature with all of them at once.
+/// triangles, which a search compares with a feature all at once.
 BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
                      std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
-/// Lists what the triangles of these leaves own; they are the last rows.
+/// Lists the features that the triangles of these leaves own. The leaves must be the last rows.
 void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
 
-/// The same as append_bvh and append_leaf_features of a body whose mesh is that of an earlier one with the rows `like`,
-/// and which lies so far behind it.
+/// Appends the tree and the leaf features of a body with the same mesh as an earlier one, whose rows are `like`.
+/// `behind`: row offsets from the earlier body. The result equals that of append_bvh and append_leaf_features.
 BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
                            BvhTable& bvh, BvhLeafTable& leaves);
 

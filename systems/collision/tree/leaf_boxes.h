@@ -1,4 +1,4 @@
-// Eight boxes against one. Boxes that stand numbers which are not finite, as in box.h.
+// Eight boxes compared with one at once. They tolerate coordinates that are not numbers, as in box.h.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace skerry {
 
 static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
 
-/// Boxes, m, side by side: one is compared with all of them at once. Empty ones are far from everything.
+/// Eight boxes side by side [m]: one is compared with all of them at once. Empty ones are far from everything.
 struct LeafBoxes {
     std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
 };
@@ -35,7 +35,7 @@ inline LeafBoxes empty_leaf() {
     return boxes;
 }
 
-/// Those of the first `count` triangles of a leaf; the others are empty.
+/// Boxes of the first `count` triangles of a leaf; the others are empty.
 inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::span<const Vec3> position) {
     LeafBoxes boxes = empty_leaf();
     for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
@@ -46,7 +46,7 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// m^2, by lane, 0 where they overlap.
+/// Squared distances by lane; 0 where the boxes overlap [m^2].
 inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     const Real8 none{};
     Real8 sum{};
@@ -59,7 +59,7 @@ inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     return sum;
 }
 
-/// A bit for each lane that is below the limit.
+/// Mask of the lanes whose value is below the limit.
 inline unsigned lanes_below(const Real8& value, Real limit) {
     return bits_of(value < Real8{} + limit);
 }
