@@ -36,15 +36,15 @@ struct NewtonCounts {
 
 /// State of one step of a body of large strain, by place (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    std::vector<Vec3> carried;   // displacements at its end if nodes stand still [m]
+    std::vector<Vec3> carried;   // displacements at the end of the step if nodes stand still [m]
     std::vector<Vec3> impulse;   // impulses of momentum, loads and weight [N s]
     std::vector<Vec3> velocity;  // velocities of the step's displacement, without contacts [m/s]
     std::vector<Vec3> force;     // dU/du within the step [N]
-    std::vector<Vec3> before;    // at its start, turned by Coriolis forces, without momenta [m/s]
+    std::vector<Vec3> before;    // velocities at the start, turned by Coriolis forces, without momenta [m/s]
     std::vector<Vec3> gradient, direction, within;
     // angular momentum of a free body, in the frame of its mesh; zero for a held body [kg m^2/s]
     Vec3 angular_momentum = Vec3::Zero();
-    BodyShape shape;  // shape within the step if that is not zero; work memory outside of steps
+    BodyShape shape;  // shape within the step if angular_momentum is not zero; work memory outside of steps
     NewtonCounts counts;
     bool failed = false;  // no velocity was found
 
@@ -67,7 +67,7 @@ struct LongStep {
     std::vector<Vec3> start_force;            // K u [N]
     std::vector<Vec3> impulse, free;          // impulses without contacts [N s], the velocities they give [m/s]
     std::vector<Vec3> left, left_impulse;     // by contacts of the previous long step, which continue [m/s], [N s]
-    // Contributions of contacts since then, at the start and at the end of this short step:
+    // Contributions of contacts since the start of the long step, at the start and at the end of this short step:
     std::vector<Vec3> answer, answer_next;    // velocities that contacts gave [m/s]
     std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
     Real elastic = 0, elastic_next = 0;       // elastic energy [J]
@@ -118,8 +118,9 @@ public:
     /// Version of becomes_large() for displacements by place. Evaluates elements only if nodes have moved far enough
     /// since the last evaluation for strain to be large.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
-    /// True if both are accurate enough again: within a quarter of the bounds of becomes_large(), or with a spin within
-    /// a quarter of its bound and strains below a tenth of small_strain.
+    /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
+    /// must be below a quarter of its bound. Also all strains must be below a tenth of small_strain, or the other
+    /// bounds of becomes_large() be met by a quarter.
     bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
     /// Elastic energy [J]: u K u / 2, or by the laws of the elements if strain is `large`. `displacement`: by node of
