@@ -1,4 +1,4 @@
-// Cholesky factorisation of sparse symmetric matrices of 3x3 blocks, one block a pair of nodes
+// Cholesky factorisation of sparse symmetric matrices of 3x3 blocks, one block for each pair of nodes
 // (docs/methods/implicit_bodies.md 3).
 #pragma once
 

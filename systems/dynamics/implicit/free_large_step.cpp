@@ -55,7 +55,7 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     out.large_next[r] = is_large;
     follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
                  out.rotation_shaped[r]);
-    // The velocities get no momenta in the shape at the end of the step.
+    // Removes momenta, or rigid motion, from the velocities in the shape at the end of the step.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
         step.before.resize(of.count);

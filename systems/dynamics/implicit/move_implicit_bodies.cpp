@@ -69,7 +69,8 @@ bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Ve
 }
 
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
-    // The length of the step is rounded to twelve digits: steps that divide a time evenly differ in the last digits.
+    // The length of the step is rounded to twelve digits. Steps that divide a time evenly differ only in later digits
+    // and so share a factor.
     constexpr int bits = 40;
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);

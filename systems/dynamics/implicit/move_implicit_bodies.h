@@ -20,7 +20,7 @@
 
 namespace skerry {
 
-/// One StiffBody a row of RigidBodyTable; empty for a body that does not deform.
+/// One StiffBody for each row of RigidBodyTable; empty for a body that does not deform.
 using StiffBodies = std::vector<StiffBody>;
 
 struct ImplicitBodies {

@@ -66,7 +66,8 @@ struct LongStep {
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
     std::vector<Vec3> start_force;            // K u [N]
     std::vector<Vec3> impulse, free;          // impulses without contacts [N s], the velocities they give [m/s]
-    std::vector<Vec3> left, left_impulse;     // by contacts of the previous long step, which continue [m/s], [N s]
+    std::vector<Vec3> left,
+        left_impulse;  // velocities and impulses of the last long step's contacts, which continue [m/s], [N s]
     // Contributions of contacts since the start of the long step, at the start and at the end of this short step:
     std::vector<Vec3> answer, answer_next;    // velocities that contacts gave [m/s]
     std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
@@ -169,7 +170,7 @@ public:
     /// three numbers a node. `nodes` ascend; `first` is the first node of the body in the same numbering. Kept while
     /// the same nodes are asked for; zero without a factor.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
-    /// Most memory of kept columns. It is exceeded if one call of responses() needs more columns.
+    /// Largest memory of kept columns. It is exceeded if one call of responses() needs more columns.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // [bytes]
     std::uint64_t columns_made() const { return columns_made_; }
 
@@ -202,14 +203,14 @@ private:
     std::vector<Vec3> arm_;           // rest position from the centre of mass, by place [m]
     std::vector<std::uint8_t> held_;  // by place; empty: no node is held
     Real total_mass_ = 0;
-    Mat3 inverse_inertia_ = Mat3::Zero();        // of the masses of nodes [1/(kg m^2)]
+    Mat3 inverse_inertia_ = Mat3::Zero();        // of nodal masses at rest [1/(kg m^2)]
     Mat3 inverse_solid_inertia_ = Mat3::Zero();  // of the solid at rest [1/(kg m^2)]
     Real stretching_spin_ = 0;                   // energy of a spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
     BodyShape shape_;                          // set by stand_in()
-    Mat3 inverse_arm_inertia_ = Mat3::Zero();  // of the sum of (|a|^2 1 - a a^T) / m, a = arm [1/(kg m^2)]
+    Mat3 inverse_arm_inertia_ = Mat3::Zero();  // inverse of the sum of (|a|^2 1 - a a^T) / m, a = arm [1/(kg m^2)]
     BlockRows stiffness_, matrix_;
-    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // of M and K in A
+    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of M and K in A
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
@@ -225,7 +226,7 @@ private:
     std::vector<Index> node_in_;          // node of each slot
     std::vector<std::uint64_t> used_at_;  // count of uses at the last use of each slot
     std::uint64_t uses_ = 0, columns_made_ = 0;
-    std::vector<Mat3> columns_;  // size() blocks a slot
+    std::vector<Mat3> columns_;  // size() blocks for each slot
     // Nodes of the body in the last call of responses(), and its result:
     std::vector<Index> touched_;
     std::vector<Real> responses_;

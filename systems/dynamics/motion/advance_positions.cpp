@@ -29,7 +29,7 @@ void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_o
     const Real *v = velocity.data()->data(), *p = push_out.data()->data();
     Real* x = position.data()->data();
     const std::size_t count = 3 * position.size();
-    std::uint64_t pushed = 0;  // or of the bits of all values; their signs are ignored
+    std::uint64_t pushed = 0;  // bitwise OR of all values; signs are ignored
 #pragma omp simd reduction(| : pushed)
     for (std::size_t i = 0; i < count; ++i) {
         x[i] += h * (v[i] + p[i]);

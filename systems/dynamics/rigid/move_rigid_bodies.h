@@ -119,10 +119,10 @@ struct RigidKicks {
     }
 };
 
-/// Computes impulse and moment of gravity and loads, and the velocities with them, which contacts see. They act for
-/// `kick`, on frames of implicit bodies for the whole step. Bodies at rest get none. Held bodies get the impulse that
-/// moves them along; their nodes already have their velocities. Held frames have neither momentum nor degrees of
-/// freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Computes impulse and moment of gravity and loads, and the velocities with them, which contacts see. Gravity and
+/// loads act for `kick`, on frames of implicit bodies for the whole step. Bodies at rest get none. Held bodies get the
+/// impulse that moves them along; their nodes already have their velocities. Held frames have neither momentum nor
+/// degrees of freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 

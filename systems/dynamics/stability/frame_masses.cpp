@@ -27,7 +27,7 @@ Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Stiffness of a body at rest by the H above, M^-1/2 K M^-1/2, in coordinates 3 n + i of its nodes n.
+/// Stiffness M^-1/2 K M^-1/2 of a body at rest with H = 2 mu 1 + lambda 1 1^T, in coordinates 3 n + i of its nodes n.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,

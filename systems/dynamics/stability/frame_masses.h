@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Most multiplications that the decomposition of a body's matrix may cost: 0.1 s, or some 4,000 tetrahedra of a block.
+/// Largest number of multiplications for the decomposition of a body's matrix: 0.1 s, or some 4,000 tetrahedra of a
+/// block.
 inline constexpr Real products_of_frame = 4e8;
 
 /// Finds the masses that the explicit elements of a body take from its nodes. They are proportional to the stiffness at

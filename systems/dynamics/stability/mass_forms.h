@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Most multiplications that the decomposition of a group's matrix may cost: 0.1 s, or some 15,000 tetrahedra of a
+/// Largest number of multiplications for the decomposition of a group's matrix: 0.1 s, or some 15,000 tetrahedra of a
 /// block.
 inline constexpr Real products_of_group = 4e8;
 

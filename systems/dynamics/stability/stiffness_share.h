@@ -48,9 +48,9 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
 }
 
 /// Bound of omega^2 of each element of a block [1/s^2], with masses m_k = mass k_k / stiffness_sum. Without
-/// stiffness_sum every element has all the mass of its nodes, which is no bound for a body, but the frequency of the
-/// element alone. Not a number if F is not finite. `q` is a start of the corotational frame and is left at the frame
-/// found. `enough` [1/s^2]: as in frequency_squared_bound().
+/// stiffness_sum every element has all the mass of its nodes: that is no bound for a body, but shows the frequency of
+/// the element alone. Not a number if F is not finite. `q` is a start of the corotational frame and is left at the
+/// frame found. `enough` [1/s^2]: as in frequency_squared_bound().
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
                            Real enough = 0);
