@@ -66,8 +66,9 @@ struct PressInputs {
     }
 };
 
-/// Marks bodies at rest that a contact has pressed on. The impulse from when they were put to rest decides: without
-/// their weight they may not press now. If no impulses are kept every contact counts.
+/// Marks both bodies of every contact that has pressed, by its kept impulse. For bodies at rest that is the impulse
+/// from when they were put to rest: without their weight they may not press now. If no impulses are kept every contact
+/// counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
 /// Wakes every body that is marked, that a contact of this step presses on by an impulse or by overlap, that is joined
