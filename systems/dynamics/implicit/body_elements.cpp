@@ -41,7 +41,7 @@ Real BodyElements::largest_strain(const Displacements& displacement) const {
     Real squared = 0;
     for (std::size_t e = 0; e < size(); ++e) {
         const Real of_element = gradient_of(e, displacement).squaredNorm();
-        if (!(of_element <= squared)) squared = of_element;  // not a number, too
+        if (!(of_element <= squared)) squared = of_element;  // also if it is not a number
     }
     return std::sqrt(squared);
 }
@@ -71,7 +71,7 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
     for (std::size_t e = 0; e < size(); ++e) {
         const Nodes nodes = nodes_of(e);
         const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
-        Vec3 others = Vec3::Zero();  // so that they add up to zero in each element
+        Vec3 others = Vec3::Zero();  // the first node gets minus this sum: forces of an element add up to zero
         for (std::size_t k = 1; k < nodes.place.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];
             out[static_cast<std::size_t>(nodes.place[k])] += of_node;
@@ -101,7 +101,7 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         const Nodes nodes = nodes_of(e);
         const Tangent tangent = skerry::tangent(material_[e], Mat3::Identity() + gradient_of(e, displacement));
         const Real weight = scale * volume_[e];
-        // of the stretches, and of what is beside the diagonal: even, and with its transpose
+        // `normal` couples the stretches. Beside the diagonal `even` multiplies an entry and `crossed` its transpose.
         const Mat3 normal = weight * tangent.normal;
         Mat3 even = Mat3::Zero(), crossed = Mat3::Zero();
         for (Index i = 0; i < 3; ++i) {

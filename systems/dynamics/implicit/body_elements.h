@@ -1,4 +1,4 @@
-// The elements of a body that moves implicitly by the laws of their materials, whatever the strain
+// Energy, forces and tangent of the elements of an implicit body, by the laws of their materials at any strain
 // (docs/methods/implicit_bodies.md 8).
 #pragma once
 
@@ -12,7 +12,8 @@
 
 namespace skerry {
 
-/// m, of the nodes of a body from their rest positions, in the order of elimination.
+/// Displacements of the nodes of a body from their rest positions, read by place in the elimination order [m]. The
+/// values are stored by place, or by node with `node_at`, the node of each place.
 class Displacements {
 public:
     Displacements(std::span<const Vec3> by_place) : by_place_(by_place) {}
@@ -32,26 +33,27 @@ private:
 class BodyElements {
 public:
     BodyElements() = default;
-    /// `constants`: by row of MaterialTable; `place`: of each node in the order of elimination.
+    /// `constants`: by row of MaterialTable; `place`: place of each node in the elimination order.
     BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
                  std::span<const Index> place);
 
-    /// Whether some law is not linear.
+    /// True if the law of some element is not linear.
     bool any_bends() const { return any_bends_; }
-    /// Largest |F - 1| (Frobenius norm).
+    /// Largest |F - 1| of all elements (Frobenius norm).
     Real largest_strain(const Displacements& displacement) const;
-    /// 1/m, the most that changes by where displacements change by this much.
+    /// Bound on the change of largest_strain() per largest change of a displacement [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
-    /// J
+    /// Elastic energy of all elements [J].
     Real energy(const Displacements& displacement) const;
     struct Misfit {
-        Real linear, off;  // J: energy by linear laws; what laws differ from that, of each element whether more or less
+        Real linear,
+            off;  // energy by linear laws; sum over the elements of its distance from the energy by their laws [J]
     };
     Misfit misfit(const Displacements& displacement) const;
-    /// out = dU/dx, N, by place.
+    /// out = dU/dx, by place [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
-    /// matrix += scale d2U/dx2 without what is negative of it, N/m. The first call finds where the blocks are in the
-    /// matrix, which then has to have the same pattern.
+    /// matrix += scale d2U/dx2, without the negative part of d2U/dx2 [N/m]. The first call locates the blocks in the
+    /// matrix. Matrices of later calls must have the same pattern.
     void add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix);
 
 private:
@@ -64,15 +66,15 @@ private:
     Mat3 gradient_of(std::size_t e, const Displacements& displacement) const;
     void find_blocks(const BlockRows& matrix);
 
-    std::vector<std::size_t> first_{0};  // of each element in place_ and gradient_; one more than elements
+    std::vector<std::size_t> first_{0};  // start of each element in place_ and gradient_; elements + 1 entries
     std::vector<Index> place_;
-    std::vector<Vec3> gradient_;               // 1/m
-    std::vector<Real> volume_;                 // m^3
-    std::vector<MaterialConstants> material_;  // of the part of the stress that the element gives
+    std::vector<Vec3> gradient_;               // of each node of each element [1/m]
+    std::vector<Real> volume_;                 // [m^3]
+    std::vector<MaterialConstants> material_;  // constants of the part of the stress that the element gives
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;
-    std::vector<Index> block_;  // of pairs of nodes k >= l, element after element
-    std::vector<Vec3> turned_;  // memory, of one element
+    std::vector<Index> block_;  // block in the matrix of node pairs k >= l, element by element
+    std::vector<Vec3> turned_;  // work memory for one element
 };
 
 }  // namespace skerry

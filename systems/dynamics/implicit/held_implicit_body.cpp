@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// What is asked of a node of the body.
+/// Properties of the nodes of a held body.
 struct HeldNodes {
     const ImplicitBodies& bodies;
     const LedFrame& frame;
@@ -25,7 +25,7 @@ struct HeldNodes {
 
     bool held(std::size_t n) const { return !(bodies.inverse_mass[first_node + n] > 0); }
     Vec3 arm(std::size_t n) const { return bodies.rest_position[first_node + n] - rest_center; }
-    /// m/s, of a held node, in the frame of the end.
+    /// Prescribed velocity of a held node in the frame of the end [m/s].
     Vec3 led(std::size_t n) const { return frame.turn.transpose() * bodies.node_velocity[first_node + n]; }
 };
 
@@ -46,7 +46,7 @@ LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : stands
 
 namespace {
 
-/// Whether strain is large by the end of a step with these velocities (by place), in the frame of its end.
+/// True if strain is large at the end of a step with these velocities, by place in the frame of the end.
 bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec3> displacement,
                    std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;
@@ -60,7 +60,8 @@ bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec
     return stiff.becomes_large_in_places(at_end, Vec3::Zero());
 }
 
-/// Velocities of the step by Newton's method, by place, in the frame of its end. `outer_force`: N, of a node, there.
+/// Computes the velocities of the step by Newton's method, by place in the frame of the end. `outer_force(n)`: force on
+/// a node in that frame [N]. Returns false if none are found.
 bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real within, auto&& outer_force,
                 StiffBody& stiff, std::span<Vec3> out) {
     LargeStep& step = stiff.large_step;
@@ -94,7 +95,8 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         if (!loads.load.empty()) outer += loads.load[of.first_node + n];
         return Vec3(frame.turn.transpose() * outer);
     };
-    // The force of the step, but for what free nodes move in it: of its start by 1 - theta, of its end by theta.
+    // Elastic force of the step without the motion of free nodes: 1 - theta times that of its start plus theta times
+    // that of its end.
     bool carried = !frame.stands;
     for (std::size_t n = 0; n < of.count; ++n) {
         impulse[of.place(n)] = displacement[n];
@@ -109,7 +111,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
                 at_end = frame.carried(nodes.arm(n), displacement[n]);
                 if (nodes.held(n)) at_end += h * nodes.led(n);
             }
-            stiff.elastic_forces(impulse, next);  // by place, for now
+            stiff.elastic_forces(impulse, next);  // temporarily by place
             for (std::size_t k = 0; k < of.count; ++k)
                 force[k] = (1 - theta) * (frame.across * force[k]) + theta * next[k];
         }
@@ -122,7 +124,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         large = sound && becomes_large(nodes, of, displacement, impulse, h, stiff);
     }
     if (large) sound = kick_large(nodes, of, r, theta * h, outer_force, stiff, impulse);
-    if (!sound)  // the step is refused
+    if (!sound)  // NaN: the step is refused
         std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
     for (std::size_t n = 0; n < of.count; ++n) {
         if (nodes.held(n)) {
@@ -137,8 +139,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 
 namespace {
 
-/// N, by place, what elasticity gave nodes in a step of large strain: free ones by what moved them, held ones by the
-/// laws of the elements, but for what Newton's method and contacts leave between both, so that all add up to zero.
+/// Computes the elastic forces on the nodes in a step of large strain, by place [N]. Those on free nodes follow from
+/// their motion, those on held nodes from the laws of the elements. Held nodes also get the rest left by Newton's
+/// method and contacts, so that all forces add up to zero.
 void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -172,7 +175,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
                                 force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
     const Mat3 to_mesh = frame.turn.transpose();
     out.hold_moment[r] = Vec3::Zero();
-    // velocities of the step, in the frame of its end
+    // velocities of the step in the frame of its end
     const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
     if (touched) {
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (to_mesh * contact[n]);
@@ -184,7 +187,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
     }
     if (bodies.asleep(r)) return 0;
-    // what deforms pulls at held nodes; that its forces turn by their arms as they are deformed turns the frame back
+    // Elastic forces pull at held nodes. Their moment about the centre, with the arms of the deformed shape, acts on
+    // the frame.
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
                is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), of, stiff);
     const bool large = newton || was_large || is_large;
@@ -198,23 +202,23 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         for (std::size_t k = 0; k < of.count; ++k) rate[k] = force[k] + theta * h * rate[k];
     }
     Vec3 moment = Vec3::Zero();
-    Real taken = 0;  // J
+    Real taken = 0;  // damped energy [J]
     for (std::size_t n = 0; n < of.count; ++n) {
         const std::size_t k = of.place(n);
         const Vec3 &of_mesh = rate[k], pull = frame.turn * of_mesh;
         const Vec3 place = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * place).cross(pull);
-        // less what the hold gives as it turns places against these forces, which add up to zero
+        // less the work of the hold, which turns places against these forces; they add up to zero
         if (large)
             taken += h * next[n].dot(of_mesh);
         else if (!frame.stands)
             taken += of_mesh.dot(place - frame.across * place);
-        // over the step, and told as what acts for `kick`
+        // force of the whole step, reported as one that acts for the time `kick`
         if (Vec3& force_on_held = out.force[of.first_node + n]; nodes.held(n))
             force_on_held = h / kick * (force_on_held - pull);
     }
     out.hold_moment[r] = -h * moment;
-    // (theta - 1/2)( dw M dw + du K du ), and the damping of the material
+    // losses: (theta - 1/2)( dw M dw + du K du ), and the damping of the material
     if (large) {
         taken += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
     } else {
@@ -228,7 +232,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         if (nodes.held(n)) continue;
         const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
         taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
-        // contacts are said to have worked at the mean of both velocities
+        // the reported work of contacts uses the mean of both velocities
         taken += (to_mesh * contact[n]).dot(before - during) / 2;
         next[n] = before + change;
     }

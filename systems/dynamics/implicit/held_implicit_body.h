@@ -1,4 +1,4 @@
-// The step of an implicit body that an attachment holds: its frame is led, its nodes have all of their velocity
+// Step of an implicit body held by an attachment: its frame is prescribed, and its nodes have the whole velocity
 // (docs/methods/implicit_bodies.md 7).
 #pragma once
 
@@ -6,32 +6,33 @@
 
 namespace skerry {
 
-/// How the frame of the mesh moves in this step.
+/// Motion of the frame of the mesh in this step.
 struct LedFrame {
-    bool stands;      // it does not move at all, as far as this step goes
-    Mat3 turn_start;  // frame of the mesh at the start of the step to the world
-    Mat3 turn;        // the same at its end
-    Mat3 across;      // frame of the start to that of the end
-    Vec3 shift;       // m, where the centre of the start is from that of the end, in the frame of the end
+    bool stands;      // true if the frame does not move in this step
+    Mat3 turn_start;  // frame of the mesh to the world at the start of the step
+    Mat3 turn;        // frame of the mesh to the world at the end of the step
+    Mat3 across;      // frame of the start to the frame of the end
+    Vec3 shift;       // centre of the start relative to that of the end, in the frame of the end [m]
 
     LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h);
 
-    /// m, the displacement at the end of a node that keeps its place in the world. `arm`: of its rest position from the
-    /// centre.
+    /// Displacement at the end of the step of a node that keeps its place in the world [m]. `arm`: its rest position
+    /// relative to the centre [m].
     Vec3 carried(const Vec3& arm, const Vec3& displacement) const {
         return stands ? displacement : Vec3(across * (arm + displacement) - arm + shift);
     }
 };
 
-/// As kick_implicit_bodies, of one body, and its `velocity_next` in the frame of the start.
+/// Version of kick_implicit_bodies for one held body. Its `velocity_next` is in the frame of the start.
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
                     StiffBody& stiff, const ImplicitKicks& out);
 
-/// As strain_implicit_bodies, of one body. Returns what it damped, less what its hold gave by its moment, J.
+/// Version of strain_implicit_bodies for one held body. Returns the damped energy less the work of the moment of its
+/// hold [J].
 Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 
-/// As drift_implicit_bodies, of one body.
+/// Version of drift_implicit_bodies for one held body.
 void drift_held_body(const ImplicitBodies& bodies, std::size_t r, Real seconds, std::span<Vec3> displacement_next,
                      std::span<Vec3> velocity_next);
 

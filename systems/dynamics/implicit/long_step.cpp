@@ -7,14 +7,15 @@ namespace skerry {
 
 namespace {
 
-/// s, from the start of the body's long step to the end of this short one.
+/// Time from the start of the body's long step to the end of this short step [s].
 Real time_at_end(const LongStep& step, const ImplicitTimes& times) {
     constexpr Real rounding = 1e-9;
     const Real time = step.done + times.h;
     return std::abs(time - times.length) < rounding * times.length ? times.length : time;
 }
 
-/// What is made of the state at its start.
+/// Computes the quantities of a long step that depend only on the state at its start. Returns false if its matrix
+/// cannot be factored.
 bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                      const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                      std::span<Vec3> impulse) {
@@ -42,7 +43,7 @@ bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     std::ranges::fill(step.answer, Vec3::Zero());
     std::ranges::fill(step.left_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
-    // the impulses that give it: A times it
+    // impulses that give the velocities `left`: A left
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
     for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = step.left[n];
     of.stiff.elastic_forces(impulse, elastic_force);
@@ -97,9 +98,9 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
     const Mat3 back = bodies.turn(r).transpose();
     const Real time = time_at_end(step, times), share = time / times.length, still_left = 1 - share;
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
-    Real taken = 0;     // J: what contacts and loads are said to have done, less what energy has grown by
-    Real at_start = 0;  // W, of the forces at the start
-    Real of_impulses = 0, of_inertia = 0;  // J
+    Real taken = 0;                        // reported work of contacts and loads less the growth of energy [J]
+    Real at_start = 0;                     // power of the forces at the start [W]
+    Real of_impulses = 0, of_inertia = 0;  // [J]
     for (std::size_t n = 0; n < of.count; ++n) {
         const Real mass = of.stiff.mass(of.place(n));
         const Vec3 impulse = back * contact[n];
@@ -121,7 +122,7 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         of_inertia += inertia * mass * during.squaredNorm();
         next[n] = after;
     }
-    // u K u / 2 at u = start + time during, with K during out of A during, whose impulses are known
+    // u K u / 2 at u = start + time during; K during follows from A during, whose impulses are known
     step.elastic_next = 0;
     for (std::size_t n = 0; n < of.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (of_impulses - of_inertia) / (within * within);
@@ -147,7 +148,7 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.answer.swap(step.answer_next);
         step.contact.swap(step.contact_next);
         if (!times.ends) continue;
-        // of forces that go on as they were in the time that there was for them
+        // Contact forces are taken to continue at their mean over the elapsed part of the long step.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];
     }

@@ -22,7 +22,7 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
     });
 }
 
-/// By the end of a step with these velocities (by place), where it is not now.
+/// True if strain is large at the end of a step with these velocities (by place); it is small now.
 bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
                    Real h, const OfBody& of, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;
@@ -32,7 +32,7 @@ bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> vel
     return stiff.becomes_large_in_places(at_end, angular_momentum);
 }
 
-/// Bodies turn in the shape that they have.
+/// Keeps the present moments, axes and rotations of all bodies for the end of the step.
 void keep_spins(const ImplicitBodies& bodies, const ImplicitSpins& spins, const ImplicitStrains& out) {
     std::ranges::copy(bodies.large, out.large_next.begin());
     std::ranges::copy(spins.moments, out.moments_next.begin());
@@ -69,7 +69,8 @@ bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Ve
 }
 
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
-    // with the length of the step to twelve digits: steps that part a time evenly differ in the last ones
+    // The length of the step is rounded to twelve digits. Steps that divide a time evenly differ only in later digits
+    // and so share a factor.
     constexpr int bits = 40;
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);
@@ -118,7 +119,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
                                                  of, stiff[r]));
         if (large) stiff[r].long_step.weight = 0;
         if (large) sound = kick_large_free_body(bodies, loads, spins, r, h, theta, stiff[r], impulse);
-        if (!sound)  // the step is refused
+        if (!sound)  // NaN: the step is refused
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
         const Mat3 turn = bodies.turn(r);
         for (std::size_t n = 0; n < of.count; ++n) {
@@ -235,11 +236,11 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             const std::size_t k = of.place(n);
             const Vec3 &before = velocity[n], &during = next[n];
             const Vec3 after = before + (during - before) / theta;
-            // what contacts and loads are said to have done, less what energy has grown by
+            // reported work of contacts and loads less the growth of energy
             taken += (back * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = back * loads.load[of.first_node + n];
-                // J, said to be theirs by the velocities of now, which are by so much behind or ahead
+                // work reported for the load, by present velocities, which lag or lead by this much [J]
                 taken += h * load.dot(during - (after - before) / 2) + (loads.kick - h) * load.dot(before);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);

@@ -1,5 +1,5 @@
-// What deforms in the frame of a body that moves implicitly: kicked by forces, coupled where contacts touch it,
-// strained once they are solved. Its frame moves as rigid bodies do (docs/methods/implicit_bodies.md 2, 4).
+// Deformation of implicit bodies in their frames: kicked by forces, coupled where contacts touch them, strained after
+// contacts are solved. The frames move like rigid bodies (docs/methods/implicit_bodies.md 2, 4).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace skerry {
 
-/// By row of RigidBodyTable; empty where a body does not deform.
+/// One StiffBody for each row of RigidBodyTable; empty for a body that does not deform.
 using StiffBodies = std::vector<StiffBody>;
 
 struct ImplicitBodies {
@@ -30,15 +30,15 @@ struct ImplicitBodies {
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
     std::span<const Index> body_material;       // BodyTable
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
-    std::span<const Real> material_damping;     // 1/s
-    std::span<const Vec3> displacement;         // m
-    std::span<const Vec3> velocity;             // m/s
-    std::span<const Vec3> left;                 // m, ImplicitNodeTable
-    // Of those that attachments hold:
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: no body is asleep
+    std::span<const Real> material_damping;     // MaterialTable [1/s]
+    std::span<const Vec3> displacement;         // ImplicitNodeTable [m]
+    std::span<const Vec3> velocity;             // ImplicitNodeTable [m/s]
+    std::span<const Vec3> left;                 // ImplicitNodeTable [m]
+    // Used for bodies that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
-    std::span<const Vec3> rest_position, node_velocity;  // NodeTable: held nodes have what leads them
+    std::span<const Vec3> rest_position, node_velocity;  // NodeTable; velocity of held nodes: prescribed
     std::span<const Real> inverse_mass;                  // NodeTable
 
     static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
@@ -65,30 +65,30 @@ struct ImplicitBodies {
     }
 
     bool any() const { return !displacement.empty(); }
-    /// Rows of ImplicitNodeTable of a row of RigidBodyTable; none where it does not deform.
+    /// Rows of ImplicitNodeTable of a row of RigidBodyTable; none if the body does not deform.
     Range rows(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
     bool asleep(std::size_t r) const {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
-    /// 1/s
+    /// Damping of the material of a body [1/s].
     Real damping(std::size_t r) const {
         return material_damping[static_cast<std::size_t>(body_material[static_cast<std::size_t>(body[r])])];
     }
-    /// Frame of the mesh to the world.
+    /// Rotation from the frame of the mesh to the world.
     Mat3 turn(std::size_t r) const { return rotation[r] * axes[r].transpose(); }
 };
 
-/// A step that implicit bodies of small strain take while others take several.
+/// Long step that implicit bodies of small strain take while other bodies take several short steps.
 struct LongStepTimes {
-    Real length = 0;      // s; 0: there is none, all take the same step
-    bool starts = false;  // with this short step
-    bool ends = false;    // with this short step
+    Real length = 0;      // 0: no long step, all bodies take the same step [s]
+    bool starts = false;  // the long step starts with this short step
+    bool ends = false;    // the long step ends with this short step
 };
 
-/// How long the step is.
+/// Length and theta of the step.
 struct ImplicitTimes : LongStepTimes {
-    Real h = 0;  // s
+    Real h = 0;  // [s]
     Real theta = 1;
 
     static ImplicitTimes bind(const Binder& binder, const Real& h, const Real& theta, const LongStepTimes& long_step) {
@@ -100,9 +100,9 @@ struct ImplicitTimes : LongStepTimes {
 };
 
 struct ImplicitLoads {
-    std::span<const Vec3> load;  // N, by node; empty: none
-    Vec3 gravity;                // m/s^2: of bodies that are held; others fall with their frames
-    Real kick;                   // s, for which loads act on all others; on implicit bodies as long as the step is
+    std::span<const Vec3> load;  // by node; empty: no loads [N]
+    Vec3 gravity;                // accelerates held bodies; others fall with their frames [m/s^2]
+    Real kick;  // time for which loads act on other bodies; on implicit bodies they act for the whole step [s]
 
     static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded,
                               const Real& kick) {
@@ -112,7 +112,7 @@ struct ImplicitLoads {
     }
 };
 
-/// How the frames of bodies that nothing holds turn: RigidBodyTable.
+/// Rotation of the frames of free bodies: RigidBodyTable.
 struct ImplicitSpins {
     std::span<const Vec3> moments, angular_momentum, moment_kick, contact_moment, push_spin;
 
@@ -124,14 +124,14 @@ struct ImplicitSpins {
                 .push_spin = binder.read(rigid.push_spin)};
     }
 
-    /// kg m^2/s, in the world, without contacts and with them.
+    /// Angular momentum in the world, without contacts (kicked) and with them (after) [kg m^2/s].
     Vec3 kicked(std::size_t r) const { return angular_momentum[r] + moment_kick[r]; }
     Vec3 after(std::size_t r) const { return angular_momentum[r] + (moment_kick[r] + contact_moment[r]); }
 };
 
 struct ImplicitKicks {
     std::span<Vec3> elastic_force, impulse, velocity_next, contact_impulse;  // ImplicitNodeTable
-    std::span<Vec3> node_velocity_next;                                      // m/s, by node
+    std::span<Vec3> node_velocity_next;                                      // by node [m/s]
 
     static ImplicitKicks bind(const Binder& binder, ImplicitNodeTable& implicit, NodeTable& node) {
         return {.elastic_force = binder.write(implicit.elastic_force),
@@ -142,17 +142,17 @@ struct ImplicitKicks {
     }
 };
 
-/// velocity_next = A^-1 P (M w + theta h (Q^T f - K u)), or by Newton's method where strain is large, the velocity of
-/// the step's displacement, to which kick_rigid_bodies has come first: nodes get what is added to their motion with the
-/// frame. Factors of this step's length are made where they are not there. Of a body that is held velocities are those
-/// in the world, and turned into the frame of its start; its held nodes have theirs already. Parallel over bodies.
-/// Returns false where there is none (skipped).
+/// Computes velocity_next, the velocity of the step's displacement: A^-1 P (M w + theta h (Q^T f - K u)), or by
+/// Newton's method where strain is large. It is added to the velocities of the nodes with their frame, for which
+/// kick_rigid_bodies must have run. Factors of this step's length are computed if they are missing. For a held body
+/// velocities are those in the world, turned into the frame of its start; its held nodes have theirs already. Parallel
+/// over bodies. Returns false if there is no implicit body (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
 
-/// Lists the nodes that contacts touch, and what impulses on them do to each other. Returns false where no contact
-/// touches an implicit body (skipped).
+/// Lists the nodes that contacts touch, and computes their responses to impulses on each other. Returns false if no
+/// contact touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
@@ -164,7 +164,7 @@ struct ImplicitStrains {
     std::span<Vec3> hold_moment, moments_next;
     std::span<Mat3> axes_next, rotation_shaped;
     std::span<std::uint8_t> large_next;
-    std::span<Vec3> force;  // N, by node: of held ones
+    std::span<Vec3> force;  // by node, written for held nodes [N]
 
     static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit, RigidBodyTable& rigid,
                                 NodeTable& node) {
@@ -183,32 +183,32 @@ struct ImplicitStrains {
     }
 };
 
-/// What the step of one body did.
+/// Result of the step of one body.
 struct StrainPart {
-    Real damped = 0;  // J, less what holds by their moments gave
-    // N s, of weight and loads: over the step less over the time for which they act on other bodies
+    Real damped = 0;  // damped energy less the work of the moments of holds [J]
+    // impulse of weight and loads over the step less that over the time for which they act on other bodies [N s]
     Vec3 impulse = Vec3::Zero();
 };
 
 struct StrainFindings {
-    Real damped = 0;  // sums over the bodies
+    Real damped = 0;  // sums over the bodies of StrainPart
     Vec3 impulse = Vec3::Zero();
     NewtonCounts newton;
-    Index unsolved = no_index;  // row of BodyTable: the first whose step of large strain was not found
+    Index unsolved = no_index;  // first row of BodyTable whose step of large strain was not solved
 };
 
-/// The velocities and displacements at the end of the step, and what elasticity does to held nodes and frames, added to
-/// `force`, which then acts for `loads.kick`, and written to `hold_moment`. `parts` is memory, by row of
-/// RigidBodyTable. Parallel over bodies.
+/// Computes velocities and displacements at the end of the step. Adds elastic forces on held nodes to `force`, which
+/// then acts for the time `loads.kick`, and writes elastic moments on held frames to `hold_moment`. `parts` is work
+/// memory, by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// When a short step is taken: bodies in a long step have come so far in it. `left`: m, ImplicitNodeTable.
+/// Commits a short step: advances every body that is in a long step within it. `left`: ImplicitNodeTable [m].
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 
-/// What deforms goes on for `seconds` with the velocity that it has. Writes what ElasticMotion reads.
+/// Moves displacements on for `seconds` at the present velocities. Writes the columns that ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
                            const ImplicitStrains& out);
 

@@ -1,4 +1,4 @@
-// The rows of one implicit body, by node and by place in its factor.
+// Rows of one implicit body, by node and by place in its factor.
 #pragma once
 
 #include <span>
@@ -24,18 +24,18 @@ struct OfBody {
     std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
 };
 
-/// Of the matrix inertia M + within^2 K of a step; `within`: theta h, s.
+/// The number `inertia` of the matrix inertia M + within^2 K of a step; `within`: theta h [s].
 Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
-/// Makes that of a step of small strain the matrix of stiff.respond(). Returns false where there is none.
+/// Makes the matrix of a step of small strain that of stiff.respond(). Returns false if it cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// The impulses of momenta, loads and elasticity, but for `force` (by place), on a body that is free; by place.
-/// `within`: theta times the length of the step, s.
+/// Adds up impulses on a free body, by place: M velocity + within (load - force) [N s]. `force`: elastic forces, by
+/// place [N]; `within`: theta times the length of the step [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
 
-/// Whether strain is large after a step; `displacement`: m, at its end, by node. `angular_momentum`: kg m^2/s, of a
-/// free body, in the frame of its mesh.
+/// True if strain is large after a step. `displacement`: at its end, by node [m]. `angular_momentum`: of a free body,
+/// in the frame of its mesh [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
                     StiffBody& stiff);
 

@@ -28,7 +28,7 @@ SolidMasses::SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::
 }
 
 void SolidMasses::find_arms(BodyShape& shape) const {
-    // integral of rho N_k x: a twentieth of the mass, times the sum of the corners and the corner itself
+    // The integral of rho N_k x is a twentieth of the mass times the sum of all corners plus corner k.
     shape.arm.assign(shape.position.size(), Vec3::Zero());
     for (std::size_t t = 0; t < share_.size(); ++t) {
         Vec3 sum = Vec3::Zero();

@@ -1,5 +1,5 @@
-// How the solid that tetrahedra fill turns, whatever its shape: inertia and angular momentum of velocities that go
-// linearly from node to node (docs/methods/implicit_bodies.md 8).
+// Rotation of the solid that tetrahedra fill, in any shape: inertia and angular momentum of velocities that are linear
+// in each tetrahedron (docs/methods/implicit_bodies.md 8).
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// A shape that the nodes of a body have, by place.
+/// Shape of a body, by place of its nodes.
 struct BodyShape {
-    std::vector<Vec3> position;  // m, from the centre of mass
-    std::vector<Vec3> arm;       // kg m: the angular momentum of velocities v of nodes is sum arm x v
+    std::vector<Vec3> position;  // from the centre of mass [m]
+    std::vector<Vec3> arm;       // the angular momentum of node velocities v is sum arm x v [kg m]
 
-    /// kg m^2, about the centre.
+    /// Inertia about the centre of mass [kg m^2].
     Mat3 inertia() const;
     Vec3 angular_momentum(std::span<const Vec3> velocity) const;
 };
@@ -23,16 +23,16 @@ struct BodyShape {
 class SolidMasses {
 public:
     SolidMasses() = default;
-    /// `mass`: kg, by tetrahedron; `place`: of each node.
+    /// `mass`: by tetrahedron [kg]; `place`: place of each node.
     SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
                 std::span<const Index> place);
 
-    /// From the positions of the shape.
+    /// Computes the arms from the positions of the shape.
     void find_arms(BodyShape& shape) const;
 
 private:
-    std::vector<std::array<Index, 4>> corners_;  // places
-    std::vector<Real> share_;                    // kg, a twentieth of the mass
+    std::vector<std::array<Index, 4>> corners_;  // places of the corners
+    std::vector<Real> share_;                    // a twentieth of the mass of each tetrahedron [kg]
 };
 
 }  // namespace skerry

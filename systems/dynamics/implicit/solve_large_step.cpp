@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// What the step makes least: inertia v M v / 2 - v impulse + U(carried + within v).
+/// Function that the step minimises: inertia v M v / 2 - v impulse + U(carried + within v).
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
@@ -19,7 +19,7 @@ public:
           step_(step),
           spins_(!stiff.is_held() && !step.angular_momentum.isZero(0)) {}
 
-    /// J, `along` directions further. Leaves places of the middle of that step.
+    /// Value at velocity + along direction [J]. Leaves the displacements there in `within`.
     Real at(Real along) {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) {
@@ -30,8 +30,8 @@ public:
         return sum + stiff_.elements().energy(step_.within) + of_spin();
     }
 
-    /// By what is in `within`: force, gradient, and the next direction by the factor there is. Returns the decrement
-    /// squared, J.
+    /// Computes force and gradient at the displacements in `within`, and the next direction with the present factor.
+    /// Returns the squared Newton decrement [J].
     Real turn() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
@@ -45,7 +45,7 @@ public:
         return redirect();
     }
 
-    /// The same where only the factor is another.
+    /// Computes the direction again after a change of the factor alone. Returns the squared Newton decrement [J].
     Real redirect() {
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) step_.direction[k] = -step_.gradient[k];
         stiff_.respond(step_.direction);
@@ -55,7 +55,7 @@ public:
         return decrement;
     }
 
-    /// J, what rounding makes of it.
+    /// Energy that rounding errors are relative to [J].
     Real size() const {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    /// J, of how the shape within the step turns with its angular momentum: what drives nodes out.
+    /// Energy of the spin of the shape within the step at its angular momentum, which drives nodes outwards [J].
     Real of_spin() const {
         if (!spins_) return 0;
         stiff_.find_shape(step_.within, step_.shape);
@@ -78,7 +78,8 @@ private:
 };
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
-    // The decrement, of what it was at first and of all energy; what of it a factor must leave to be used again; steps
+    // Bounds on the decrement relative to the first one (`close`) and on its square relative to all energy
+    // (`rounding`). A factor that leaves more than `still_good` of the decrement is computed again.
     constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
@@ -98,7 +99,7 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         if (!std::isfinite(decrement)) return false;
         if (decrement <= std::max(close * close * first, rounding * size)) return true;
         ++step.counts.steps;
-        constexpr Real enough = 1e-4;  // of the decrease that the slope promises
+        constexpr Real enough = 1e-4;  // fraction of the decrease that the slope predicts
         Real along = 1, next = objective.at(along);
         for (int halved = 0; !(next <= value - enough * along * decrement + rounding * size); ++halved) {
             if (halved == most_halvings) return false;

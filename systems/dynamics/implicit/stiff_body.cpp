@@ -41,7 +41,7 @@ std::vector<Index> inverse_of(std::span<const Index> place) {
     return node;
 }
 
-/// Zeros where nodes share elements, and on the diagonal.
+/// Matrix of zeros with a block for each pair of nodes that share an element, and on the diagonal.
 BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place,
                      std::span<const Index> node) {
     BlockRows rows;
@@ -64,7 +64,7 @@ Mat3& block_at(BlockRows& rows, Index row, Index column) {
     return rows.block[static_cast<std::size_t>(std::lower_bound(first, last, column) - rows.column.begin())];
 }
 
-/// The matrix of the free nodes, and beside it the diagonal of those that are held.
+/// Reduces the matrix to free nodes. Rows of held nodes keep only the inertia on the diagonal.
 void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
     for (std::size_t k = 0; k < matrix.size(); ++k)
         for (auto i = static_cast<std::size_t>(matrix.offset[k]); i < static_cast<std::size_t>(matrix.offset[k + 1]);
@@ -124,7 +124,8 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     BodyShape rest{arm_, {}};
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
-    // a bar of the length l that spins has rho (omega l)^2 / 24 a volume, and in its middle three times that over E
+    // A spinning bar of length l has the energy rho (omega l)^2 / 24 a volume. Its strain is greatest in the middle:
+    // three times that over E.
     Real volume = 0, least = std::numeric_limits<Real>::infinity();
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
@@ -183,11 +184,11 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
     if (!elements_.any_bends()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!looked_at_.empty()) {
-        Real way = 0;  // m^2
+        Real way = 0;  // largest squared distance moved since the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
             way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
         if (way == 0 && angular_momentum == looked_with_) return large_there_;
-        constexpr Real surely = 1 - 1e-9;  // rounding
+        constexpr Real surely = 1 - 1e-9;  // margin for rounding
         if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
     }
     looked_at_.assign(displacement.begin(), displacement.end());
@@ -199,7 +200,8 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    constexpr Real calmer = 0.25, still = 0.1;  // of the shares; of the strain, where energies are mostly rounding
+    constexpr Real calmer = 0.25,
+                   still = 0.1;  // part of the bounds; part of small_strain: energies are mostly rounding below
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
     return elements_.largest_strain(at) <= still * small_strain || !is_off(at, angular_momentum, calmer);
@@ -248,7 +250,7 @@ void StiffBody::stand_in(const Displacements& displacement) {
 }
 
 Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
-    // sum m X x y = 0, by Newton's method: a step turns by little against the frame
+    // Solves sum m X x y = 0 by Newton's method. In one step the body turns little against its frame.
     constexpr int most = 20;
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
@@ -368,12 +370,12 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     if (tangent_) {
         factor_.solve(impulse);
         take_rigid_answer(impulse);
-        take_momenta_of(impulse);  // rounding alone
+        take_momenta_of(impulse);  // removes only rounding errors
         return;
     }
     take_rigid_part(impulse);
     factor_.solve(impulse);
-    // rounding alone, but of stiff bodies, whose rigid response is far above the elastic one
+    // Removes rounding errors. They matter for stiff bodies, whose rigid response is far above the elastic one.
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
     take_rigid_part(impulse);
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] /= mass_[k];
@@ -387,7 +389,7 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // fewer than those of one step, asked for in turns, would all be made again in each
+        // With fewer slots than nodes of one step, all columns would be computed again in each step.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {
@@ -428,14 +430,14 @@ void StiffBody::find_responses() {
         std::ranges::fill(responses_, 0);
         return;
     }
-    // those that are there first, so that new ones take the places of others
+    // Marks the columns that exist as used, so that new ones replace others.
     ++uses_;
     for (const Index node : touched_)
         if (const Index slot = slot_of_[static_cast<std::size_t>(node)]; slot != no_index)
             used_at_[static_cast<std::size_t>(slot)] = uses_;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
-        // both ways from one column: symmetric to the last bit
+        // One column gives both triangles: symmetric to the last bit.
         for (std::size_t j = i; j < count; ++j) {
             const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
             for (std::size_t c = 0; c < 3; ++c)

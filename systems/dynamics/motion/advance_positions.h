@@ -1,4 +1,4 @@
-// The drift; commits the step.
+// The drift: velocities move positions. Commits the step.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace skerry {
 
 struct AdvanceInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: none
-    std::span<const Vec3> velocity_next;                        // m/s
-    std::span<const Vec3> displacement_origin;                  // m
-    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: none moves
+    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: no body rests
+    std::span<const Vec3> velocity_next;                        // [m/s]
+    std::span<const Vec3> displacement_origin;                  // [m]
+    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: no frame moves
 
-    /// `velocity`: with which the nodes go on. `any_asleep`: some body rests.
+    /// `velocity`: column of the velocities with which nodes move on. `any_asleep`: some body rests.
     static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                               const NodeTable& node, const Column<Vec3>& velocity, const bool& any_asleep) {
         return {.block_begin = binder.read(block.begin),
@@ -34,10 +34,10 @@ struct AdvanceInputs {
 };
 
 struct AdvanceOutputs {
-    std::span<Vec3> push_out;  // m/s; empty: no contact pushes
+    std::span<Vec3> push_out;  // empty: no contact pushes [m/s]
     std::span<Vec3> position;
     std::span<Vec3> velocity;
-    std::span<Real> block_displacement_squared;  // m^2
+    std::span<Real> block_displacement_squared;  // [m^2]
 
     /// `pushed`: some contact pushes.
     static AdvanceOutputs bind(const Binder& binder, NodeTable& node, NodeBlockTable& block, const bool& pushed) {
@@ -48,9 +48,9 @@ struct AdvanceOutputs {
     }
 };
 
-/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Nodes at rest are passed over. In
-/// the same pass, while positions are at hand: how far the nodes of each block are from their displacement origins, for
-/// measure_displacement. Parallel over node blocks.
+/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Skips nodes at rest. The same pass
+/// computes how far the nodes of each block are from their displacement origins, for measure_displacement. Parallel
+/// over node blocks.
 void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, const AdvanceOutputs& out);
 
 }  // namespace skerry

@@ -19,7 +19,7 @@ Real damping_of(const DampingInputs& bodies, std::size_t body) {
     return material == no_index ? 0 : bodies.material_damping[static_cast<std::size_t>(material)];
 }
 
-/// A body without pinned nodes keeps its rigid motion.
+/// True if damping keeps the rigid motion of the body: no node is pinned.
 bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
     return bodies.body_pinned_count[body] == 0;
 }
@@ -30,18 +30,18 @@ bool is_damped(const DampingInputs& bodies, std::size_t body) {
            !has_frame && !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
-/// The node that a body's sums refer to: far from the world's origin they would cancel.
+/// Node that the sums of a body are relative to. Far from the world's origin absolute sums would cancel.
 std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
     return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
 }
 
-/// Where a node was, relative to the body's first node, when it had its velocity.
+/// Position of a node at the time of its velocity, relative to the body's first node.
 template <class T>
 T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
 }
 
-// The nodes are gone through one after the other, components side by side: every sum is that of the nodes in order.
+// Sums run over the nodes one after the other, with the components of a node side by side in a register.
 Real4 load(const Vec3& v) {
     return Real4{v[0], v[1], v[2], 0};
 }
@@ -74,8 +74,8 @@ NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::spa
     return sums;
 }
 
-/// Leaves in the entry of the body's first block the sums of the whole body: momentum in the world frame, the moments
-/// of second order and the angular momentum about the centre of mass.
+/// Adds up the sums of a whole body in the entry of its first block: momentum in the world frame, second moments and
+/// angular momentum about the centre of mass.
 void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity,
                  std::span<NodeBlockSums> sums) {
     const Range blocks = bodies.body_node_blocks[body];
@@ -94,17 +94,18 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
     total.momentum += total.mass * velocity[first_node(bodies, body)];
 }
 
-/// Angular velocity omega for which the velocities omega x y, y the earlier places, have the angular momentum of the
-/// body about the places of now: (tr(S) I - S) omega with S = sum m y x^T. Nodes on a line or in a point cannot turn
-/// about it: no rotation there.
+/// Angular velocity omega for which the velocities omega x y, y the earlier positions, have the angular momentum of the
+/// body about the present positions: (tr(S) I - S) omega with S = sum m y x^T. Nodes on a line or in a point cannot
+/// rotate about it; omega has no such part.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
-    constexpr Real well_shaped =
-        1e-6;  // of the cube of the mean moment: then the inverse loses at most ten digits, and most bodies lose none
+    // Part of the cube of the mean moment. Above it the inverse loses at most ten digits; for most bodies it loses
+    // none.
+    constexpr Real well_shaped = 1e-6;
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Real least = 1e-12 * turned.singularValues()[0];  // below it the moment is rounding
+    const Real least = 1e-12 * turned.singularValues()[0];  // smaller moments are rounding errors
     Vec3 omega = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
         if (turned.singularValues()[i] > least)
@@ -113,14 +114,14 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// What the velocities of a block are taken towards, and by which part.
+/// Rigid motion towards which the velocities of a block are damped, and the fraction.
 struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;
 };
 
-/// Adds to velocity_next what takes the velocities of nodes, none of which is held, towards a rigid motion; work[n]:
-/// the kinetic energy that this takes out of a node, J. Several nodes at a time.
+/// Damps velocity_next of nodes, none of which is held, towards a rigid motion. work[n]: kinetic energy removed from a
+/// node [J]. Computes several nodes at a time.
 void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* position, const Vec3* velocity,
                const Real* mass, Vec3* velocity_next, Real* work) {
     const Real *const x = position->data(), *const v = velocity->data();
@@ -138,13 +139,14 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
         next[3 * n] -= fraction * ex;
         next[3 * n + 1] -= fraction * ey;
         next[3 * n + 2] -= fraction * ez;
-        // Half of v^2 before less after. Where places move the excess is not quite at right angles to the rigid motion.
+        // Half of v^2 before less after. Where positions move the deformation velocity is not quite orthogonal to the
+        // rigid motion.
         work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
     }
 }
 
-/// Adds to velocity_next what takes the velocities of a block towards the rigid motion of the body's sums by
-/// `fraction`; returns the kinetic energy that this takes out, J.
+/// Damps velocity_next of a block towards the rigid motion of the body's sums by `fraction`. Returns the kinetic energy
+/// removed [J].
 Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total,
                 std::span<const Vec3> velocity, std::span<Vec3> velocity_next) {
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
@@ -161,7 +163,7 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
                end = static_cast<std::size_t>(bodies.block_end[block]);
     std::array<Real, nodes_per_block> work;
     SKERRY_CHECK(end - begin <= work.size());
-    Real taken = 0;  // J, of the nodes in order
+    Real taken = 0;  // sum over the nodes in order [J]
     for (std::size_t first = begin, last = begin; first < end; first = last + 1) {
         for (last = first; last < end && bodies.inverse_mass[last] > 0;) ++last;
         if (last == first) continue;

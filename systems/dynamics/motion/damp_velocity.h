@@ -21,10 +21,10 @@ struct DampingInputs {
     std::span<const Range> body_rigid;                          // BodyTable
     std::span<const std::uint8_t> body_asleep;                  // BodyTable
     std::span<const std::uint16_t> body_unstrained;             // BodyTable
-    std::span<const Real> material_damping;                     // 1/s
+    std::span<const Real> material_damping;                     // [1/s]
     std::span<const Vec3> position;
     std::span<const Real> mass, inverse_mass;
-    Real lag = 0;  // s, by which velocities are earlier than positions
+    Real lag = 0;  // time by which velocities are earlier than positions [s]
 
     static DampingInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                               const MaterialTable& material, const NodeTable& node, const Real& lag) {
@@ -45,14 +45,14 @@ struct DampingInputs {
     }
 };
 
-/// Takes (1 - exp(-damping kick)) of the deformation velocity v - v_rigid out of velocity_next, with `kick` (s) the
-/// time between both velocities, for every body with damping > 0 that neither rests, flies unstrained nor moves as
-/// rigid bodies do. `velocity` is that at the start of the step, not the predicted one: a body at rest under load must
-/// not feel its damping. v_rigid is the rigid motion, of the places that the nodes had `lag` ago, with the momentum and
-/// the angular momentum of the body; a body with pinned nodes is damped towards rest. With places and velocities of one
-/// time a body that turns at its centrifugal stretch has no deformation velocity, and by taking moments about the
-/// places of now what is taken out has no angular momentum there. `dissipated` (J) is the kinetic energy taken. Returns
-/// false when no body has damping (skipped). Parallel over node blocks; sums in block order.
+/// Removes the part (1 - exp(-damping kick)) of the deformation velocity v - v_rigid from velocity_next. `kick` is the
+/// time between both velocities [s]. Applies to every body with damping > 0 that is not at rest, not in unstrained
+/// flight and not in RigidBodyTable. `velocity` is that at the start of the step, not the predicted one: a body at rest
+/// under load must not feel its damping. v_rigid is the rigid motion, at the positions that nodes had `lag` ago, with
+/// the momentum and angular momentum of the body. A body with pinned nodes is damped towards rest. With positions and
+/// velocities of one time a body that rotates at its centrifugal stretch has no deformation velocity. Moments are taken
+/// about the present positions, where the removed velocity then has no angular momentum. `dissipated`: kinetic energy
+/// removed [J]. Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
 

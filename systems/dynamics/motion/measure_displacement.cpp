@@ -10,11 +10,12 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t displaced_bodies_per_job = 16;  // some microseconds, where origins move
+constexpr std::size_t displaced_bodies_per_job = 16;  // some microseconds if origins move
 
-// Fraction of the mean edge at which the origins move to the nodes. A list of a pair made at drifts a and b holds for
-// skin - 2 (a + b) of travel (contact_reach.h): at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost, and
-// candidates wake as much too early. A body that trembles by less than this adds nothing to its travel in the long run.
+// Fraction of the mean edge at which the origins move to the nodes. The list of a pair made at drifts a and b holds for
+// a travel of skin - 2 (a + b) (contact_reach.h). So at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost,
+// and candidates wake too early by as much. A body that trembles by less than this adds nothing to its travel in the
+// long run.
 constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
@@ -24,7 +25,8 @@ void move_on(MovingFrame& frame, Real seconds) {
     frame.path += way.norm();
 }
 
-/// Any velocity would do; this one leaves little to move in the frame. Zero where it is not finite.
+/// Mean velocity of the nodes; zero if it is not finite. Any velocity is valid for a frame; this one leaves little
+/// motion in it.
 Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     Vec3 sum = Vec3::Zero();
     for (Index n = nodes.begin; n < nodes.end; ++n) sum += velocity[static_cast<std::size_t>(n)];
@@ -32,7 +34,7 @@ Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     return mean.allFinite() ? mean : Vec3(Vec3::Zero());
 }
 
-/// m/s, in a frame of this velocity.
+/// Greatest speed of the nodes in a frame with this velocity [m/s].
 Real greatest_speed(std::span<const Vec3> velocity, Range nodes, const Vec3& frame) {
     Real squared = 0;
     for (Index n = nodes.begin; n < nodes.end; ++n)
@@ -67,7 +69,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // the search of the next step reckons with this frame (step_reach.cpp)
+            // The search of the next step uses this frame (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

@@ -1,4 +1,4 @@
-// How far each body has come, for the budgets of the collision stages.
+// Displacement and travel of each body, for the budgets of the collision stages.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 namespace skerry {
 
 struct DisplacementInputs {
-    std::span<const Real> block_displacement_squared;  // m^2, NodeBlockTable; of the positions now
+    std::span<const Real> block_displacement_squared;  // NodeBlockTable, at the present positions [m^2]
     std::span<const Range> body_node_blocks;           // BodyTable
     std::span<const Index> block_begin, block_end;     // NodeBlockTable
-    std::span<const Real> body_mean_edge;              // m
-    std::span<const Vec3> position;                    // m, now
-    std::span<const Vec3> velocity;                    // m/s, now
+    std::span<const Real> body_mean_edge;              // [m]
+    std::span<const Vec3> position;                    // present positions [m]
+    std::span<const Vec3> velocity;                    // present velocities [m/s]
 
     static DisplacementInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                                    const NodeTable& node) {
@@ -31,7 +31,7 @@ struct DisplacementInputs {
                 .velocity = binder.read(node.velocity)};
     }
 
-    /// In blocks: all, or of a round body some.
+    /// Nodes of a body that are in blocks: all of them, or some of a round body.
     Range nodes(std::size_t body) const {
         const Range blocks = body_node_blocks[body];
         if (blocks.size() == 0) return {0, 0};
@@ -41,8 +41,8 @@ struct DisplacementInputs {
 };
 
 struct DisplacementOutputs {
-    std::span<Vec3> origin;          // m, by node: where it was when its body's displacement was last zero
-    std::span<std::uint8_t> rebase;  // by body, or empty: 1 asks for a displacement of zero; cleared
+    std::span<Vec3> origin;          // by node: position when the displacement of its body was last zero [m]
+    std::span<std::uint8_t> rebase;  // by body, or empty: 1 requests a displacement of zero; then cleared
     std::span<MovingFrame> frame;    // BodyTable
     std::span<Real> frame_speed, displacement, travel;
 
@@ -58,16 +58,17 @@ struct DisplacementOutputs {
     }
 };
 
-/// Greatest squared distance of the nodes of a block from their origins, which have moved on by `offset` (m), m^2.
-/// advance_positions writes it by block.
+/// Greatest squared distance of the nodes of a block from their origins, which have moved by `offset` [m], in m^2.
+/// advance_positions writes it for each block.
 Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset);
 
-/// After positions have moved on by `seconds`: frames move on as long, displacement = greatest distance of a node from
-/// its origin, which goes with the frame; travel grows by the change of displacement, so that a body that only trembles
-/// does not travel, nor one that flies. When the displacement exceeds a small part of the mean edge, or on request, the
-/// origins move to where the nodes are and the frame takes their mean velocity: displacement is zero again, travel
-/// stays; frame_speed (m/s) becomes that of the nodes in the new frame. In its frame no node is ever further from where
-/// it was at an earlier time than travel - (travel then) + 2 (displacement then). Parallel over bodies.
+/// Updates displacement and travel of each body after positions have moved on by `seconds` [s]. Frames move on for the
+/// same time. Displacement is the greatest distance of a node from its origin, which moves with the frame. Travel grows
+/// by the change of displacement, so that a body that only trembles does not travel, nor one that flies. If the
+/// displacement exceeds a small part of the mean edge, or on request, the origins move to the nodes and the frame takes
+/// their mean velocity. Then displacement is zero again, travel stays, and frame_speed becomes the greatest speed of
+/// the nodes in the new frame [m/s]. In its frame no node is ever further from where it was at an earlier time than
+/// travel - (travel then) + 2 (displacement then). Parallel over bodies.
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out);
 

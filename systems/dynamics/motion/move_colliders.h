@@ -10,8 +10,9 @@
 
 namespace skerry {
 
-/// Where a script is at time t. With keys: linear in position, constant angular velocity between keys, held before the
-/// first and after the last. Without keys: initial pose moved by the constant velocities since the start of the script.
+/// Pose of a script at time t. With keys: linear in position, constant angular velocity between keys, constant before
+/// the first and after the last. Without keys: initial pose moved by the constant velocities since the start of the
+/// script.
 struct RigidPose {
     Vec3 position;
     Mat3 rotation;
@@ -22,11 +23,11 @@ RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe
 RigidMotion motion_of_step(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial,
                            Real t, Real h);
 
-/// rad, about a fixed axis, from one key's rotation to another's: by their difference where they are about one axis,
-/// and so by whole turns, too; the shorter way else.
+/// Rotation vector, about a fixed axis, from one key's rotation to another's [rad]. If both are about one axis it is
+/// their difference and may contain whole turns; otherwise it is the shorter way.
 Vec3 turn_between(const Vec3& a, const Vec3& b);
 
-/// rad/s, of the fastest turn of a script.
+/// Greatest angular speed of a script [rad/s].
 Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe);
 
 struct ColliderMotionInputs {
@@ -34,7 +35,7 @@ struct ColliderMotionInputs {
     std::span<const Keyframe> keyframe;
     std::span<const RigidMotion> initial;
 
-    /// `table`: of colliders, or of attachments.
+    /// `table`: ColliderTable or AttachmentTable.
     static ColliderMotionInputs bind(const Binder& binder, const auto& table) {
         return {binder.read(table.script), binder.read(table.keyframe), binder.read(table.initial)};
     }
@@ -47,7 +48,7 @@ struct NodeMotionInputs {
     std::span<const RigidMotion> motion;  // by attachment or collider
     std::span<const Range> nodes;         // by attachment: range in node and anchor
     std::span<const Index> node;          // rows of NodeTable
-    std::span<const Vec3> anchor;         // m, in the moving frame
+    std::span<const Vec3> anchor;         // in the moving frame [m]
 
     static NodeMotionInputs bind(const Binder& binder, const AttachmentTable& attachment) {
         return {.motion = binder.read(attachment.motion),

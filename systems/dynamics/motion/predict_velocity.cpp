@@ -38,7 +38,7 @@ private:
         return *reinterpret_cast<const Real4*>(nodes.patch_force[static_cast<std::size_t>(slot)].lane);
     }
 
-    /// Where elements do nothing.
+    /// Kick of nodes on which elements exert no force.
     void fly(std::size_t begin, std::size_t end) const {
         const Vec3 gained = seconds * nodes.gravity;
         for (std::size_t n = begin; n < end; ++n)
@@ -48,7 +48,8 @@ private:
                 add(n, Vec3::Zero());
     }
 
-    /// visit(node, force of all its slots). In the order of the patches: the same bits whatever the worker count.
+    /// Calls visit(node, force of all its slots). Sums are in the order of the patches: bitwise the same for any number
+    /// of workers.
     void sum_slots(std::size_t begin, std::size_t end, auto&& visit) const {
         const RaggedView<Index>& slots = nodes.slots_of_node;
         const Index* slot = slots.item.data() + slots.offset[begin];
@@ -66,13 +67,13 @@ private:
         for (std::size_t n = begin; n < end; ++n) held |= static_cast<unsigned>(!(inverse_mass[n] > 0));
         return held == 0;
     }
-    /// Of nodes that nothing holds and nothing loads, which are kicked several at a time.
+    /// Kick of nodes that are neither held nor loaded, several at a time.
     void all_free(std::size_t begin, std::size_t end) const {
         std::array<Real, 3 * nodes_per_block + 1> force_on;
         const std::size_t count = end - begin;
         SKERRY_CHECK(3 * count < force_on.size());
         sum_slots(begin, end, [&](std::size_t n, const Real4& sum) {
-            // four numbers at once: the next node writes over the last of them
+            // Writes four numbers at once; the next node overwrites the last of them.
             std::memcpy(force_on.data() + 3 * (n - begin), &sum, sizeof sum);
         });
         const Real *const v = velocity[begin].data(), *const mass = nodes.mass.data() + begin,

@@ -1,4 +1,4 @@
-// The kick of symplectic Euler: sums forces at the nodes and adds what they do to velocities.
+// The kick of symplectic Euler: sums forces at the nodes and changes velocities by them.
 #pragma once
 
 #include <span>
@@ -15,14 +15,14 @@ namespace skerry {
 
 struct KickInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    // of ElementPatches
+    // Columns of ElementPatches:
     RaggedView<Index> slots_of_node;
     std::span<const PaddedVec3> patch_force;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
-    std::span<const Vec3> load = {};                 // N; empty: none
-    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are passed over; empty: none
-    // BodyTable: of such nodes elements have nothing to say; empty: none
+    std::span<const Vec3> load = {};                 // empty: no node has a load [N]
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are skipped; empty: no body rests
+    // BodyTable; elements exert no force on nodes of unstrained bodies; empty: no body is unstrained
     std::span<const std::uint16_t> body_unstrained = {};
 
     /// `loaded`: some node has a load. `any_asleep`: some body rests.
@@ -43,11 +43,11 @@ struct KickInputs {
     }
 };
 
-/// velocity_next = velocity + kick F inverse_mass, `kick` (s) the time for which forces act in this step, with F = sum
-/// of the forces of the patches around the node, in a fixed order, + mass gravity + load. Nodes without
-/// freedom (inverse mass 0) keep their velocity; of them alone F is written to `force`: what holds them is its
-/// opposite. One pass, since F of all nodes, kept and read again, took as long as the kick itself. Nodes of an
-/// unstrained body without loads and held nodes stay alike, bit by bit. Parallel over node blocks.
+/// velocity_next = velocity + kick F inverse_mass. `kick`: time for which forces act in this step [s]. F = sum of the
+/// forces of the patches around the node, in a fixed order, + mass gravity + load. Nodes without degrees of freedom
+/// (inverse mass 0) keep their velocity; for them alone F is written to `force`, and the force that holds them is its
+/// opposite. All is done in one pass: storing F of all nodes and reading it again takes as long as the kick itself.
+/// Nodes of an unstrained body without loads and held nodes keep bitwise equal velocities. Parallel over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

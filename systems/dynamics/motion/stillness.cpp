@@ -13,8 +13,8 @@ namespace {
 
 namespace limits = own_sleep_limits;
 
-/// How many of the looks in a half are due at this part of it. They are not evenly spread: an oscillation that is back
-/// at each of them would look still.
+/// Number of measurements in a half that are due at this part of it. They are not evenly spread: an oscillation that is
+/// back at each of them would seem still.
 int looks_due(Real part) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(part * limits::looks);
@@ -24,11 +24,11 @@ int looks_due(Real part) {
 
 Vec3 mean_of(std::span<const Vec3> points) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& point : points) sum += point - points[0];  // small numbers far from the origin
+    for (const Vec3& point : points) sum += point - points[0];  // keeps numbers small far from the origin
     return points[0] + sum / static_cast<Real>(points.size());
 }
 
-/// One body.
+/// Stillness of one body.
 class Stillness {
 public:
     Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
@@ -62,7 +62,7 @@ public:
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
-            // what has been further away at each look may go on at one speed, on ice or by a motor
+            // A body that is further away at each measurement may move at constant speed, on ice or by a motor.
             const bool goes_on = !comes_back && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
                 still = 0;
@@ -75,9 +75,9 @@ public:
     }
 
 private:
-    /// Whether forces but for damping, which what rests does without, are in balance, in the mean over both halves. The
-    /// mean acceleration of a node, weighted by a triangle, is the difference of its ways in both over the square of a
-    /// half; the sum of the drifts bounds it.
+    /// True if forces are in balance in the mean over both halves, without those of damping, which a body at rest does
+    /// not have. The mean acceleration of a node, weighted by a triangle, is the difference of its ways in both over
+    /// the square of a half; the sum of the drifts bounds it.
     bool is_balanced(Real half) const {
         const bool held = bodies_.pinned_count[body_] > 0;  // damped towards rest, not towards its rigid motion
         const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
@@ -85,8 +85,8 @@ private:
         return acceleration + damping() * damped / half <= limits::imbalance * settings_.gravity;
     }
 
-    /// Whether the shape swings about one that it hardly leaves, and does not creep towards one that is still away: by
-    /// a factor q from half to half, `shape_drift q/(1 - q)` is left.
+    /// True if the shape swings about one that it hardly leaves, and does not creep towards a distant one. With a
+    /// factor q from half to half, `shape_drift q/(1 - q)` of the creep is left.
     bool has_its_shape(bool goes_one_way) const {
         const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
         if (now <= limits::noise * bodies_.mean_edge[body_]) return true;

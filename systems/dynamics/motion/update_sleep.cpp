@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t watched_per_block = 64;  // bodies that move; one that is still takes some microseconds
+constexpr std::size_t watched_per_block = 64;  // for bodies that move; a still body takes some microseconds
 
-/// Joins what touches, and marks as restless what a moving collider touches.
+/// Joins bodies that touch. Marks bodies that touch a moving collider as restless.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
         if (touches.state[c] == ContactState::open) continue;
@@ -33,7 +33,7 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    if (!bodies.held(static_cast<Index>(r))) {  // else what it has is not its own
+    if (!bodies.held(static_cast<Index>(r))) {  // motion of a held body is not its own
         taken.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
         taken.momentum += state.momentum[r];
@@ -41,7 +41,7 @@ void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& stat
     state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
 }
 
-/// What deforms in the frame of a body.
+/// Stops the deformation of an implicit body in its frame.
 void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
     const Range rows = bodies.body_implicit[body];
     const bool held = bodies.held(bodies.rigid(body));
@@ -86,7 +86,7 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time) {
-    // positions wait for this stage
+    // Early exit: the update of positions waits for this stage.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {
@@ -117,7 +117,7 @@ TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const Re
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
     SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
-    // a body that moves is not ready even where no time is asked for
+    // A moving body is not ready even if the sleep time is zero.
     const auto is_ready = [&](std::size_t b) {
         return state.still_time[b] >= settings.time && state.still_time[b] > 0;
     };

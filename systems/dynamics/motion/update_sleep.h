@@ -1,5 +1,5 @@
-// Bodies that have been slow for a while are put to rest, all that touch each other at once; what touches them wakes
-// them (docs/methods/skipping.md 3).
+// Bodies that have been slow for a while are put to rest, together with all that they touch. Bodies that touch them
+// wake them (docs/methods/skipping.md 3).
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@
 namespace skerry {
 
 struct SleepSettings {
-    Real speed = 0;           // m/s: a body is still while no node of it is as fast
-    bool own_limits = false;  // or by own_sleep_limits (stillness.h)
-    Real time = 0.5;          // s: so long a body has to be still, and all that it touches
-    Real gravity = 0;         // m/s^2
+    Real speed = 0;           // a body is still while all of its nodes are slower [m/s]
+    bool own_limits = false;  // uses own_sleep_limits instead of `speed` (stillness.h)
+    Real time = 0.5;          // a body and all that it touches must be still this long [s]
+    Real gravity = 0;         // [m/s^2]
 
     bool on() const { return speed > 0 || (own_limits && gravity > 0); }
 };
@@ -36,9 +36,9 @@ struct SleepSettings {
 struct TouchInputs {
     std::span<const Index> first_body, second_body;
     std::span<const ContactState> state;
-    std::span<const Real> gap;                             // m
-    std::span<const Vec3> surface_velocity;                // m/s
-    std::span<const Index> joint_first{}, joint_second{};  // rows of BodyTable that a joint joins
+    std::span<const Real> gap;                             // [m]
+    std::span<const Vec3> surface_velocity;                // [m/s]
+    std::span<const Index> joint_first{}, joint_second{};  // rows of BodyTable of each joint
 
     static TouchInputs bind(const Binder& binder, const ContactTable& contact, const JointTable& joint) {
         return {.first_body = binder.read(contact.first_body),
@@ -54,7 +54,7 @@ struct TouchInputs {
 /// The contacts of this step, before the solve.
 struct PressInputs {
     std::span<const Index> first_body, second_body;
-    std::span<const Vec3> warm_impulse;    // N s; empty: none is kept
+    std::span<const Vec3> warm_impulse;    // empty: no impulses are kept [N s]
     std::span<const std::uint8_t> asleep;  // by body
 
     static PressInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
@@ -66,13 +66,14 @@ struct PressInputs {
     }
 };
 
-/// Marks bodies at rest that a contact has pressed on: by the impulse that it had when they were put to rest, since
-/// without their weight they may not press now. Where no impulse is kept every contact counts.
+/// Marks both bodies of every contact that has pressed, by its kept impulse. For bodies at rest that is the impulse
+/// from when they were put to rest: without their weight they may not press now. If no impulses are kept every contact
+/// counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes every body that is marked, that a contact of this step presses on, by an impulse or by overlap, that is
-/// joined to one that is awake, or that an attachment leads. Contacts between bodies at rest are not looked for, so
-/// what presses moves. Returns false when none was woken.
+/// Wakes every body that is marked, that a contact of this step presses on by an impulse or by overlap, that is joined
+/// to an awake body, or that an attachment moves. Contacts between bodies at rest are not searched, so the body or
+/// collider that presses is moving. Returns false if none was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time);
@@ -82,23 +83,23 @@ struct RestInputs {
     std::span<const RigidMotion> attached_motion;
     std::span<const BodyKind> kind;
     std::span<const Range> nodes;
-    std::span<const Real> mean_edge;  // m
-    std::span<const Real> max_speed;  // m/s, of this step
+    std::span<const Real> mean_edge;  // [m]
+    std::span<const Real> max_speed;  // of this step [m/s]
     std::span<const Index> material;  // row of MaterialTable or no_index
     std::span<const Index> pinned_count;
-    std::span<const Real> material_damping;  // 1/s
-    std::span<const Vec3> position;          // m, by node, at the end of the step
-    std::span<const Vec3> rest_position;     // m, by node
-    std::span<const Real> mass;              // kg, by node
-    std::span<const Real> inverse_mass;      // 1/kg, by node
-    // BodyTable, RigidBodyTable
-    std::span<const Range> body_rigid = {};     // empty: none is
-    std::span<const Range> body_implicit = {};  // of ImplicitNodeTable
+    std::span<const Real> material_damping;  // [1/s]
+    std::span<const Vec3> position;          // by node, at the end of the step [m]
+    std::span<const Vec3> rest_position;     // by node [m]
+    std::span<const Real> mass;              // by node [kg]
+    std::span<const Real> inverse_mass;      // by node [1/kg]
+    // Columns of BodyTable and RigidBodyTable:
+    std::span<const Range> body_rigid = {};     // empty: no body is rigid
+    std::span<const Range> body_implicit = {};  // rows of ImplicitNodeTable
     std::span<const Index> rigid_body = {};
     std::span<const Real> rigid_mass = {};
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
-    std::span<const Index> rigid_holder = {};  // empty: none is held
+    std::span<const Index> rigid_holder = {};  // empty: no body is held
     std::span<const Index> body_core_nodes = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
@@ -126,7 +127,7 @@ struct RestInputs {
                 .body_core_nodes = binder.read(body.core_nodes)};
     }
 
-    /// Those that tell whether the body moves: nodes that only draw a round one may be behind.
+    /// Nodes that show whether the body moves. Nodes that only draw a round body may lag behind.
     Range telling_nodes(std::size_t b) const {
         return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
@@ -134,7 +135,7 @@ struct RestInputs {
     Index rigid(std::size_t b) const {
         return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;
     }
-    /// Whether an attachment leads what has this row of RigidBodyTable.
+    /// True if an attachment holds the body with this row of RigidBodyTable.
     bool held(Index rigid) const {
         return !rigid_holder.empty() && rigid_holder[static_cast<std::size_t>(rigid)] != no_index;
     }
@@ -142,13 +143,13 @@ struct RestInputs {
 
 struct RestOutputs {
     std::span<std::uint8_t> asleep;                        // by body
-    std::span<Real> still_time;                            // s, by body
-    std::span<Real> drift, drift_before;                   // m, by body
-    std::span<Real> shape_drift, creep_before;             // m, by body
-    std::span<Vec3> still_position;                        // m, by node
-    std::span<Vec3> velocity, velocity_next;               // m/s, by node
-    std::span<Vec3> momentum = {}, angular_momentum = {};  // of rigid bodies
-    std::span<Vec3> deforming = {};                        // m/s, of implicit bodies
+    std::span<Real> still_time;                            // by body [s]
+    std::span<Real> drift, drift_before;                   // by body [m]
+    std::span<Real> shape_drift, creep_before;             // by body [m]
+    std::span<Vec3> still_position;                        // by node [m]
+    std::span<Vec3> velocity, velocity_next;               // by node [m/s]
+    std::span<Vec3> momentum = {}, angular_momentum = {};  // RigidBodyTable
+    std::span<Vec3> deforming = {};                        // ImplicitNodeTable [m/s]
 
     static RestOutputs bind(const Binder& binder, BodyTable& body, NodeTable& node, RigidBodyTable& rigid,
                             ImplicitNodeTable& implicit) {
@@ -167,22 +168,21 @@ struct RestOutputs {
     }
 };
 
-/// What rest took from the bodies that were put to it in this step.
+/// Energy and momentum that were removed from the bodies put to rest in this step.
 struct TakenByRest {
-    Real energy = 0;               // J, kinetic
-    Vec3 momentum = Vec3::Zero();  // kg m/s
+    Real energy = 0;               // kinetic energy [J]
+    Vec3 momentum = Vec3::Zero();  // [kg m/s]
     Index bodies = 0;
 };
 
 struct SleepMemory {
-    UnionFind touching;             // bodies
+    UnionFind touching;             // groups of touching bodies
     Column<std::uint8_t> restless;  // by body
 };
 
-/// Counts for how long each body has been still, and puts those to rest that are still with all that they touch,
-/// directly or through others: their velocities become zero. What touches a collider, or is held by an attachment, that
-/// moves stays awake.
-/// Parallel over bodies; sequential over contacts when a body is ready.
+/// Counts the time for which each body has been still. Puts bodies to rest that are still with all that they touch,
+/// directly or through others: their velocities become zero. A body that touches a moving collider, or is held by a
+/// moving attachment, stays awake. Parallel over bodies; sequential over contacts when a body is ready.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 

@@ -1,4 +1,4 @@
-// Rigid bodies that an attachment holds as a whole: they move as it says (docs/methods/rigid_bodies.md 5).
+// Rigid bodies that an attachment holds as a whole: they follow its motion (docs/methods/rigid_bodies.md 5).
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct RigidHolds {
     std::span<const Index> holder;        // RigidBodyTable
     std::span<const Vec3> held_position;  // RigidBodyTable
     std::span<const Mat3> held_rotation;  // RigidBodyTable
-    std::span<const RigidMotion> motion;  // AttachmentTable, of this step
+    std::span<const RigidMotion> motion;  // AttachmentTable, motion of this step
 
     static RigidHolds bind(const Binder& binder, const RigidBodyTable& rigid, const AttachmentTable& attachment) {
         return {.holder = binder.read(rigid.holder),
@@ -29,7 +29,7 @@ struct RigidHolds {
     const RigidMotion& motion_of(std::size_t r) const { return motion[static_cast<std::size_t>(holder[r])]; }
 };
 
-/// Where a held body is at the end of the step, as its nodes are (drive_nodes).
+/// Pose of a held body at the end of the step, the same as that of its nodes (drive_nodes).
 struct HeldPose {
     Vec3 center;
     Mat3 rotation;  // principal frame to world

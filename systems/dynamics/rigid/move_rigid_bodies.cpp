@@ -9,14 +9,14 @@ namespace skerry {
 
 namespace {
 
-/// Velocities of the points of a rigid body.
+/// Velocity field of a rigid body.
 struct RigidField {
-    Vec3 center, velocity, spin;  // m, m/s, rad/s
+    Vec3 center, velocity, spin;  // [m], [m/s], [rad/s]
 
     Vec3 at(const Vec3& position) const { return velocity + spin.cross(position - center); }
 };
 
-/// Where the nodes of a rigid body are.
+/// Positions of the nodes of a rigid body.
 struct RigidPlace {
     Vec3 center, rest_center;
     Mat3 from_mesh;
@@ -36,11 +36,11 @@ void for_each_body(Executor& executor, const RigidBodies& bodies, auto&& visit) 
     });
 }
 
-/// Node `n` of a body in the frame of its mesh, deformed where it moves implicitly.
+/// Shape of a body at the end of the step in the frame of its mesh: deformed for an implicit body, else at rest.
 struct ShapeNext {
     const RigidBodies& bodies;
     const ElasticMotion& elastic;
-    Index first_row;  // of ImplicitNodeTable; no_index: it is rigid
+    Index first_row;  // of ImplicitNodeTable; no_index: the body is rigid
     std::size_t first_node;
 
     ShapeNext(const RigidBodies& of, const ElasticMotion& motion, std::size_t r)
@@ -169,7 +169,7 @@ bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const Rigi
             const Vec3 deforming = place.from_mesh * elastic.velocity[row];
             if (!led)
                 out.velocity[n] = field.at(out.position[n]) + deforming;
-            else if (bodies.inverse_mass[n] > 0)  // else what leads it has given it its velocity
+            else if (bodies.inverse_mass[n] > 0)  // held nodes already have their prescribed velocity
                 out.velocity[n] = deforming;
         });
     });

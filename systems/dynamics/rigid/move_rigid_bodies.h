@@ -1,5 +1,5 @@
-// The three stages of a step of rigid bodies: kicked by forces, turned once contacts are solved, and moved when the
-// step is taken (docs/methods/rigid_bodies.md 2).
+// The three stages of a step of rigid bodies: kick by forces, turn after contacts are solved, and move when the step is
+// committed (docs/methods/rigid_bodies.md 2).
 #pragma once
 
 #include <algorithm>
@@ -17,23 +17,23 @@
 
 namespace skerry {
 
-/// What rigid bodies are, and where they are at the start of the step. Those that move implicitly are among them: what
-/// moves as a rigid body does is the frame of their mesh, and their centre of mass.
+/// Properties of rigid bodies, and their state at the start of the step. Implicit bodies are among them: the frame of
+/// their mesh and their centre of mass move like a rigid body.
 struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies are looked at, too
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: none is
+    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies are used
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: no body is asleep
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
     std::span<const Mat3> axes, rotation;
     std::span<const Vec3> momentum, angular_momentum;
-    std::span<const Vec3> rest_position;  // m, by node
-    std::span<const Real> inverse_mass;   // 1/kg, by node
-    std::span<const Index> holder;        // AttachmentTable, or no_index
+    std::span<const Vec3> rest_position;  // by node [m]
+    std::span<const Real> inverse_mass;   // by node [1/kg]
+    std::span<const Index> holder;        // row of AttachmentTable, or no_index
 
-    /// `loaded`: some node has a load, so that what loads do is asked of every node.
+    /// `loaded`: some node has a load; then all nodes are used, also those that only draw round bodies.
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
                             const NodeTable& node, const bool& any_asleep, const bool& loaded) {
         return {.body = binder.read(rigid.body),
@@ -59,24 +59,24 @@ struct RigidBodies {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
-    /// Those whose velocities are asked for before the step is taken.
+    /// Nodes whose velocities are needed before the step is committed.
     Range step_nodes(std::size_t r) const {
         return body_core_nodes.empty() ? nodes(r)
                                        : step_nodes_of(nodes(r), body_core_nodes[static_cast<std::size_t>(body[r])]);
     }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
-    /// Whether it is a frame that an attachment leads, in which nodes have momenta of their own.
+    /// True for the frame of an implicit body that an attachment holds. Nodes have momenta of their own in it.
     bool is_led_frame(std::size_t r) const { return holder[r] != no_index && implicit(r).size() > 0; }
 };
 
-/// How implicit bodies are deformed at the end of the step, in the frames of their meshes: by row of ImplicitNodeTable.
+/// Deformation of implicit bodies at the end of the step, in the frames of their meshes, by row of ImplicitNodeTable.
 struct ElasticMotion {
-    std::span<const Vec3> displacement, velocity;  // m, m/s
-    // RigidBodyTable, asked of what deforms alone:
+    std::span<const Vec3> displacement, velocity;  // [m], [m/s]
+    // RigidBodyTable, used only for bodies that deform:
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // before it is turned
+    std::span<const Mat3> axes, rotation;  // before the turn of this step
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
@@ -89,9 +89,9 @@ struct ElasticMotion {
 };
 
 struct RigidForces {
-    Vec3 gravity;                    // m/s^2
-    std::span<const Vec3> load;      // N, by node; empty: none
-    std::span<const Vec3> position;  // m, by node
+    Vec3 gravity;                    // [m/s^2]
+    std::span<const Vec3> load;      // by node; empty: no loads [N]
+    std::span<const Vec3> position;  // by node [m]
 
     /// `loaded`: some node has a load.
     static RigidForces bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded) {
@@ -105,7 +105,7 @@ struct RigidKicks {
     std::span<Vec3> kick, moment_kick;
     std::span<Mat3> inverse_inertia;
     std::span<Vec3> contact_impulse, contact_moment, push_velocity, push_spin;  // set to zero
-    std::span<Vec3> velocity_next;                                              // m/s, by node
+    std::span<Vec3> velocity_next;                                              // by node [m/s]
 
     static RigidKicks bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
         return {.kick = binder.write(rigid.kick),
@@ -119,14 +119,14 @@ struct RigidKicks {
     }
 };
 
-/// The impulse and moment of gravity and loads, which act for `kick`, on frames of implicit bodies for the step, and
-/// the velocities with them, as contacts see them. Those at rest get none, those that are held what takes them along:
-/// their nodes have their velocities already. Frames that are held have neither momentum nor freedom. Parallel over
-/// bodies. Returns false where there is none (skipped).
+/// Computes impulse and moment of gravity and loads, and the velocities with them, which contacts see. Gravity and
+/// loads act for `kick`, on frames of implicit bodies for the whole step. Bodies at rest get none. Held bodies get the
+/// impulse that moves them along; their nodes already have their velocities. Held frames have neither momentum nor
+/// degrees of freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 
-/// What acted on rigid bodies in this step.
+/// Impulses and pushes on rigid bodies in this step.
 struct RigidImpulses {
     std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment, push_velocity, push_spin;
 
@@ -143,7 +143,7 @@ struct RigidImpulses {
 struct RigidTurns {
     std::span<Vec3> center_next;
     std::span<Mat3> rotation_next;
-    std::span<Vec3> velocity_next;  // m/s, by node: of the straight way to where it will be, push-out included
+    std::span<Vec3> velocity_next;  // by node: straight motion to the end position, push-out included [m/s]
 
     static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
         return {.center_next = binder.write(rigid.center_next),
@@ -152,7 +152,8 @@ struct RigidTurns {
     }
 };
 
-/// Where the bodies are at the end of the step. Parallel over bodies. Returns false where there is none (skipped).
+/// Computes the poses of the bodies at the end of the step. Parallel over bodies. Returns false if there is no rigid
+/// body (skipped).
 bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidImpulses& impulses, const ElasticMotion& elastic, std::span<const Vec3> position,
                        Real h, const RigidTurns& out);
@@ -179,14 +180,14 @@ struct RigidMoves {
     }
 };
 
-/// Commits: the bodies that do not rest, and their nodes, are where they were turned to (`center_next`,
-/// `rotation_next`), and go on with the momenta that the step gave them; `draws_late`: of round bodies only step_nodes,
-/// the others wait for draw_round_bodies. Parallel over bodies. Returns false where there is none (skipped).
+/// Commits the step: bodies that are not at rest, and their nodes, take the poses `center_next` and `rotation_next` and
+/// the momenta of the end of the step. With `draws_late` only step_nodes() of round bodies move; the others wait for
+/// draw_round_bodies. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Puts the nodes that only draw round bodies where they would be by now, also of those at rest where `resting`.
+/// Moves the nodes that only draw round bodies to their present positions; with `resting` also those of bodies at rest.
 /// Parallel over bodies.
 void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
                        std::span<Vec3> velocity);

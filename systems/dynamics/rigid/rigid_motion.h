@@ -6,30 +6,31 @@
 
 namespace skerry {
 
-/// Angular velocity, rad/s, world. `rotation`: principal frame to world; `moments`: kg m^2.
+/// Angular velocity in the world [rad/s]. `rotation`: principal frame to world; `moments`: principal moments [kg m^2].
 inline Vec3 spin_of(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum) {
     const Vec3 own = rotation.transpose() * angular_momentum;
     return rotation * own.cwiseQuotient(moments);
 }
 
-/// 1/(kg m^2), world.
+/// Inverse inertia in the world [1/(kg m^2)].
 inline Mat3 inverse_inertia_of(const Mat3& rotation, const Vec3& moments) {
     return rotation * moments.cwiseInverse().asDiagonal() * rotation.transpose();
 }
 
-/// Of a body whose inertia about its centre is this, kg m^2.
+/// Principal moments and axes of a body with this inertia about its centre [kg m^2].
 struct PrincipalInertia {
-    Vec3 moments;  // kg m^2
-    Mat3 axes;     // principal frame to that of the inertia
+    Vec3 moments;  // [kg m^2]
+    Mat3 axes;     // principal frame to the frame of the inertia
 
     explicit PrincipalInertia(const Mat3& inertia);
 };
 
-/// The rotation (principal frame to world) at the end of a step: turned freely, and by what contacts push (rad/s).
+/// Rotation (principal frame to world) at the end of a step, after free rotation and the push of contacts, `push_spin`
+/// [rad/s].
 Mat3 turn_of_step(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, const Vec3& push_spin,
                   Real h);
 
-/// The nearest rotation to one that rounding has changed a little.
+/// Nearest rotation to one that has a small error of rounding.
 Mat3 without_strain(const Mat3& rotation);
 
 }  // namespace skerry

@@ -1,6 +1,6 @@
-// The eigenvalues of M^-1/2 K M^-1/2 that are not zero are those of the 9x9 matrix  A(Y) = V H(Y L^T) L  with L L^T = Q
-// and Y a 3x3 matrix. H, or something above it, is a sum of few terms that become blocks of A in closed form, and
-// lambda_max(A) <= (tr A^16)^(1/16). Whether it is below some c is told sooner: then c - A is positive definite.
+// The eigenvalues of M^-1/2 K M^-1/2 that are not zero are those of the 9x9 matrix A(Y) = V H(Y L^T) L with L L^T = Q
+// and Y a 3x3 matrix. H, or an upper bound on it, is a sum of few terms that become blocks of A in closed form, and
+// lambda_max(A) <= (tr A^16)^(1/16). It is cheaper to test for some c: lambda_max(A) < c if c - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -12,14 +12,13 @@ namespace skerry {
 
 namespace {
 
-/// A symmetric 9x9 matrix, of which entries above the diagonal are left out; row 3 p + i is component i of column p of
-/// Y.
+/// Symmetric 9x9 matrix without its entries above the diagonal. Row 3 p + i is component i of column p of Y.
 template <class T>
 struct Matrix9 {
     T a[9][9];
 };
 
-/// Part `part` of the lanes, as many as a register has: 9x9 matrices of more would go through memory twice.
+/// Part `part` of the lanes, as many as a register holds. 9x9 matrices of more lanes would go through memory twice.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
     store(x, all);
@@ -36,8 +35,8 @@ LaneSymmetric<KernelReal> lanes_in(const LaneSymmetric<Real8>& s, std::size_t pa
             lanes_in(s.xy, part), lanes_in(s.yz, part), lanes_in(s.zx, part)};
 }
 
-/// The lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive one, which only
-/// enlarges Q.
+/// Lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive one, which only enlarges
+/// Q.
 template <class T>
 LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
     const T least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
@@ -113,7 +112,7 @@ private:
 };
 
 /// H of the viscous parts, whose stress is F S: X -> F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and
-/// S are replaced by bounds of their eigenvalues, the first by the mean of F^T F and twice its spread.
+/// S are replaced by bounds of their eigenvalues; that of F F^T is the mean of F^T F plus twice its spread.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -130,8 +129,8 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// A = D A D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, s = R L as a vector of nine: what A is in units of a mass that
-/// has b (R:X)^2 beside |Y|^2. (R:X = R L : Y with X = Y L^T.)
+/// A = D A D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, s = R L as a vector of nine. The result is A in units of a mass
+/// with b (R:X)^2 in addition to |Y|^2. (R:X = R L : Y with X = Y L^T.)
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
@@ -150,8 +149,8 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// In each lane of this part, whether the eigenvalues of volume A are below `limit`: whether limit - volume A has a
-/// Cholesky decomposition L D L^T with D > 0, by more than rounding. Where no lane does it ends early.
+/// For each lane of this part: true if the eigenvalues of volume A are below `limit`. That is so if limit - volume A
+/// has a Cholesky decomposition L D L^T with D > 0, by more than rounding. Ends early if no lane is below.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
@@ -177,7 +176,7 @@ auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     return below;
 }
 
-/// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows. Writes what is above the diagonal.
+/// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows. Fills the entries above the diagonal.
 template <class T>
 T largest_eigenvalue_bound(Matrix9<T>& A) {
     for (int r = 0; r < 9; ++r)
@@ -216,8 +215,8 @@ LaneMat3<KernelReal> everywhere(const Mat3& m) {
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
-/// The largest eigenvalues of volume A, which lie between `low` and `high`, from above; low where they are below it.
-/// Every lane by itself: the width of a part changes no bit.
+/// Upper bounds on the largest eigenvalues of volume A, by bisection between `low` and `high`; close to `low` for
+/// eigenvalues below it. Every lane is bisected by itself: the width of a part changes no bit.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
         for (int i = 0; i < halvings; ++i) {
@@ -229,8 +228,8 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// The largest eigenvalues of volume A where some are above `enough`, probably not by much: at most 0.3 % too large, of
-/// those that are not above.
+/// Upper bounds on the largest eigenvalues of volume A, where some are above `enough`, probably not by much. The
+/// greatest of the bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -254,7 +253,8 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
-/// Of enough, 1.1 enough, 1.21 enough..., the least that an eigenvalue of volume A is below, lane by lane.
+/// For each lane the least of enough, 1.1 enough, 1.21 enough... that all eigenvalues of volume A are below; infinity
+/// if none is.
 BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     constexpr Real growth = 1.1;
     constexpr int steps = 25;
@@ -291,7 +291,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             if (frame) count_in(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
         }
     });
-    // all lanes of the block together, so that a part more or less changes no bit
+    // All lanes of the block are tested together, so that the number of parts changes no bit.
     bool below = enough > 0;
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
         below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + enough));

@@ -1,4 +1,4 @@
-// A rigorous bound on the highest frequency of one tetrahedron in its present shape, element_lanes side by side
+// Rigorous bound on the highest frequency of one element in its present shape, element_lanes elements side by side
 // (docs/methods/stable_step.md 3, 4).
 #pragma once
 
@@ -9,29 +9,28 @@
 
 namespace skerry {
 
-/// What stiffens an element beside its law; moduli of zero: nothing.
+/// Viscous stiffness of an element in addition to its law; moduli of zero: none.
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // of the moduli that count
+    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // parts of the moduli that count
 };
 
-/// What an element has of the mass by b (R:X)^2 of the gradient X of displacements, beside that of Q (frame_masses.h).
+/// Mass b (R:X)^2 of an element, with the gradient X of displacements, in addition to that of Q (frame_masses.h).
 struct FramePart {
     Mat3 rotation = Mat3::Identity();
-    Real8 b{};  // kg m^2
+    Real8 b{};  // [kg m^2]
 };
 
-/// lambda_max(M^-1/2 K M^-1/2) of each element from above, 1/s^2. K = V G^T H G with
-/// the rest gradients G and H = dP/dF at F, M the corners' shares of mass; `Q` = sum over the corners of g_a g_a^T /
-/// m_a; with `frame` they have that mass, too. `q` starts the frame of an element whose law has one and is left at the
-/// frame found. Lanes without volume get 0. Where all eight are below `enough` (1/s^2) they get that, in a tenth of the
-/// time.
+/// Upper bound on lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]. K = V G^T H G with the rest gradients G and H =
+/// dP/dF at F; M are the corners' shares of mass; `Q` = sum over the corners of g_a g_a^T / m_a. With `frame` elements
+/// have that mass, too. `q` is the start of the frame of an element whose law has one, and is left at the frame found.
+/// Lanes without volume get 0. If all eight lanes are below `enough` [1/s^2] they get `enough`, in a tenth of the time.
 enum class Sharpness {
     trace,     // at most 15 % too large
-    bisected,  // at most 0.3 %, in twice the time
-    compared,  // infinity where not all eight are below `enough`
-    stepped    // at most a tenth, in steps of a tenth from `enough` on; infinity beyond ten times that
+    bisected,  // at most 0.3 % too large, in twice the time
+    compared,  // infinity unless all eight lanes are below `enough`
+    stepped    // at most 10 % too large, in steps of 10 % from `enough` on; infinity beyond ten times `enough`
 };
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,

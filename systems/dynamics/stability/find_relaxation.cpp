@@ -24,14 +24,14 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
     const Vec3 squares = Eigen::SelfAdjointEigenSolver<Mat3>(moment / total, Eigen::EigenvaluesOnly).eigenvalues();
     // A box of length L has the radius of gyration L / sqrt(12).
     const Real length = std::sqrt(12 * squares[2]), thickness = std::sqrt(12 * std::max(squares[0], Real{0}));
-    // 22.4 / L^2 sqrt(E I / (rho A)) of a free beam; 3 c / L is about the slowest of a ball or a cube
+    // Lowest frequencies: 22.4 / L^2 sqrt(E I / (rho A)) of a free beam; 3 c / L, about, of a ball or a cube.
     constexpr Real of_beam = 22.4 / 3.4641016151377544, of_ball = 3;
     return std::min(of_beam * thickness / length, of_ball) * speed / length;
 }
 
 namespace {
 
-/// m, the edge of a cube as large as an element is on average.
+/// Edge of a cube with the mean volume of the elements [m].
 Real mean_size(std::span<const ElementLane> volume) {
     Real sum = 0, count = 0;
     for (const ElementLane& lanes : volume)
@@ -42,21 +42,21 @@ Real mean_size(std::span<const ElementLane> volume) {
     return count > 0 ? std::cbrt(sum / count) : 0;
 }
 
-/// m, mean place of the nodes of an element.
+/// Mean position of the nodes of an element [m].
 Vec3 middle_of(const BlockNodes& nodes, std::size_t lane, std::span<const Vec3> position) {
     const Index anchor = nodes.node[0][lane];
     Vec3 sum = position[static_cast<std::size_t>(anchor)];
     Real count = 1;
     for (Index k = 1; k < nodes.count; ++k) {
-        if (nodes.node[k][lane] == anchor) continue;  // a row that the element does not have
+        if (nodes.node[k][lane] == anchor) continue;  // padding: the element has fewer nodes
         sum += position[static_cast<std::size_t>(nodes.node[k][lane])];
         ++count;
     }
     return sum / count;
 }
 
-/// A number from 0 to 1 for every place. Multiples of these three, less whole numbers, fill an interval evenly, along a
-/// row of elements as well as in a cloud of them (the roots of x^4 = x + 1, Roberts 2018).
+/// Number from 0 to 1 for every place. The fractional parts of multiples of these three fill an interval evenly, along
+/// a row of elements as well as in a cloud of them (the roots of x^4 = x + 1, Roberts 2018).
 Real share_of_place(const Vec3& place) {
     const Real sum = 0.8191725133961645 * place.x() + 0.6710436067037893 * place.y() + 0.5497004779019703 * place.z();
     return sum + 0.38196601125 - std::floor(sum + 0.38196601125);

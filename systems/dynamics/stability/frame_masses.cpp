@@ -1,6 +1,6 @@
-// H = 2 mu 1 + lambda 1 1^T is above the law at rest, where turns count for nothing, and the highest modes of a mesh
-// turn little: its highest frequency is within some per cent that of the body. Masses in proportion to it, 1/c of the
-// stiffness, come to those of the nodes if c is above the highest eigenvalue of the whole.
+// H = 2 mu 1 + lambda 1 1^T is an upper bound on the law at rest, where rotations have no stiffness. The highest modes
+// of a mesh rotate little: its highest frequency is within some per cent that of the body. Masses in proportion to this
+// stiffness, 1/c of it, add up to no more than those of the nodes if c is above the highest eigenvalue of the whole.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace skerry {
 
 namespace {
 
-constexpr Real longer_in_frame = 2;  // steps, than what elements bound one by one
+constexpr Real longer_in_frame = 2;  // ratio of the step to that by bounds of single elements
 
 // Plain sums: the bits do not depend on how a library vectorises them.
 Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The stiffness of a body at rest as it is counted here, M^-1/2 K M^-1/2, in coordinates 3 n + i of its nodes n.
+/// Stiffness M^-1/2 K M^-1/2 of a body at rest with H = 2 mu 1 + lambda 1 1^T, in coordinates 3 n + i of its nodes n.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -49,13 +49,13 @@ public:
         }
     }
 
-    /// Products that a decomposition takes.
+    /// Multiplications of a decomposition.
     Real products() const {
         const auto size = static_cast<Real>(3 * nodes_), width = static_cast<Real>(3 * width_);
         return size * width * width / 2;
     }
 
-    /// The highest eigenvalue from below, by the method of Lanczos (1950), 1/s^2.
+    /// Lower bound on the highest eigenvalue, by the method of Lanczos (1950) [1/s^2].
     Real highest() const {
         constexpr int most_products = 40;
         SplitMix noise(1);
@@ -90,13 +90,13 @@ public:
         return highest_of(diagonal, beside);
     }
 
-    /// Whether all eigenvalues are below a limit.
+    /// True if all eigenvalues are below a limit.
     bool is_below(Real limit, BandDecomposition& decomposition) const {
         const auto add_rows = [&](std::size_t node, Real* rows, std::size_t stride) { add(node, rows, stride); };
         return decomposition.is_below({3 * nodes_, 3 * width_, 3, add_rows}, limit);
     }
 
-    /// q and b of all elements, for this bound.
+    /// Computes q and b of all elements for this bound.
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
@@ -110,7 +110,7 @@ public:
     }
 
 private:
-    /// Of a block, by element: of those that take mass; Pa m^3.
+    /// Volume [m^3] and moduli times volume [Pa m^3] of the elements of a block; 0 for elements that take no mass.
     struct Weights {
         ElementLane volume, shear, volumetric;
     };
@@ -118,7 +118,7 @@ private:
         const BlockNodes& nodes;
         std::size_t lane;
         Index count, first_node;
-        Real shear, volumetric;  // Pa m^3, of the volume
+        Real shear, volumetric;  // moduli times volume [Pa m^3]
         std::size_t node(Index k) const { return static_cast<std::size_t>(nodes.node[k][lane] - first_node); }
         Vec3 gradient(Index k) const {
             const ElementGradient& g = nodes.gradient[k];
@@ -158,7 +158,7 @@ private:
         const Weights& of_block = weights_[block - static_cast<std::size_t>(blocks_.begin)];
         return {nodes, lane, nodes.count, first_node_, of_block.shear[lane], of_block.volumetric[lane]};
     }
-    /// Of those that take mass: visit(element, block).
+    /// Calls visit(element, block) for the elements that take mass.
     void for_each_element(auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -179,7 +179,7 @@ private:
         }
     }
 
-    /// Places of the nodes along the body, and how far apart those of one element are.
+    /// Finds the places of the nodes along the body, and the bandwidth: how far apart nodes of one element are.
     void number(std::span<const Vec3> position) {
         std::vector<char> seen(position.size(), 0);
         std::vector<Index> nodes;
@@ -207,14 +207,14 @@ private:
         });
     }
 
-    /// Of the elements that take mass, one after the other: what a product needs of them.
+    /// Data of the elements that take mass for products with a vector, one element after the other.
     struct Factors {
         struct Element {
             Real shear, volumetric;
-            std::size_t end;  // of its corners
+            std::size_t end;  // end of its corners
         };
         struct Corner {
-            Real4 gradient;  // by the root of the inverse mass of its node; then a zero
+            Real4 gradient;  // times the root of the inverse mass of its node; then a zero
             std::size_t node;
         };
         std::vector<Element> element;
@@ -239,7 +239,7 @@ private:
         for (const Factors::Element& e : factors.element) {
             const std::span<const Factors::Corner> corners = std::span(factors.corner).subspan(first, e.end - first);
             first = e.end;
-            std::array<Real4, 3> slope{};  // of vector, by direction
+            std::array<Real4, 3> slope{};  // gradient of vector, by direction
             for (const Factors::Corner& corner : corners)
                 for (int i = 0; i < 3; ++i)
                     slope[static_cast<std::size_t>(i)] += corner.gradient[i] * vector[corner.node];
@@ -251,8 +251,8 @@ private:
         }
     }
 
-    /// The highest eigenvalue of a symmetric matrix with these numbers on its diagonal and beside it: of how many
-    /// negative pivots the rest to it has none (Sturm).
+    /// Highest eigenvalue of a symmetric matrix with these numbers on its diagonal and beside it. A number is above it
+    /// if the matrix, subtracted from it, has no negative pivot (Sturm).
     static Real highest_of(const std::vector<Real>& diagonal, const std::vector<Real>& beside) {
         const auto is_above = [&](Real x) {
             Real pivot = x - diagonal[0];
@@ -274,7 +274,7 @@ private:
     Range blocks_;
     RestModuli moduli_;
     Index first_node_ = 0;
-    std::vector<Real> root_;  // 1/sqrt(kg), by node from the first: of the inverse mass
+    std::vector<Real> root_;  // root of the inverse mass, by node from the first [1/sqrt(kg)]
     std::vector<std::size_t> place_;
     std::size_t nodes_ = 0, width_ = 0;
     std::vector<Weights> weights_;   // by block
@@ -292,7 +292,7 @@ void find_frame_masses(const ElementInputs& elements, Range blocks, std::span<co
     if (blocks.size() == 0) return;
     const RestStiffness stiffness(elements, blocks, position, mass);
     if (!(stiffness.products() <= most_products)) return;
-    constexpr Real above = 1.005;  // what the vectors have not found yet
+    constexpr Real above = 1.005;  // margin for modes that the vectors have not found yet
     BandDecomposition decomposition;
     Real limit = above * stiffness.highest();
     for (Real growth = above; std::isfinite(limit) && limit > 0 && !stiffness.is_below(limit, decomposition);

@@ -10,10 +10,10 @@
 
 namespace skerry {
 
-/// Greatest squared length of `count` vectors less `origin`, where component(3 n + i) is component i of vector n.
-/// Infinite or not a number as soon as one of them is: bit patterns of squares order as the squares do, with what is
-/// not finite on top. Compared as integers, which no order of comparisons changes, they go through the lanes of a
-/// register; as numbers they would wait for each other.
+/// Greatest squared length of `count` vectors less `origin`, where component(3 n + i) is component i of vector n. It is
+/// infinite or not a number as soon as one of them is: bit patterns of squares order as the squares do, with non-finite
+/// values on top. They are compared as integers, in any order and in the lanes of a register. Comparisons of
+/// floating-point numbers would have to wait for each other.
 template <class Component>
 [[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component,
                                                           const Vec3& origin = Vec3::Zero()) {
@@ -28,8 +28,8 @@ template <class Component>
     return std::bit_cast<Real>(largest);
 }
 
-/// The same of the vectors themselves, and less `origin`. The component must be handed in by value: through a reference
-/// the loop is not laid into lanes.
+/// Greatest squared lengths of the vectors themselves and of the vectors less `origin`. The component must be passed by
+/// value: through a reference the loop is not vectorised.
 template <class Component>
 [[gnu::always_inline]] inline std::array<Real, 2> largest_squared_lengths(std::size_t count, Component component,
                                                                           const Vec3& origin) {

@@ -1,8 +1,8 @@
-// With W = lambda Q^-1 / V an element's stiffness is below lambda G V W G^T / lambda, a form of scalars: one number a
-// node, the same for x, y and z. So how all elements hold each other is a matrix a third as wide as the stiffness, and
-// no element has to be at its worst alone. W = 2 mu 1 + lambda tr(Z) Z^-1 is above the law at rest for every positive
-// Z; a good Z is the root of the mean of grad u grad u^T over the highest modes, which are found beside it, round by
-// round.
+// With W = lambda Q^-1 / V an element's stiffness is below G V W G^T, a form of scalars: one number a node, the same
+// for x, y and z. So the coupling of all elements is a matrix a third as wide as the stiffness, and not every element
+// is taken at its worst alone. W = 2 mu 1 + lambda tr(Z) Z^-1, with Lame's lambda, is an upper bound on the law at rest
+// for every positive Z. A good Z is the root of the mean of grad u grad u^T over the highest modes, which are found
+// together with it, round by round.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
     return {mean(a.xx, b.xx), mean(a.yy, b.yy), mean(a.zz, b.zz), mean(a.xy, b.xy), mean(a.yz, b.yz), mean(a.zx, b.zx)};
 }
 
-/// About the root of a positive matrix whose trace is 1 (Denman and Beavers 1976), too large where it is below 0.03.
+/// Approximate root of a positive matrix whose trace is 1 (Denman and Beavers 1976), too large where it is below 0.03.
 Symmetric root_of(const Symmetric& s) {
     constexpr int passes = 6;
     Symmetric root = s, inverse{Real8{} + 1.0, Real8{} + 1.0, Real8{} + 1.0, {}, {}, {}};
@@ -53,17 +53,17 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-constexpr Real longer_by_forms = 1.5;  // steps, than what elements bound one by one
+constexpr Real longer_by_forms = 1.5;  // ratio of the step to that by bounds of single elements
 
-/// Elements that share the mass of their nodes among themselves alone.
+/// Group of elements that share the mass of their nodes among themselves alone.
 struct ElementGroup {
     Range blocks;
-    std::vector<Index> node{};     // from 0 at the first node of the body, along the group
-    std::size_t width = 0;         // of the band of its matrix: how far apart nodes of one element are, and one
-    std::vector<Real> mass{};      // kg, what the group has of its nodes
-    std::vector<Real> diagonal{};  // of its form
-    std::vector<Real4> vector{};   // towards its highest modes
-    Real highest = 0;              // 1/s^2, of its form, from below
+    std::vector<Index> node{};     // nodes along the group; 0: the first node of the body
+    std::size_t width = 0;         // bandwidth of its matrix: greatest distance of nodes of one element, plus 1
+    std::vector<Real> mass{};      // mass that the group has of its nodes [kg]
+    std::vector<Real> diagonal{};  // diagonal of its form
+    std::vector<Real4> vector{};   // approximate highest modes
+    Real highest = 0;              // lower bound on the greatest eigenvalue of its form [1/s^2]
 };
 
 class FormSearch {
@@ -90,11 +90,11 @@ public:
         place_.resize(count, no_index);
     }
 
-    /// Chooses Z, in the place of the forms, and the weights V W that go with it.
+    /// Chooses Z, stored in the place of the forms, and the weights V W that go with it.
     void choose() {
         constexpr int rounds = 16, products = 5;
-        constexpr Real noise_part = 0.3;  // of what the vectors are, anew in each round: modes that are not there yet
-        // from the identity, a mean over what the rounds find
+        constexpr Real noise_part = 0.3;  // noise added in each round, relative to the vectors, for missing modes
+        // starts from the identity; the result is a mean over the rounds
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
@@ -106,7 +106,7 @@ public:
             for (int p = 0; p < products; ++p) {
                 std::ranges::fill(product_, Real4{});
                 add_product(blocks_);
-                Real size = 0;  // that of a vector of noise is 1
+                Real size = 0;  // squared size of all vectors, scaled to that of noise below
                 for (std::size_t n = 0; n < vector_.size(); ++n) {
                     vector_[n] = mass_[n] > 0 ? product_[n] / mass_[n] : Real4{};
                     size += mass_[n] * sum_of(vector_[n] * vector_[n]);
@@ -119,13 +119,13 @@ public:
         weigh();
     }
 
-    /// A bound on the highest frequency of the form, squared, 1/s^2: the forms over it are the masses of the nodes at
-    /// most.
+    /// Upper bound on the squared highest frequency of the form [1/s^2]. The forms divided by it add up to at most the
+    /// masses of the nodes.
     Real bound() {
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
         share(groups);
-        constexpr Real above = 1.005;  // what the vectors have not found yet
+        constexpr Real above = 1.005;  // margin for modes that the vectors have not found yet
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {
@@ -139,7 +139,7 @@ public:
         return bound;
     }
 
-    /// Q from V W and the bound.
+    /// Computes Q from V W and the bound.
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
@@ -162,7 +162,7 @@ private:
                 for (const Index node : nodes.node[k].lane) visit(node);
         }
     }
-    /// visit(block, lane, nodes)
+    /// Calls visit(block, lane, nodes) for each element.
     void for_each_element(Range blocks, auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
             for (std::size_t l = 0; l < element_lanes; ++l)
@@ -195,7 +195,7 @@ private:
     void add_product(Range blocks) {
         for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
             const ElementForm& w = weight_[b - first_block()];
-            if (w[0][l] == 0) return;  // left to a cluster
+            if (w[0][l] == 0) return;  // a cluster carries it
             const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
             const Real4 x = w[0][l] * t[0] + w[3][l] * t[1] + w[5][l] * t[2];
             const Real4 y = w[3][l] * t[0] + w[1][l] * t[1] + w[4][l] * t[2];
@@ -206,9 +206,9 @@ private:
             }
         });
     }
-    /// Z goes towards the root of the sum of grad v grad v^T over the vectors v, by this part.
+    /// Moves Z by this part towards the root of the sum of grad v grad v^T over the vectors v.
     void follow(Real part) {
-        constexpr Real even = 0.03;  // of what it goes towards
+        constexpr Real even = 0.03;  // isotropic part of the target
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const std::size_t b = first_block() + i;
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -234,7 +234,7 @@ private:
         }
     }
 
-    /// Groups of elements that lie close together, as large as the decomposition of their matrix may cost.
+    /// Cuts the elements into groups that lie close together, as large as the decomposition of their matrix may cost.
     void cut(Range blocks, std::vector<ElementGroup>& groups) {
         ElementGroup group{.blocks = blocks};
         for_each_node(blocks, [&](Index node) {
@@ -271,7 +271,8 @@ private:
         for (const Index n : group.node) place_[static_cast<std::size_t>(n)] = no_index;
     }
 
-    /// Masses of the nodes that groups have in common, evened out as those of elements are (stable_step.h).
+    /// Shares the masses of nodes that groups have in common; shares are evened out like those of elements
+    /// (stable_step.h).
     void share(std::vector<ElementGroup>& groups) {
         constexpr int rounds = 4, products = 8;
         std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);
@@ -311,7 +312,7 @@ private:
         });
         for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
     }
-    /// Rayleigh's quotient of the group's vectors after some products: the highest is not below it.
+    /// Rayleigh quotient of the group's vectors after some products. The highest eigenvalue is not below it.
     Real highest_of(ElementGroup& group, int products) {
         Real highest = 0;
         for (int p = 0; p < products; ++p) {
@@ -336,12 +337,12 @@ private:
         return highest;
     }
 
-    /// What M^-1/2 sum_e G V W G^T M^-1/2 of a group is made of.
+    /// Data from which M^-1/2 sum_e G V W G^T M^-1/2 of a group is computed.
     struct GroupMatrix {
-        std::vector<Real> scale;        // 1/sqrt(kg), by node along the group
+        std::vector<Real> scale;        // root of the inverse mass, by node along the group [1/sqrt(kg)]
         Ragged<ElementCorner> corners;  // by node along the group
     };
-    /// Numbers the nodes of the group.
+    /// Collects the data of a group's matrix, and numbers the nodes of the group.
     GroupMatrix matrix_of(const ElementGroup& group) {
         number(group);
         GroupMatrix matrix{
@@ -376,13 +377,13 @@ private:
     Range blocks_;
     Real most_products_;
     Index first_node_ = 0;
-    std::span<const Vec3> position_;       // m, from the first node of the body
-    std::span<const Real> mass_;           // kg, from the first node of the body
+    std::span<const Vec3> position_;       // from the first node of the body [m]
+    std::span<const Real> mass_;           // from the first node of the body [kg]
     std::span<ElementForm> form_;          // Z, then Q
-    std::vector<ElementForm> weight_;      // V W, Pa m^3
+    std::vector<ElementForm> weight_;      // V W [Pa m^3]
     std::vector<Real4> vector_, product_;  // by node
     RestModuli moduli_;
-    std::vector<Index> place_;  // by node, in a group
+    std::vector<Index> place_;  // place of each node in a group
     BandDecomposition decomposition_;
 };
 

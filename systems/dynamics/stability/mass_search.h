@@ -1,4 +1,4 @@
-// What the searches for the masses that elements take have in common (mass_forms.h, frame_masses.h).
+// Common parts of the searches for the masses that elements take (mass_forms.h, frame_masses.h).
 #pragma once
 
 #include <array>
@@ -25,37 +25,37 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Stiffness of explicit elements at rest, with what relaxes as it will count in steps of about the length that
-/// elements bound one by one, times `longer`.
+/// Stiffness of explicit elements at rest. Relaxing parts count as in steps of about the length that bounds of single
+/// elements allow, times `longer`.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
 
-    /// 1 of explicit elements, 0 of those that clusters carry, which take no mass.
+    /// 1 for explicit elements, 0 for those that clusters carry, which take no mass.
     Real8 of_explicit(std::size_t block) const;
 
     struct Moduli {
-        Real8 shear, volumetric;  // 2 mu and lambda, Pa
+        Real8 shear, volumetric;  // 2 mu and lambda [Pa]
     };
     Moduli of(std::size_t block) const;
 
 private:
     const ElementInputs& elements_;
-    Real stiffest_ = 0;       // Pa
-    Real relaxing_step_ = 0;  // s
+    Real stiffest_ = 0;       // greatest modulus [Pa]
+    Real relaxing_step_ = 0;  // length of the steps in which springs relax [s]
 };
 
 /// Sorts nodes along the longest side of their bounding box.
 void sort_along(std::span<const Vec3> position, std::span<Index> nodes);
 
-/// A corner of an element: the one that is at a node.
+/// Corner of an element that is at a node.
 struct ElementCorner {
     std::size_t block, lane;
     Index corner;
 };
 
-/// The corners at each of some places, element by element. `for_each_corner(visit)` calls visit(place, corner) for
-/// all, in the order of elements.
+/// Lists the corners at each of some places, element by element. `for_each_corner(visit)` calls visit(place, corner)
+/// for all, in the order of elements.
 inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
     corners.offset.resize(places + 1);
@@ -69,32 +69,32 @@ inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corn
     return corners;
 }
 
-/// A symmetric matrix with nothing but zeros further from its diagonal than a band: of each row the band from the
-/// diagonal on counts, the diagonal first. Rows come in groups, and are made when they are needed.
+/// Symmetric matrix with zeros outside of a band around the diagonal. A row is stored from the diagonal to the end of
+/// the band. Rows come in groups, and are computed when they are needed.
 struct BandMatrix {
-    std::size_t size;   // rows, whole groups
-    std::size_t width;  // numbers of a row
-    std::size_t group;  // rows
-    /// Adds the rows of a group, each `stride` numbers behind the one before, to zeros.
+    std::size_t size;   // rows; whole groups
+    std::size_t width;  // stored numbers of a row
+    std::size_t group;  // rows of a group
+    /// Adds the rows of a group to zeros; each row is `stride` numbers behind the one before.
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Whether limit - matrix has a Cholesky decomposition, by more than rounding. Of it no more is kept than rows that
-/// reach each other: a window that moves along the diagonal.
+/// Tests if limit - matrix has a Cholesky decomposition, by more than rounding. Keeps only the rows that reach each
+/// other: a window that moves along the diagonal.
 class BandDecomposition {
 public:
     bool is_below(const BandMatrix& matrix, Real limit);
 
 private:
-    static constexpr std::size_t pivots = 4;    // at once: what they take from a row is loaded and stored once
-    static constexpr std::size_t row_step = 8;  // numbers of the widest register
+    static constexpr std::size_t pivots = 4;    // eliminated at once: each row is loaded and stored once for them
+    static constexpr std::size_t row_step = 8;  // numbers in the widest register
 
-    /// Pivots: rows from `first` on, the columns at which they begin being theirs.
+    /// Consecutive pivot rows from `first` on; each row begins at its diagonal.
     struct Pivots {
         std::size_t first;
         std::array<Real*, pivots> row{};
         std::array<Real, pivots> inverse{};
-        std::size_t end;  // of what they reach
+        std::size_t end;  // end of the columns that they reach
 
         Real factor(std::size_t p, std::size_t r) const { return row[p][r - (first + p)] * inverse[p]; }
         bool reach(std::size_t r) const;
@@ -103,16 +103,16 @@ private:
         }
     };
     void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
-    /// What the pivots take from a row, or from two: they are loaded once then.
+    /// Subtracts multiples of the pivots from one row, or from two with one load of the pivots.
     void take(const Pivots& pivots_of, std::size_t r);
     void take_from_two(const Pivots& pivots_of, std::size_t r);
-    /// Column r of row r. Those of all rows lie so that registers of one column lie alike.
+    /// Pointer to column r of row r. Rows are laid out so that the same columns fill a register in all of them.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
-    std::size_t rows_ = 0, stride_ = 0;  // of the window
+    std::size_t rows_ = 0, stride_ = 0;  // rows of the window, and numbers of a row
     Column<Real> window_;
     std::vector<Real> rows_of_group_;
-    std::vector<std::size_t> used_;  // numbers of each of its rows, behind which there are zeros
+    std::vector<std::size_t> used_;  // used numbers of each row of the window; zeros follow
 };
 
 }  // namespace skerry

@@ -21,19 +21,19 @@ namespace skerry {
 
 namespace {
 
-/// Blocks whose stiffness is summed in one piece: they take as long as the bound of one.
+/// Number of blocks whose stiffness is summed in one piece. It takes as long as the bound of one block.
 constexpr Index blocks_summed = 8;
 
 Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
-/// The kinds of pieces of a look: sums over all elements, bounds by the masses of the frame (frame_masses.h), and
-/// bounds by forms or shares. A body with masses of the frame is bounded by these first.
+/// Kinds of pieces of a look: sums over all elements, bounds with frame masses (frame_masses.h), and bounds with forms
+/// or shares. A body with frame masses is bounded with these first.
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Pieces of a look that do not wait for each other: sums, or bounds of one wave of blocks. Waves hold 1, 1, 2, 4, 8...
-/// blocks, so that few in each are above all that the waves before have found.
+/// blocks, so that few bounds in each exceed all bounds of the waves before.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
@@ -61,7 +61,7 @@ PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t u
         in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
 }
 
-/// The work of a look's pieces.
+/// Work of the pieces of a look.
 struct Pieces {
     const ElementInputs& elements;
     std::span<const Vec3> position;
@@ -86,7 +86,7 @@ struct Pieces {
         for (std::size_t i = 0; i < 9; ++i)
             for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
     }
-    /// The same as bound(), by the masses of the frame: in the rotation of the body.
+    /// Version of bound() with frame masses, in the rotation of the body.
     void bound_in_frame(Range blocks, const Mat3& rotation, Real enough, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
@@ -94,9 +94,9 @@ struct Pieces {
                   frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q, enough));
         });
     }
-    /// visit(block, bound of omega^2 by lane); bounds below `enough` (1/s^2) need not be known.
+    /// Calls visit(block, bound of omega^2 by lane). Bounds below `enough` [1/s^2] need not be known.
     void bound(Range blocks, Real enough, auto&& visit) const {
-        // The frame of a corotational element starts from the same lane of the block before it: neighbours turn
+        // The frame of a corotational element starts from the same lane of the block before it: neighbours rotate
         // together.
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
@@ -107,9 +107,9 @@ struct Pieces {
     }
 };
 
-/// The greatest of what was bounded, and whose it is.
+/// Greatest bound so far, and its element.
 struct Greatest {
-    Real& bound;  // 1/s^2
+    Real& bound;  // [1/s^2]
     Index& element;
 };
 Greatest greatest_of(StepLook& look, const PieceRun& run) {
@@ -117,7 +117,7 @@ Greatest greatest_of(StepLook& look, const PieceRun& run) {
     return {look.highest, look.element};
 }
 
-/// Adds the greatest bound of a block to what is known.
+/// Updates the greatest bound with those of a block.
 void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLook& look) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Index here = static_cast<Index>(block * element_lanes + l);
@@ -130,22 +130,22 @@ void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLo
     }
 }
 
-/// The rotation nearest to how a body is deformed all in all.
+/// Rotation nearest to the mean deformation of a body.
 Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
     const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
-/// Of the bound at rest: below it a body is not looked at by forms and shares, which hardly know it better.
+/// Factor on the bound at rest. Below it the body is not bounded with forms and shares, which are hardly sharper.
 constexpr Real well_in_frame = 1.25;
 
-/// Goes on with a look; the blocks of a wave are cut by in_chunks(run, body(begin, end, look of this chunk)).
+/// Continues a look; the blocks of a wave are cut by in_chunks(run, body(begin, end, look of this chunk)).
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
-    std::optional<Mat3> rotation;  // found once, for all waves that this goes on with
+    std::optional<Mat3> rotation;  // found once for all waves of this call
     while (look.piece < until) {
         const PieceRun run = run_from(blocks, at_rest > 0, look.piece, until);
         if (run.opens_wave) look.known = greatest_of(look, run).bound;
@@ -189,7 +189,7 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
 
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
-    constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; what fits on the stack
+    constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; chunks that fit on the stack
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
         const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
@@ -220,7 +220,7 @@ StableStep result_of(const StepLook& look) {
     StableStep found{std::numeric_limits<Real>::infinity(), no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
-    // both are bounds, if the body was looked at in both ways
+    // Both bounds hold if the body was bounded in both ways.
     const Real step = step_of(look.in_frame);
     if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;
@@ -267,7 +267,7 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;
-    constexpr Real least = 1e-3;  // of the share before: keeps what bounds nothing from giving all away
+    constexpr Real least = 1e-3;  // part of the share before: elements that bound nothing keep some mass
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
@@ -283,7 +283,7 @@ void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<con
 Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> inverse_mass, int iterations) {
     std::vector<Vec3> u(position.size()), next(position.size());
-    // A start that no symmetry of the mesh makes orthogonal to the mode looked for.
+    // Start vector that no symmetry of the mesh makes orthogonal to the highest mode.
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = Vec3(std::sin(12.9898 * static_cast<Real>(n + 1)), std::sin(78.233 * static_cast<Real>(n + 1)),
                     std::sin(37.719 * static_cast<Real>(n + 1)));

@@ -22,7 +22,8 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
         Real8 inverse{};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const std::size_t n = static_cast<std::size_t>(nodes.node[k][l]);
-            // No mass: a node that never moves. No stiffness: one that is not there, or that the element does not hold.
+            // A node without mass never moves. A node without stiffness does not exist, or the element does not hold
+            // it.
             if (!(mass[n] > 0 && elements.volume[block][l] > 0)) continue;
             if (stiffness_sum.empty())
                 inverse[l] = 1 / mass[n];
@@ -40,25 +41,25 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
 }
 
-/// A spring that relaxes by a step's end counts less, and the less the longer the step.
+/// Springs that relax within a step count less: the longer the step, the less.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
 }
 
-/// Bound of omega^2 of each element of a block with the masses that Q stands for.
+/// Bound of omega^2 of each element of a block with the masses given by Q.
 Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
                LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
-    // nothing, or no number where F is none: not every bound looks at F
+    // Zero, or not a number if F is not finite: not every bound depends on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements stand the step that others allow: no more has to be known of them. Counted in full next to none of
-    // them would be below, as all allow about the same at rest.
+    // Most elements are stable at the step that others allow: no more has to be known of them. With springs in full
+    // next to none of them would be below, as all allow about the same step at rest.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =
@@ -66,7 +67,7 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         if (all(compared <= enough)) return compared + nothing;
         viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
     }
-    // the step by the springs in full is a safe guess of it
+    // the step with springs in full is a safe estimate of it
     const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame);
     count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
     return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame) + nothing;
@@ -142,7 +143,7 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
     }
     return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
                                    enough, Sharpness::stepped) +
-           0.0 * inner_product(F, F);  // no number where F is none
+           0.0 * inner_product(F, F);  // not a number if F is not finite
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
@@ -156,7 +157,7 @@ Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t bloc
 
 namespace {
 
-/// With masses of 1 in the place of those that elements share, and this in the place of their volumes.
+/// Frequency bound with masses of 1 in place of shared ones, and `volume` in place of the volumes of elements.
 Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
                     LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);

@@ -1,7 +1,7 @@
 // With the forms M_e of the mass and bounds w_e of each element alone, K_e <= w_e M_e, so for any base
 //     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E ,
-// and E is below the mass times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive d (Collatz 1942): rows of
-// numbers, since forms are the same for x, y and z.
+// and E is below the mass times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive d (Collatz 1942). Rows of E are
+// scalars, since forms are the same for x, y and z.
 #include "systems/dynamics/stability/strained_step.h"
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace skerry {
 
 namespace {
 
-constexpr Real above_asked = 1.1;  // of omega^2: most elements of a strained body stay below it
-constexpr int rounds = 4;          // towards the d for which all rows are alike
+constexpr Real above_asked = 1.1;  // factor on omega^2: most elements of a strained body stay below it
+constexpr int rounds = 4;          // of the iteration towards the d for which all rows are alike
 
-/// The part of the memory that has what elements need beyond the base, 1/s^2, and those by node.
+/// Parts of the work memory: `excess` of elements over the base [1/s^2]; by node the weight d, and the row sums of E.
 struct Memory {
     std::span<Real> excess, weight, row;
 
@@ -32,7 +32,7 @@ struct Memory {
     }
 };
 
-/// Finds what each element needs beyond the base. Returns whether any does.
+/// Finds the excess of each element over the base [1/s^2]. Returns true if any has some.
 bool find_excess(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Real base, Real stands,
                  std::span<Real> excess) {
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
@@ -87,9 +87,9 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         return step_times_frequency / std::sqrt(base);
     const std::span<const Real> of_nodes =
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
-    // what has no mass never moves
+    // Nodes without mass never move.
     for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
-    Real least = std::numeric_limits<Real>::infinity();  // 1/s^2, of the bounds on E
+    Real least = std::numeric_limits<Real>::infinity();  // least of the bounds on E [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(of.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
@@ -110,7 +110,8 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // halfway to what the matrix makes of d; nodes that it hardly touches bound nothing with a little
+        // Each d goes halfway, as a factor, to the value that its row gives. A small d is enough for nodes that E
+        // hardly touches.
         for (std::size_t n = 0; n < of_nodes.size(); ++n)
             of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
     }

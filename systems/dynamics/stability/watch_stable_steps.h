@@ -1,4 +1,4 @@
-// The looks at the stable steps of bodies that are taken beside the steps (docs/methods/stable_step.md 6).
+// Computation of the stable steps of bodies beside the other stages of steps (docs/methods/stable_step.md 6).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace skerry {
 struct WatchInputs {
     ElementInputs elements;
     std::span<const Range> body_blocks;  // BodyTable
-    std::span<const Real> mass;          // kg, by node
+    std::span<const Real> mass;          // by node [kg]
 
     static WatchInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                             const MaterialTable& material, const BodyTable& body, const NodeTable& node) {
@@ -25,21 +25,21 @@ struct WatchInputs {
     }
 };
 
-/// Pieces of looks at bodies: of those before the one whose look is under way, of those whose shape is kept, of all.
+/// Numbers of pieces of looks at bodies: those before the body in progress, those with a stored shape, and all.
 struct WatchPieces {
     std::uint64_t before = 0, kept = 0, total = 0;
 };
 
-/// A body that is looked at in a step.
+/// Body whose stable step is computed in a step.
 struct WatchPart {
     Index body = no_index;
     std::uint64_t until = 0;  // pieces done by the end of the step
-    bool whole = false;       // all of them, then
+    bool whole = false;       // all pieces are done by then
     StepLook look;
 };
 
-/// Takes the pieces that are due by the end of this step, of bodies whose shape is kept. Called again for the same step
-/// it does nothing. `parts` keeps its memory between steps.
+/// Computes the pieces that are due by the end of this step, of bodies whose shape is stored. Called again for the same
+/// step it does nothing. `parts` keeps its memory between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry
