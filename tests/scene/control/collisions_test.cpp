@@ -1,4 +1,4 @@
-// Groups, masks and pairs that are switched off.
+// Collision groups, masks, and pairs that are switched off.
 #include <catch2/catch.hpp>
 
 #include <fstream>
@@ -11,7 +11,7 @@ namespace skerry::test::collisions_test {
 
 namespace {
 
-/// A ball falls onto a floor, and another onto it.
+/// A ball that falls onto a floor, and another that falls onto the first.
 struct Stack {
     World world;
     BodyHandle lower, upper;
