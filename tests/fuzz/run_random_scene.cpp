@@ -71,7 +71,7 @@ private:
     }
 
     void add_body(RandomNumbers& random) {
-        // As soft as the softest material of the scenes, and light, so that the step of the others need not shrink.
+        // The softest material of the scenes, and light, so that the step of the others need not shrink.
         const MaterialHandle material =
             world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
         const Mesh mesh = random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4))

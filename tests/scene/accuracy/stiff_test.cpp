@@ -26,7 +26,7 @@ World with_step(const Vec3& gravity, Real tolerance, Real h, Real theta = 1) {
     return World(settings);
 }
 
-/// Mean of ten half periods of the first mode of a free rod, in steps of z / (2 pi) of a period [s]
+/// Mean of ten half periods of the first mode of a free rod, with a phase of z per step [s]
 Real period_of_rod(Real theta, Real z) {
     constexpr Real length = 1, modulus = 1e6, density = 1000;
     const Real period = 2 * length * std::sqrt(density / modulus), h = z * period / (2 * pi);

@@ -129,7 +129,7 @@ TEST_CASE("friction of a material, a body and a collider can change while a bloc
               world.set_surface_properties(block, {.friction = 0.1});
               world.set_surface_properties(world.colliders()[0], {.friction = 0.1});
           }) == slides(0.1));
-    // by the geometric mean; the collider's own is left to the body
+    // Friction of a pair is the geometric mean. A collider without its own value uses the body's.
     CHECK(acceleration([](World& world, BodyHandle block) {
               world.set_surface_properties(block, {.friction = 0.2});
           }) == slides(0.2));
