@@ -7,7 +7,7 @@
 namespace skerry::test {
 
 struct ProjectFile {
-    std::string path;  // from the root of the project, with /
+    std::string path;  // relative to the root of the project, with /
     std::vector<std::string> lines;
 };
 

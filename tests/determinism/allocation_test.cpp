@@ -44,7 +44,7 @@ namespace {
 World resting_balls(Backend backend, int threads, Settings settings = {}) {
     settings.backend = backend;
     settings.threads = threads;
-    settings.start_overlaps = StartOverlaps::ignore;  // they are pushed out of each other before they rest
+    settings.start_overlaps = StartOverlaps::ignore;  // overlapping balls are pushed apart before they rest
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});

@@ -56,8 +56,7 @@ void check_same_report(const WorldReport& a, const WorldReport& b) {
     CHECK(a.balanced_steps == b.balanced_steps);
     REQUIRE(a.step_limits.size() == b.step_limits.size());
     for (std::size_t i = 0; i < a.step_limits.size(); ++i) {
-        CHECK(a.step_limits[i].body.slot ==
-              b.step_limits[i].body.slot);  // the two worlds have different numbers, so only slots are compared
+        CHECK(a.step_limits[i].body.slot == b.step_limits[i].body.slot);  // world numbers differ between runs
         CHECK(a.step_limits[i].body_name == b.step_limits[i].body_name);
         CHECK(a.step_limits[i].steps == b.step_limits[i].steps);
         CHECK(a.step_limits[i].seconds == b.step_limits[i].seconds);

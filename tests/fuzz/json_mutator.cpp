@@ -1,5 +1,4 @@
-// Mutates scenes. About 70 % of the mutations of valid JSON keep it valid, because broken text seldom passes the
-// parser.
+// Mutates scenes. About 70 % of the mutations of valid JSON keep it valid: broken text seldom passes the parser.
 #include <algorithm>
 #include <cstring>
 #include <functional>

@@ -178,7 +178,7 @@ Real extent_of(const World& world, const RandomScene& scene) {
     for (const BodyHandle body : world.bodies())
         for (const Vec3& x : world.positions(body)) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
     const Real bodies = world.bodies().empty() ? 0 : (upper - lower).norm();
-    return bodies + 100 * scene.length;  // the largest collider
+    return bodies + 100 * scene.length;  // the size of the largest collider
 }
 
 }  // namespace

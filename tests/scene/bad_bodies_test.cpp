@@ -25,7 +25,7 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     CHECK_NOTHROW(world.add_body(two_sided(), {.material = rubber}));
 
     Mesh twice = two_sided();
-    twice.tetrahedra.push_back({2, 0, 1, 3});  // the first one again
+    twice.tetrahedra.push_back({2, 0, 1, 3});  // a copy of the first tetrahedron
     CHECK_THROWS_WITH(world.add_body(twice, {.material = rubber, .name = "twice"}),
                       Contains("body 'twice'") && Contains("tetrahedra 0 and 2 on the same side of a face"));
 

@@ -11,8 +11,7 @@ TEST_CASE("a capsule that spins on its end is not turned into what it spins on",
     for (const Floor floor : {plane, box, mesh_collider, rigid_slab}) {
         CAPTURE(floor);
         Capsules c(steps_of(2e-3, Vec3::Zero()), 0);
-        // The capsule is nearly flat. It turns about an axis that leans over its lower end, which moves that end
-        // downwards.
+        // The capsule is nearly flat. It turns about an axis that leans over its lower end and moves the end down.
         constexpr Real tilt = 0.1;
         const Vec3 axis(std::cos(tilt), 0, -std::sin(tilt)), turn = 50 / std::sqrt(2.0) * Vec3(-1, 0, 1);
         const Vec3 spin = turn + (across / axial - 1) * turn.dot(axis) * axis;

@@ -213,8 +213,7 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
 
 TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     Settings settings = weightless(true);
-    settings.step_safety =
-        0.3;  // error of velocities that the step cannot follow: 0.04 of the energy at the full step, 3e-4 here
+    settings.step_safety = 0.3;  // error of unresolved velocities: 0.04 of the energy at the full step, 3e-4 here
     World world(settings);
     MaterialSettings rubber = lossless_rubber();
     rubber.damping = 30;
@@ -298,7 +297,7 @@ TEST_CASE("with clusters a vibration converges with the second order", "[scene][
         corner.push_back(world.positions(body)[0]);
     }
     CHECK(std::min(clusters[0], clusters[1]) > 0);
-    CHECK(clusters[3] == 0);  // the limit is that of the elements
+    CHECK(clusters[3] == 0);  // the reference run has no implicit elements
     const Real coarse = (corner[0] - corner[3]).norm(), half = (corner[1] - corner[3]).norm(),
                quarter = (corner[2] - corner[3]).norm();
     INFO(coarse << " " << half << " " << quarter);

@@ -101,7 +101,7 @@ TEST_CASE("a plane with its own normal keeps it while keys move it", "[scene]") 
     REQUIRE(world.advance(1.0).ok());
     Real nearest = 1e9;
     for (const Vec3& x : world.positions(ball)) nearest = std::min(nearest, x.x());
-    CHECK(nearest > 0.1 - 1e-4);  // pushed along, and not thrown far
+    CHECK(nearest > 0.1 - 1e-4);  // pushed along without being thrown far
     CHECK(world.center_of_mass(ball).x() < 0.3);
     CHECK((rotation_matrix(world.pose(world.colliders()[0]).rotation) * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-12);
 }

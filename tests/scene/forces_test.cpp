@@ -40,7 +40,7 @@ struct BusyWorld {
     BodyHandle low, high, bar;
     AttachmentHandle held, led;
     ColliderHandle plane, slab;
-    Vec3 load = {0.01, 0.02, 0};  // N, on each node of `low`
+    Vec3 load = {0.01, 0.02, 0};  // on each node of `low` [N]
 
     explicit BusyWorld(const Settings& settings, bool loaded = true) : world(settings) {
         const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.4});
@@ -66,7 +66,7 @@ Settings with(Integrator integrator) {
     return settings;
 }
 
-constexpr Real density = 1000;  // kg/m^3, the default
+constexpr Real density = 1000;  // the default density [kg/m^3]
 
 }  // namespace
 
@@ -283,8 +283,7 @@ TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, d
                           1e-3 * weight * 0.2);
             }
             CHECK(worst < (damping > 0 ? 1e-5 : 0.2) * weight);
-            // Forces of implicit elements on held nodes are in the reaction, but not in the momentum balance of the
-            // run.
+            // Forces of implicit elements on held nodes are in the reaction, but not in the run's momentum balance.
             if (damping == 0 && !slivers) CHECK(world.report().momentum_error_share < 1e-12);
             if (slivers) CHECK(std::isnan(world.report().momentum_error_share));
         }

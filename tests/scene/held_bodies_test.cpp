@@ -13,7 +13,7 @@ namespace {
 const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
 const Real cube_mass = 1;  // with the density of water [kg]
 
-/// Three corners.
+/// Nodes at three corners of the cube.
 const std::vector<Index> corners{0, 2, 6};
 
 /// A cube that is moved and turned by an attachment, and a body that falls onto it.

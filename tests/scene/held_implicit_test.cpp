@@ -308,7 +308,7 @@ TEST_CASE("a bar between two attachments is stretched as they part", "[scene][im
     world.measure_forces(true);
     REQUIRE(world.advance(4).ok());
     REQUIRE(world.advance(0.1).ok());
-    const Real force = E * 0.01 * 1e-3;  // E A e
+    const Real force = E * 0.01 * 1e-3;  // E times area times strain
     CHECK(world.forces().by(right).force().x() == Approx(force).epsilon(1e-3));
     CHECK(world.forces().by(left).force().x() == Approx(-force).epsilon(1e-3));
     // The remaining attachment takes over the frame, and the bar shrinks to its rest length.

@@ -71,7 +71,7 @@ TEST_CASE("a motor speeds up with its strength, and goes on at its speed", "[sce
     CHECK(arm.state().speed == Approx(speed).epsilon(1e-6));
     CHECK(arm.state().moment.norm() < 1e-3);
     const Real before = arm.state().coordinate;
-    REQUIRE(arm.world.advance(5).ok());  // more than three turns
+    REQUIRE(arm.world.advance(5).ok());  // turns by more than three revolutions
     CHECK(arm.state().coordinate - before == Approx(5 * speed).epsilon(1e-4));
     Joints(arm.world).set_motor(arm.hinge, JointMotor{.speed = -1, .strength = 100});
     REQUIRE(arm.world.advance(0.01).ok());

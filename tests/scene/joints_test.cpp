@@ -24,8 +24,7 @@ Settings with_step(Real h, const Vec3& gravity = {0, 0, -standard_gravity}) {
     return settings;
 }
 
-/// A chain of bars, the first attached to the world at the origin. All start at the same angle from their rest
-/// positions.
+/// A chain of bars, the first attached to the world at the origin. All start at one angle from their rest positions.
 struct Bars {
     World world;
     MaterialHandle material;
@@ -99,8 +98,7 @@ TEST_CASE("a double pendulum keeps its energy", "[scene][joints]") {
     for (const Real h : {1.0 / 120, 1.0 / 480}) {
         Bars bars(with_step(h), 2, 2.0, JointKind::hinge);
         const Energy start = bars.world.energy();
-        const Real scale = 4 * bar_mass * standard_gravity *
-                           reach;  // energy difference between hanging and upright of the second bar [J]
+        const Real scale = 4 * bar_mass * standard_gravity * reach;  // energy to turn the second bar upright [J]
         Real most = 0;
         for (int k = 0; k < 200; ++k) {
             REQUIRE(bars.world.advance(0.05).ok());

@@ -363,8 +363,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
                 CHECK(kicked[k] < std::max(kicked[k - 2], kicked[k + 2]) + 0.05);
                 CHECK(beside[k] < std::max(beside[k - 2], beside[k + 2]) + 0.05);
             }
-    CHECK(scene.world.report().energy_error_share <
-          1e-7);  // error of rotations while strain is small, as for rigid bodies
+    CHECK(scene.world.report().energy_error_share < 1e-7);  // error of rotations with small strain, as for rigid bodies
 }
 
 TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, and rests as flat",

@@ -63,7 +63,7 @@ TEST_CASE("the energy of the skittles adds up within 1 %, and better by nearly t
     };
     const Real longest = error_share(1);
     CAPTURE(longest);
-    CHECK(longest < 0.01);  // 0.60 %
+    CHECK(longest < 0.01);  // it is 0.60 %
     for (const Real part : {0.7, 0.5}) {
         CAPTURE(part);
         // The shares are 0.35 and 0.19 %; the square would give 0.29 and 0.15.

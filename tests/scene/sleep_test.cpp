@@ -207,7 +207,7 @@ struct Slab {
 }  // namespace
 
 TEST_CASE("a slab that should slide is never put to rest, one that has come to a stop is", "[scene][long]") {
-    for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds 16.699
+    for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds up to 16.699 degrees
         Slab slab(degrees), awake(degrees, false);
         for (int i = 0; i < 40; ++i) {
             REQUIRE(slab.world.advance(0.05).ok());

@@ -303,7 +303,7 @@ TEST_CASE("a mesh collider seen from inside is a room, and what is in it may beg
     world.add_collider(room);
     REQUIRE(world.advance(0.5).ok());
     CHECK(world.report().start_overlaps.empty());
-    CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // it lies on a facet
+    CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // the ball lies on a facet
 }
 
 TEST_CASE("only what is new is moved: a body that is held or has made a step stays", "[scene]") {

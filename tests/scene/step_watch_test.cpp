@@ -13,7 +13,7 @@ namespace skerry::test::step_watch_test {
 
 namespace {
 
-constexpr std::size_t two_rounds = 256;  // steps
+constexpr std::size_t two_rounds = 256;  // length of two rounds of the evaluation [steps]
 
 /// Stable step of each body, by slot, computed in one go after each of the last steps.
 class History {

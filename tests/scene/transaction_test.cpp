@@ -140,8 +140,7 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     Tries tries;
     CHECK(try_step(state, plan, tries) == StepOutcome::committed);
 
-    velocity[0].x() =
-        0.9 * state.model.bodies.min_altitude[0] / plan.h;  // two corners move apart by most of their altitude
+    velocity[0].x() = 0.9 * state.model.bodies.min_altitude[0] / plan.h;  // two corners part by most of their altitude
     world.set_velocities(body, velocity);
     const std::uint64_t before = world.state_hash();
     tries = {};

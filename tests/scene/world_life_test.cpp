@@ -243,9 +243,7 @@ TEST_CASE("bodies of one mesh have the same bits whether what was found of the f
                                               .rotation = turn,
                                               .angular_velocity = {5, 0, 3},
                                               .element = i < 12 ? ElementKind::linear : ElementKind::smoothed}));
-            if (look)
-                CHECK(world.positions(bodies.back()).size() ==
-                      mesh[at % 3].nodes.size());  // the query completes the world's set-up
+            if (look) CHECK(world.positions(bodies.back()).size() == mesh[at % 3].nodes.size());  // completes set-up
         }
         const Real step = world.stable_step();
         REQUIRE(world.advance(0.01).ok());

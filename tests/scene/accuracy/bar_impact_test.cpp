@@ -61,7 +61,7 @@ Settings without_gravity() {
     return settings;
 }
 
-constexpr Real v0 = 0.1;  // m/s: strains of v0 / c = 0.3 %
+constexpr Real v0 = 0.1;  // gives strains of v0 / c = 0.3 % [m/s]
 
 const char* const front_note =
     "The energy lost falls with 1 / n, the missing speed with n^(-2/3): a front that has crossed n elements is n^(1/3) "
@@ -163,7 +163,7 @@ TEST_CASE("a point bounces on a fixed triangle with its restitution", "[scene][a
 
     constexpr Real h = 1e-5;
     PointOverTriangle point(drop, kappa, h);
-    std::vector<Real> apex;  // m
+    std::vector<Real> apex;  // height of each bounce [m]
     Real time = 0, end = 0;
     for (Real before = 0; time < 5; time += h) {
         if (point.step() > 0 && point.speed > 0) end = time;

@@ -210,7 +210,7 @@ TEST_CASE("displacements have order 2 in h and stresses order 1", "[scene][accur
 
 namespace {
 
-constexpr Real omega = 1;  // rad/s: a strain of rho omega^2 L^2 / 3 E = 0.03 %
+constexpr Real omega = 1;  // gives a strain of rho omega^2 L^2 / 3 E = 0.03 % [rad/s]
 
 /// Stretch of each end of a bar of length 2 L that turns at omega, after `seconds` [m]. Without `h` the steps are as
 /// long as is stable.

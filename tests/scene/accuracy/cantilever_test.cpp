@@ -171,7 +171,7 @@ TEST_CASE("a cantilever swings with its first frequency", "[scene][accuracy]") {
 TEST_CASE("four smoothed elements in the height bend as the beam does", "[scene][accuracy]") {
     struct Case {
         ElementKind element;
-        Real of_deflection, of_frequency;  // tolerances
+        Real of_deflection, of_frequency;  // tolerances of both
     };
     for (const auto& [element, of_deflection, of_frequency] :
          {Case{ElementKind::linear, 0.2, 0.15}, Case{ElementKind::smoothed, 0.01, 0.02}}) {

@@ -49,7 +49,7 @@ struct Pressed {
 /// means while the edge of the contact moves from half an element before a to half an element beyond. Without the mean,
 /// the position of the edge between nodes changes them by some per cent.
 Pressed press(int fine, ElementKind element) {
-    constexpr Real radius = 10 * a;  // m, of the ball
+    constexpr Real radius = 10 * a;  // of the ball [m]
     World world(weightless());
     const auto material = world.add_material(hertz_material());
     const HalfBallShape shape{.a = a, .fine = fine, .growth = 4, .radius = 20 * a};

@@ -82,9 +82,8 @@ Widened widen(ElementKind kind, Real nu) {
 }  // namespace
 
 TEST_CASE("a thick hollow sphere widens under pressure from inside", "[scene][accuracy]") {
-    // Linear elements lose 5 % of the displacement, and 30 % for the nearly incompressible case. There the error of the
-    // mean stress is half of the pressure; the mean stress itself is a seventh. Smoothed ones are within 0.3 and 0.03
-    // %.
+    // Linear elements lose 5 % of the displacement, and 30 % in the nearly incompressible case. There the error of the
+    // mean stress is half of the pressure, and the stress itself a seventh. Smoothed ones are within 0.3 and 0.03 %.
     struct Case {
         Real nu;
         ElementKind kind;

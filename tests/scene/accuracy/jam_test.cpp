@@ -55,8 +55,7 @@ struct Wedge {
 
 TEST_CASE("a stack of bricks carries its weight brick by brick", "[scene][accuracy]") {
     Settings settings = accurate({0, 0, -g});
-    // 86 contacts, most of them redundant: while the stack sways, sweeps gain nothing below 1e-7 of the region's
-    // energy.
+    // 86 contacts, most of them redundant: while the stack sways, sweeps stall at 1e-7 of the region's energy.
     settings.tolerance = 1e-6;
     World world(settings);
     const auto material =

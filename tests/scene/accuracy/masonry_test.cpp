@@ -92,8 +92,7 @@ Real sunk(const Arch& arch) {
     return down;
 }
 
-/// Two cards of 0.2 m that lean on each other. Their inner faces are at an angle of the tangent `slope` to the
-/// vertical.
+/// Two cards of 0.2 m that lean on each other. Their inner faces deviate from the vertical by the tangent `slope`.
 struct CardHouse {
     static constexpr Real length = 0.2, thickness = 0.01, shell = 1e-3;  // m
 
@@ -110,8 +109,7 @@ struct CardHouse {
         const Real angle = std::atan(slope), sine = std::sin(angle), cosine = std::cos(angle);
         std::vector<BodyHandle> cards;
         for (const Real side : {-1.0, 1.0}) {
-            // The inner face goes from its foot, half a shell above the floor, to its top, half a shell from the
-            // other's.
+            // The inner face goes from its foot, half a shell above the floor, to its top, half a shell from the other.
             const Real x = shell / 2 + length / 2 * sine + thickness / 2 * cosine;
             const Real z = shell / 2 + length / 2 * cosine + thickness / 2 * sine;
             cards.push_back(world.add_body(mesh, {.material = paper,

@@ -160,7 +160,7 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
     int problems = 0;
     world.watch_contact_problems([&](const StepProblem& step) {
         const ContactProblem& p = step.problem;
-        Real scale = 0;  // J, twice the energy that the contacts have to stop
+        Real scale = 0;  // twice the energy that the contacts have to stop [J]
         for (Index i = 0; i < p.contacts(); ++i) {
             const std::size_t row = static_cast<std::size_t>(i);
             for (Index k = p.row_offset[row]; k < p.row_offset[row + 1]; ++k)

@@ -210,8 +210,7 @@ TEST_CASE("a rigid rod of Painleve's jams with a finite impulse", "[scene][accur
     const Mat3 quarter = Eigen::AngleAxis<Real>(pi / 4, Vec3::UnitX()).toRotationMatrix();
     for (Vec3& x : mesh.nodes) x = quarter * x;
     const Real half = width / std::numbers::sqrt2;
-    const Vec3 arm(-length / 2 * cosine + half * sine, 0,
-                   -length / 2 * sine - half * cosine);  // from the centre to the corner [m]
+    const Vec3 arm(-length / 2 * cosine + half * sine, 0, -length / 2 * sine - half * cosine);  // to the corner [m]
     Real gain = 0, refused = 0;
     for (const Real direction : {-1.0, 1.0}) {
         Settings settings = accurate({0, 0, -g}, 1e-10);

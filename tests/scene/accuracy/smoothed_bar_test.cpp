@@ -42,8 +42,7 @@ Real first_period(const Mesh& mesh, ElementKind kind, Real nu) {
         const Vec3& x = mesh.nodes[n];
         const Real s = x.x() / length + 0.5;
         if (s < 1e-9) held.push_back(static_cast<Index>(n));
-        velocity[n].z() =
-            1e-3 * s * s * (6 - 4 * s + s * s) / 3;  // the shape under its own weight is close to the mode
+        velocity[n].z() = 1e-3 * s * s * (6 - 4 * s + s * s) / 3;  // the shape under its own weight, close to the mode
         const auto from_middle = [](const Vec3& place) { return (place - Vec3(length / 2, 0, 0)).norm(); };
         if (from_middle(x) < from_middle(mesh.nodes[tip])) tip = n;
     }

@@ -36,8 +36,7 @@ Fate fate(Real degrees, Real mu) {
 
 TEST_CASE("a block topples where tan(a) > b / h, if friction holds it", "[scene][accuracy]") {
     const Real critical = std::atan(0.5) / degree;
-    // Bisects to a hundredth of a degree between the largest angle at which it stands and the smallest at which it
-    // topples.
+    // Bisects to 0.01 degree between the largest angle at which it stands and the smallest at which it topples.
     Real stands = critical - 1, topples = critical + 1;
     REQUIRE(fate(stands, 0.8) == Fate::rests);
     REQUIRE(fate(topples, 0.8) == Fate::topples);

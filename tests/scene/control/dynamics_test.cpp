@@ -113,8 +113,7 @@ TEST_CASE("deformable and implicit bodies take each other's shape, and velocitie
         REQUIRE(elastic > 0);
         bar.world.set_dynamics(bar.body, next);
         const auto now = bar.world.positions(bar.body), moving = bar.world.velocities(bar.body);
-        // Nodes as point masses have another moment of inertia than the solid. Equal angular momentum means unequal
-        // spins.
+        // Point masses and the solid have different moments of inertia: equal angular momenta give unequal spins.
         const Vec3 center = bar.world.center_of_mass(bar.body);
         Vec3 change = Vec3::Zero();
         Mat3 arms = Mat3::Zero();

@@ -98,7 +98,7 @@ TEST_CASE("what of a material cannot change is refused by name and changes nothi
 TEST_CASE("a change of material decides anew which elements are implicit", "[scene]") {
     Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {4, 4, 4});
     for (Vec3& x : mesh.nodes)
-        if ((x - Vec3(0.025, 0, 0)).norm() < 1e-9) x.x() = 0.0015;  // a few thin elements
+        if ((x - Vec3(0.025, 0, 0)).norm() < 1e-9) x.x() = 0.0015;  // makes a few thin elements
     World world({.gravity = {0, 0, 0}});
     const auto rubber = world.add_material({});
     world.add_body(mesh, {.material = rubber});

@@ -151,7 +151,7 @@ TEST_CASE("a teleport touches nothing on the way, and what it lands in is treate
         World& world = scene.world;
         REQUIRE(world.advance(0.05).ok());
         const Vec3 before = world.center_of_mass(scene.ball);
-        world.set_pose(scene.box, {{0, 0, 0.3}, {0, 0, 0}});  // through the ball
+        world.set_pose(scene.box, {{0, 0, 0.3}, {0, 0, 0}});  // the box passes through the ball
         REQUIRE(world.advance(0.05).ok());
         CHECK((world.center_of_mass(scene.ball) - before).norm() < 1e-9);
         world.set_velocity(scene.box, {0, 0, -1});

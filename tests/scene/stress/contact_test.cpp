@@ -93,7 +93,7 @@ TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
     // is moved at v gets a wave that brings it to v and returns from the far end with 2 v. A rigid body would leave at
     // v at most and without energy; a deformable one leaves at up to 2 v, with the energy of that speed.
     constexpr Real radius = 0.05;
-    const Real push_speed = 0.01 * Settings{}.recovery_speed;  // without weight
+    const Real push_speed = 0.01 * Settings{}.recovery_speed;  // speed without gravity
     struct Case {
         const char* name;
         bool body;
@@ -195,7 +195,7 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
                 if (side * block.nodes[n].z() > jaw / 2 - 1e-9) back.push_back(static_cast<Index>(n));
             world.attach(jaws.back(), back, motion);
         }
-        world.set_gravity({-9.81, 0, 0});  // along the sheet: friction holds it
+        world.set_gravity({-9.81, 0, 0});  // gravity along the sheet, which friction holds
         const Course closing = follow(world, 0.5, 50);
         const Vec3 start = world.center_of_mass(sheet);
         const Course holding = follow(world, 0.4, 40);

@@ -111,7 +111,7 @@ TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "
         weight += world.mass(block) * standard_gravity;
     }
     REQUIRE(world.advance(4).ok());
-    const auto swing = [&world] {  // over a second
+    const auto swing = [&world] {  // largest motion within a second
         Real most = 0;
         for (int look = 0; look < 20; ++look) {
             REQUIRE(world.advance(0.05).ok());
@@ -240,7 +240,7 @@ TEST_CASE("a stack at rest does not notice its restitution", "[scene][stress]") 
 TEST_CASE("bodies that come and go do not touch a bit of what they have no contact with", "[scene][stress]") {
     const auto run = [](bool change) {
         Settings settings;
-        settings.step_size = 1e-4;  // the same for both, whatever bodies there are
+        settings.step_size = 1e-4;  // equal steps in both runs, whatever bodies there are
         World world(settings);
         world.add_collider(Plane{});
         const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 10});

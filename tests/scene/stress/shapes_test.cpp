@@ -90,8 +90,7 @@ TEST_CASE("a box pressed together to hundredths of its size recovers", "[scene][
         Real noise;  // m
         bool must_recover;
     };
-    // The short form of the stable neo-Hookean law, without the logarithm, contracts further below a fifth at this
-    // Poisson's ratio.
+    // The short form of the stable neo-Hookean law (no logarithm) contracts below a fifth at this Poisson's ratio.
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean})
         // The last two cases open in different directions in different places: tetrahedra end up not inverted, but
         // wound about an edge or twisted.

@@ -97,7 +97,7 @@ TEST_CASE("velocities that decay to nothing end at zero, not in denormal numbers
         settings.threads = backend == Backend::serial ? 0 : 2;
         World world(settings);
         const auto material = world.add_material({.young_modulus = 1e5, .damping = 10});
-        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {6, 6, 6});  // 1296 tetrahedra: enough for the workers
+        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {6, 6, 6});  // 1296 tetrahedra, enough to use the workers
         const auto body = world.add_body(mesh, {.material = material});
         std::vector<Vec3> tiny;
         for (const Vec3& x : mesh.nodes) tiny.push_back(1e-309 * x.normalized() + Vec3::Constant(3e-310));
