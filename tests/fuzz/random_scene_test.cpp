@@ -44,7 +44,8 @@ TEST_CASE("random scenes run or are refused, with finite numbers all the way", "
     CHECK(contacts > 100);
 }
 
-// Found by random scenes: each step with a crossing was halved again and grew back by a tenth, until time stood still.
+// Regression, found by random scenes: each step with a crossing was halved again and grew back by a tenth, until time
+// stood still.
 TEST_CASE("time goes on in a scene where surfaces keep crossing", "[scene]") {
     Scene scene = load_scene(std::filesystem::path(SKERRY_SOURCE_DIR) / "tests/fuzz/scenes/keeps_crossing.json");
     std::uint64_t crossed = 0;

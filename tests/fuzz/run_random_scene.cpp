@@ -172,7 +172,7 @@ Real way_of_colliders(const RandomScene& scene) {
     return way;
 }
 
-/// Diameter of the bodies plus the distance that anything can have moved.
+/// Diameter of all bodies plus the size of the largest collider, a bound on depths in the world [m]
 Real extent_of(const World& world, const RandomScene& scene) {
     Vec3 lower = Vec3::Constant(1e300), upper = -lower;
     for (const BodyHandle body : world.bodies())

@@ -95,7 +95,7 @@ TEST_CASE("what rests without weight has no doubtful energy: shares of rounding 
 TEST_CASE("motion that is small, but none of rounding, has the share of error that it has when it is large",
           "[scene]") {
     std::vector<Real> shares;
-    for (const Real rate : {1e-3, 1e-7}) {  // strain rates; strains of about 1e-6 and 1e-10 [1/s]
+    for (const Real rate : {1e-3, 1e-7}) {  // strain rates [1/s]; the strains are about 1e-6 and 1e-10
         Settings settings;
         settings.gravity.setZero();
         World world(settings);

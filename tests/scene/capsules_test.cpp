@@ -172,7 +172,7 @@ TEST_CASE("friction between capsules keeps the angular momentum", "[scene]") {
     REQUIRE(c.world.advance(0.3).ok());
     CHECK(c.spin(a).norm() > 0.5);
     CHECK(c.spin(b).norm() > 0.5);
-    // The two surfaces are the contact distance apart. Friction acts across it without a moment.
+    // The two surfaces are the contact distance apart. Friction bridges this gap without a balancing moment.
     CHECK((c.world.report().angular_momentum - before).norm() < 0.01 * before.norm());
     CHECK(c.world.report().momentum_error < 1e-12);
     CHECK(c.world.report().max_penetration == 0);

@@ -251,7 +251,7 @@ TEST_CASE("friction spins two spheres that graze each other, and angular momentu
     CHECK(s.spin(a).norm() > 1);
     CHECK((s.spin(a) - s.spin(b)).norm() < 1e-9);
     const Vec3 after = s.world.report().angular_momentum;
-    // The two surfaces are the contact distance apart. Friction acts across it without a moment.
+    // The two surfaces are the contact distance apart. Friction bridges this gap without a balancing moment.
     CHECK((after - before).norm() < 0.01 * before.norm());
     CHECK(s.world.report().momentum_error < 1e-12);
 }

@@ -192,8 +192,7 @@ TEST_CASE("only what the transaction puts back is written before a step is known
         state.cache.pairs.for_each_row_column(note("pairs"));
     }
     CHECK(behind_guard >= 4);
-    // These columns are listed in transaction.h. nodes.velocity_next is derived, and no stage writes drift_to's
-    // columns.
+    // The list is that of transaction.h. nodes.velocity_next is derived, and no stage writes the columns of drift_to.
     CHECK(written == std::set<std::string>{"nodes.velocity", "bodies.max_speed", "elements.implicit_modulus",
                                            "pairs.key", "pairs.kind", "pairs.first", "pairs.second", "pairs.state"});
 }

@@ -222,8 +222,7 @@ TEST_CASE("many changes in a row give the same bits as the same with a look at t
 
 TEST_CASE("bodies of one mesh have the same bits whether what was found of the first is kept or found anew",
           "[scene]") {
-    // Turned and unturned bodies, linear and smoothed elements, several materials: stored data are kept apart or
-    // rotated.
+    // Turned and unturned bodies, linear and smoothed elements, several materials: stored data are separate or rotated.
     const auto falls = [](bool look) {
         World world;
         const std::array<MaterialHandle, 3> material{

@@ -99,7 +99,7 @@ Flattened flatten(int fine, Real h, int steps) {
 
 TEST_CASE("the period of an implicit rod is longer as theta says", "[scene][accuracy]") {
     constexpr Real z = 0.1;
-    // Ratio to the period of the mesh: a step turns the mode by atan2(...) instead of z.
+    // Ratio to the period of the mesh: a step turns the mode by atan2(z, 1 - theta (1 - theta) z^2).
     const auto longer = [](Real theta) { return z / std::atan2(z, 1 - theta * (1 - theta) * z * z); };
     const Real own = period_of_rod(0.5, z) / longer(0.5);
     for (const Real theta : {1.0, 0.75, 0.55})
