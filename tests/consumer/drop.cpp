@@ -1,4 +1,4 @@
-// Includes all that Skerry gives, and drops a ball.
+// Includes every public header of Skerry and drops a ball.
 #include <skerry/error.h>
 #include <skerry/instruction_set.h>
 #include <skerry/mesh.h>

@@ -1,5 +1,5 @@
-// Eigen as the user's own code uses it. The library may have been built for another instruction set, with which Eigen
-// aligns and frees memory in another way: the two must not meet.
+// Uses Eigen in the user's own code. The library may be built for another instruction set, with which Eigen aligns and
+// frees memory in another way. The two must not mix.
 #include <Eigen/Dense>
 
 double own_vectors() {

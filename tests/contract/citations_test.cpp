@@ -1,4 +1,4 @@
-// Every text that a comment, a script or a page refers to is in the project, and so is the section it names.
+// Every page that a comment, a script or another page cites is in the project, and so is the cited section.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 using skerry::test::ProjectFile;
 
-/// Numbers of the headings of a page: "## 2 Letters" has 2, "### 2.1 More" has 2.1.
+/// Section numbers in the headings of a page: "## 2 Letters" has 2, "### 2.1 More" has 2.1.
 const std::set<std::string>& sections_of(const std::string& page) {
     static const std::regex heading("#+ ([0-9]+(\\.[0-9]+)*) .*");
     static std::map<std::string, std::set<std::string>> known;
@@ -26,7 +26,7 @@ const std::set<std::string>& sections_of(const std::string& page) {
     return at->second;
 }
 
-/// Decisions are files named by number and title.
+/// True if a decision with this number exists. The name of its file begins with the number.
 bool has_decision(const std::string& number) {
     static const std::set<std::string> known = [] {
         std::set<std::string> numbers;
@@ -37,8 +37,8 @@ bool has_decision(const std::string& number) {
     return known.contains(number);
 }
 
-/// The page of the project that a name stands for: from the root, or beside the file that names it. Scripts write links
-/// into pages of docs/.
+/// The path of a cited page in the project, or "" if there is none. Names count from the root or from the folder of the
+/// citing file. Links also count from docs/, because scripts write links into its pages.
 std::string page_of(const std::string& from, const std::string& name, bool link) {
     const std::string from_root = name.substr(std::min(name.size(), name.find_first_not_of('/')));
     const std::string beside = (std::filesystem::path(from).parent_path() / name).lexically_normal().generic_string();
@@ -57,7 +57,7 @@ std::string without_marks(const std::string& path, const std::string& line) {
     return line.substr(at);
 }
 
-/// The numbers that follow the name of a page: " 2.1", " 4 to 6", " 1.2, 3 and 5".
+/// Section numbers that follow the name of a page: " 2.1", " 4 to 6", " 1.2, 3 and 5".
 std::vector<std::string> sections_named(const std::string& after) {
     static const std::regex first("^ ([0-9]+(\\.[0-9]+)*)"), next("^(,| and| to|, and) ([0-9]+(\\.[0-9]+)*)");
     std::vector<std::string> numbers;
@@ -70,10 +70,10 @@ std::vector<std::string> sections_named(const std::string& after) {
     return numbers;
 }
 
-/// What is wrong with the references that begin in a line; `more` is what follows it in the text.
+/// Appends the faults of the citations that begin in `line`. `more` is the text of the next line.
 void judge_line(const std::string& path, const std::string& line, const std::string& more,
                 std::vector<std::string>& wrong) {
-    // Put together from parts, so that this file is not one that it finds.
+    // Built from parts so that this file does not match its own pattern.
     static const std::regex outside(std::string("(^|[^A-Za-z0-9_/])((\\.\\./)*shared") + "/|\"\\.\\.\" */ *\")");
     static const std::regex page("[A-Za-z0-9_./-]*[A-Za-z0-9_]\\.md(?![A-Za-z0-9_])");
     static const std::regex decision("[Dd]ecisions? ([0-9]{4})|\\[([0-9]{4})\\]\\(");
@@ -87,7 +87,7 @@ void judge_line(const std::string& path, const std::string& line, const std::str
         if (found.empty()) wrong.push_back("no file " + at->str());
         if (found.empty()) continue;
         std::string after = at->suffix();
-        if (after.starts_with(")")) after.erase(0, 1);  // of a link
+        if (after.starts_with(")")) after.erase(0, 1);  // end of a link
         for (const std::string& section : sections_named(after))
             if (!sections_of(found).contains(section)) wrong.push_back("no section " + section + " in " + found);
     }
@@ -103,7 +103,7 @@ void judge_line(const std::string& path, const std::string& line, const std::str
 }
 
 std::vector<std::string> objections(const ProjectFile& file) {
-    // What a line has that judge_line looks at; most have none of it.
+    // Quick filter: a line without any of these strings has no citation for judge_line.
     static const std::vector<std::string> signs{".md", std::string("shared") + "/", "ecision", "](", "\"..\""};
     std::vector<std::string> all;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("the test of citations notices what it is there for", "[contract]") {
     const auto found = [](const std::string& path, const std::vector<std::string>& lines) {
         return objections({path, lines}).size();
     };
-    const std::string page = "docs/methods/friction", md = ".md";  // apart, so that this file cites nothing wrong
+    const std::string page = "docs/methods/friction", md = ".md";  // apart, so that this file has no wrong citation
     CHECK(found("systems/a.h", {"// As " + page + md + " 2.1 has it."}) == 0);
     CHECK(found("systems/a.h", {"// As " + page + md + " 2.1 and 2.2, 3"}) == 0);
     CHECK(found("systems/a.h", {"// As " + page + md + " 2.77 has it."}) == 1);

@@ -1,4 +1,4 @@
-// Rules of the house that a reader of one change does not see.
+// Project rules that a reader of a single change cannot check.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <regex>
@@ -15,7 +15,7 @@ TEST_CASE("no file is longer than 500 lines", "[contract]") {
 }
 
 TEST_CASE("no line goes beyond 120 columns", "[contract]") {
-    // Columns are characters: a byte that goes on with one (UTF-8) is none of its own.
+    // Columns are characters: continuation bytes of UTF-8 are not counted.
     const auto columns = [](const std::string& line) {
         return std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
     };
@@ -27,7 +27,7 @@ TEST_CASE("no line goes beyond 120 columns", "[contract]") {
 }
 
 TEST_CASE("nothing is left to do later", "[contract]") {
-    // Put together from parts, so that this file is not one that it finds.
+    // Built from parts so that this file does not match its own pattern.
     const std::vector<std::string> marks{std::string("TO") + "DO", std::string("FIX") + "ME",
                                          std::string("not imple") + "mented"};
     for (const skerry::test::ProjectFile& file : skerry::test::project_files())
@@ -39,7 +39,7 @@ TEST_CASE("nothing is left to do later", "[contract]") {
 }
 
 TEST_CASE("the list of stages captures nothing", "[contract]") {
-    // What a stage looks at through a lambda's memory it has not declared.
+    // Data that a stage reaches through a lambda capture is missing from the stage's declared accesses.
     static const std::regex capture("\\[[&=a-z][^\\]]*\\] *[({]");
     bool found = false;
     for (const skerry::test::ProjectFile& file : skerry::test::project_files()) {

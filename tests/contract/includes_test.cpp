@@ -1,4 +1,4 @@
-// Includes point down, and threading libraries stay in their files.
+// Includes point down, and only jobs/ and its backends include threading libraries.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <optional>
@@ -13,15 +13,15 @@ namespace {
 
 using skerry::test::ProjectFile;
 
-/// The folder that a file counts to, and the floor it stands on.
+/// The folder that a file belongs to, and its layer ("floor").
 struct Place {
     std::string folder;
     int floor;
 };
 
 std::optional<Place> place_of(const std::string& path) {
-    // jobs stands beside the components, and uses them; what supports the tests supports benchmarks, too, which tests
-    // look at. The first that fits counts.
+    // jobs is beside the components and uses them. tests/support also serves the benchmarks, which tests include. The
+    // first matching prefix counts.
     static const std::vector<Place> places{
         {"components/", 10},        {"jobs/", 11},
         {"systems/geometry/", 20},  {"systems/material/", 30},
@@ -36,7 +36,7 @@ std::optional<Place> place_of(const std::string& path) {
     return std::nullopt;
 }
 
-/// Folders within a folder stand on floors of their own; what lies beside them, not in one, uses them all.
+/// Layer within a folder, from its subfolders. A file directly in the folder is above all of them.
 int inner_floor(const std::string& path) {
     static const std::vector<Place> places{
         {"systems/collision/inputs/", 1},    {"systems/collision/tree/", 1},    {"systems/collision/narrow/", 2},
@@ -65,7 +65,7 @@ bool is_public(const std::string& path) {
     return path.starts_with("engine/include/skerry/") || components.contains(path);
 }
 
-/// The file of the project that an include names: beside the one it is in, from the root or, for a public header, from
+/// Path of the included project file, searched beside the including file, from the root and, for public headers, from
 /// engine/include.
 std::optional<std::string> included_file(const std::string& from, const std::string& name) {
     const std::string beside = (std::filesystem::path(from).parent_path() / name).lexically_normal().generic_string();
@@ -74,7 +74,7 @@ std::optional<std::string> included_file(const std::string& from, const std::str
     return std::nullopt;
 }
 
-/// What is wrong with an include of a file of the project; empty when nothing is.
+/// The fault of an include of a project file, or an empty string.
 std::string objection(const std::string& from, const std::string& to) {
     const std::optional<Place> own = place_of(from), other = place_of(to);
     if (!other) return "is on no floor";
@@ -86,8 +86,8 @@ std::string objection(const std::string& from, const std::string& to) {
     return "";
 }
 
-/// What is wrong with an include of a threading header; empty when nothing is. Atomics are no threads: a pool of
-/// scratch may count with one.
+/// The fault of an include of a threading header, or an empty string. Atomics are allowed everywhere: a scratch pool
+/// may count with one.
 std::string threading_objection(const std::string& from, const std::string& header) {
     static const std::regex library("(tbb|oneapi)/.*|omp\\.h|pthread\\.h|future|execution");
     static const std::regex primitive(
@@ -130,7 +130,7 @@ TEST_CASE("includes point down", "[contract]") {
                 ++seen;
                 CHECK(objection(file.path, *target) == "");
             } else {
-                // A quoted include is a file of the project.
+                // A quoted include must be a file of the project.
                 CHECK_FALSE(include->quoted);
             }
         }
@@ -146,7 +146,7 @@ TEST_CASE("only jobs know a threading library", "[contract]") {
             INFO(file.path << ": " << line);
             if (const std::optional<Include> include = include_of(line))
                 CHECK(threading_objection(file.path, include->name) == "");
-            // Vector loops are no threads.
+            // Pragmas for vector loops are allowed everywhere.
             if (std::regex_match(line, parallel_pragma)) CHECK(file.path.starts_with("jobs/backend_"));
         }
     }

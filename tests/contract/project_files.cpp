@@ -12,7 +12,7 @@ namespace {
 const std::filesystem::path root = SKERRY_SOURCE_DIR;
 
 bool is_source(const std::filesystem::path& file) {
-    if (file.parent_path().parent_path().filename() == "found") return false;  // what fuzzers found: any bytes
+    if (file.parent_path().parent_path().filename() == "found") return false;  // files found by fuzzers hold any bytes
     static const std::set<std::string> extensions{".h", ".cpp", ".cmake", ".py", ".js", ".sh", ".html", ".css", ""};
     return extensions.contains(file.extension().string()) || file.filename() == "CMakeLists.txt" ||
            file.filename() == "packages.txt";

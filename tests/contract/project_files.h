@@ -1,4 +1,4 @@
-// The files of the project, as the tests of the house read them.
+// The files of the project, as read by the contract tests.
 #pragma once
 
 #include <string>
@@ -7,20 +7,20 @@
 namespace skerry::test {
 
 struct ProjectFile {
-    std::string path;  // from the root of the project, with /
+    std::string path;  // relative to the root of the project, with /
     std::vector<std::string> lines;
 };
 
-/// All source files: code, build, scripts, pages. In the order of their paths.
+/// All source files (code, build, scripts, pages), sorted by path.
 std::vector<ProjectFile> project_files();
 
-/// The texts beside them: README, changelog, docs, scenes, the build's own files in the root.
+/// All other texts: README, changelog, docs, scenes, and the build files in the root.
 std::vector<ProjectFile> project_texts();
 
-/// Whether there is such a file in the project.
+/// True if the project has a file at this path.
 bool project_has(const std::string& path);
 
-/// A file of the project, which has to be there.
+/// A file of the project, which must exist.
 ProjectFile project_file(const std::string& path);
 
 }  // namespace skerry::test

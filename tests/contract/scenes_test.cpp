@@ -1,4 +1,4 @@
-// Every scene that is shipped loads and runs.
+// Every shipped scene loads and runs.
 #include <skerry/scene.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The drawing of the step in docs/ is what the step does.
+// The drawing of the step graph in docs/ matches the step.
 #include <skerry/world.h>
 
 #include <catch2/catch.hpp>

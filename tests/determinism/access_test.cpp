@@ -1,5 +1,5 @@
-// The stages of a world touch what they declare and nothing else: with SKERRY_CHECK_ACCESS every scene is a test of it,
-// and this one of the check.
+// The stages of a world access only the data that they declare. With SKERRY_CHECK_ACCESS every scene tests this; the
+// test here tests the check itself.
 #include <catch2/catch.hpp>
 
 #include "components/check.h"
@@ -36,7 +36,7 @@ TEST_CASE("a stage that is slipped into the step and looks at what it has not de
 
 #else
 
-// Without it, in builds with NDEBUG, there is nothing to test; tsan builds with it.
+// Without SKERRY_CHECK_ACCESS, in builds with NDEBUG, there is nothing to test. The tsan build has it.
 
 #endif
 

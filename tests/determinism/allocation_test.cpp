@@ -1,4 +1,4 @@
-// A step in a steady state allocates nothing. This program replaces malloc and counts.
+// A step in a steady state allocates no memory. This program replaces malloc by a version that counts.
 #include <catch2/catch.hpp>
 
 #include <atomic>
@@ -44,7 +44,7 @@ namespace {
 World resting_balls(Backend backend, int threads, Settings settings = {}) {
     settings.backend = backend;
     settings.threads = threads;
-    settings.start_overlaps = StartOverlaps::ignore;  // they are pushed out of each other before they rest
+    settings.start_overlaps = StartOverlaps::ignore;  // overlapping balls are pushed apart before they rest
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});
@@ -78,7 +78,7 @@ TEST_CASE("the counter sees an allocation", "[determinism]") {
 
 TEST_CASE("a resting pile allocates nothing in a fifth of a second of steps", "[determinism]") {
     for (Backend backend : available_backends()) {
-        // libgomp allocates each of its tasks; what we allocate is the same code
+        // libgomp allocates memory for each of its tasks. Skerry's own allocations do not depend on the backend.
         if (backend == Backend::openmp) continue;
         for (int threads : {1, 2}) {
             INFO(name_of(backend) << " with " << threads);
@@ -104,7 +104,7 @@ TEST_CASE("rigid and implicit bodies at rest allocate nothing, either", "[determ
     const auto dynamics = GENERATE(BodyDynamics::rigid, BodyDynamics::implicit_elastic);
     Settings settings;
     settings.sleep = GENERATE(false, true);
-    settings.gravity = {1, 0, -9};  // not as steep as friction
+    settings.gravity = {1, 0, -9};  // less steep than the friction angle
     World world(settings);
     const auto stiff = world.add_material({.young_modulus = 1e8, .friction = 0.3});
     world.add_collider(Plane{});
@@ -235,7 +235,7 @@ TEST_CASE(
     counting = false;
     CHECK(went_well);
     CHECK(allocations == 0);
-    CHECK(world.report().broad_searches < searches + 60);  // and searches afresh as rarely as without
+    CHECK(world.report().broad_searches < searches + 60);  // broad searches are as rare as without control
     CHECK(force > 0);
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("the memory that bodies take while they are added grows with their num
         return static_cast<double>(bytes.load());
     };
     const double few = bytes_of(400);
-    // columns that double may take up to twice as much; what is made anew for each body would take 16 times as much
+    // Doubling columns may take up to twice as much. Tables rebuilt for each body would take 16 times as much.
     CHECK(bytes_of(1600) < 6 * few);
 }
 

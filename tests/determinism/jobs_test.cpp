@@ -1,4 +1,4 @@
-// The same bits on any number of workers, on every backend, in every run.
+// Results are bitwise equal on any number of workers, on every backend, in every run.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned seed = 20100201;
 
-// Magnitudes from 1e-8 to 1e8 with both signs: nearly every order of adding them up rounds to another sum.
+// Magnitudes from 1e-8 to 1e8 with both signs: nearly every order of summation rounds to another sum.
 std::vector<Real> awkward_numbers(std::size_t count) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<Real> exponent(-8, 8), sign(-1, 1);
@@ -41,7 +41,7 @@ TEST_CASE("a sum is the same bits on 1 to 8 workers and every backend", "[determ
     const std::vector<Real> numbers = awkward_numbers(10000);
     const std::size_t block = 64;
 
-    // The test can fail: the same blocks added up in other orders give other bits.
+    // Shows that the test can fail: other orders of the same blocks give other bits.
     std::vector<Real> blocks;
     for (std::size_t begin = 0; begin < numbers.size(); begin += block)
         blocks.push_back(sum_of(numbers, begin, std::min(begin + block, numbers.size())));

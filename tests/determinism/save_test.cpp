@@ -1,5 +1,5 @@
-// A world that was copied, or saved and loaded, goes on as the one that was not: the same bits in all that is state,
-// and the same report, whoever runs it.
+// A world that was copied, or saved and loaded, continues with the same bits in its state and the same report as the
+// original, on any backend and number of threads.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -14,7 +14,7 @@ namespace skerry::test::save_test {
 
 namespace {
 
-/// A world, and the calls of advance that it gets.
+/// A start world, and the calls of advance() that are made on it.
 struct Course {
     std::function<World()> start;
     Real call;  // s
@@ -44,7 +44,7 @@ void check_same_report(const WorldReport& a, const WorldReport& b) {
     CHECK(a.asleep == b.asleep);
     CHECK(a.clusters == b.clusters);
     CHECK(a.stable_step == b.stable_step);
-    // when something was searched is as it would have been, too
+    // The counts of searches also match the run without a restart.
     CHECK(a.broad_searches == b.broad_searches);
     CHECK(a.pair_searches == b.pair_searches);
     CHECK(a.candidates == b.candidates);
@@ -56,7 +56,7 @@ void check_same_report(const WorldReport& a, const WorldReport& b) {
     CHECK(a.balanced_steps == b.balanced_steps);
     REQUIRE(a.step_limits.size() == b.step_limits.size());
     for (std::size_t i = 0; i < a.step_limits.size(); ++i) {
-        CHECK(a.step_limits[i].body.slot == b.step_limits[i].body.slot);  // another run's world has another number
+        CHECK(a.step_limits[i].body.slot == b.step_limits[i].body.slot);  // world numbers differ between runs
         CHECK(a.step_limits[i].body_name == b.step_limits[i].body_name);
         CHECK(a.step_limits[i].steps == b.step_limits[i].steps);
         CHECK(a.step_limits[i].seconds == b.step_limits[i].seconds);
@@ -75,7 +75,7 @@ void check_same_contacts(std::span<const Contact> a, std::span<const Contact> b)
     }
 }
 
-/// Saves at `moments` random places of the course, and takes each file as far as `on` calls go, or to the end.
+/// Saves at `moments` random calls of the course. Continues the first file to the end, and the others for `on` calls.
 void check_restarts(const Course& course, int moments, int on, std::uint64_t seed) {
     const TemporaryFolder folder;
     const auto file = [&](int call) { return folder.path() / (std::to_string(call) + ".h5"); };
@@ -92,7 +92,7 @@ void check_restarts(const Course& course, int moments, int on, std::uint64_t see
         hash.push_back(world.state_hash());
         report.push_back(world.report());
     }
-    // who saves goes on as who does not
+    // Saving does not change the run.
     World other = course.start();
     for (int call = 0; call < course.calls; ++call) REQUIRE(other.advance(course.call).ok());
     CHECK(other.state_hash() == hash.back());
@@ -133,7 +133,7 @@ TEST_CASE("meshes from files restarted at ten random moments go on with the bits
     check_restarts(scene("mesh_drop.json", 1.0 / 60, 30), 10, 4, 3);
 }
 
-// sleep, a mesh collider that moves, held nodes, loads, several materials
+// The scene has sleep, a moving mesh collider, held nodes, loads and several materials.
 TEST_CASE("sleeping bodies restarted at ten random moments go on with the bits of the run that was not",
           "[determinism][slow]") {
     check_restarts(lively(Integrator::symplectic_euler, 50), 10, 8, 4);
@@ -213,7 +213,7 @@ TEST_CASE("handles, names, shapes and contacts are what they were after loading"
         CHECK(loaded.name(collider) == world.name(collider));
     }
     check_same_contacts(loaded.contacts(), world.contacts());
-    // and both change alike
+    // Edits change both worlds in the same way.
     for (World* w : {&world, &loaded}) {
         w->remove(late);
         w->add_collider(Sphere{0.1}, {.position = {0, 0, -1}});

@@ -1,5 +1,5 @@
-// What is state is all that the next step depends on, and the hash sees each part of it. That a world made from it goes
-// on as the original does: save_test.cpp.
+// The state contains everything that the next step depends on, and the hash covers each part of it. save_test.cpp tests
+// that a world made from the state continues like the original.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <type_traits>
@@ -51,14 +51,14 @@ TEST_CASE("the hash sees a bit in every column that is state", "[determinism]") 
     REQUIRE(state.cache.warm_start.key.size() > 0);
     REQUIRE(state.cache.pairs.size() > 0);
     for (PairState& known : state.cache.pairs.state)
-        known = PairState::overlapping;  // of what is apart nothing is kept
+        known = PairState::overlapping;  // pairs that are apart keep no state
     state.cache.resting.for_each_column([](const char*, auto& column, ColumnRole) { column.resize(1); });
     const std::uint64_t before = world.state_hash();
     int flipped = 0;
     const auto flip = [&](const char* name, auto& column, ColumnRole role) {
         if (!is_state(role) || column.empty()) return;
         CAPTURE(name);
-        std::size_t row = 0;  // one that names something, not no_index
+        std::size_t row = 0;  // a row that refers to something, not no_index
         if constexpr (std::is_same_v<std::decay_t<decltype(column[0])>, Index>)
             while (row + 1 < column.size() && column[row] == no_index) ++row;
         auto& byte = *reinterpret_cast<unsigned char*>(&column[row]);
@@ -86,7 +86,7 @@ TEST_CASE("every column of a table that is state can be told from what is not", 
     REQUIRE(world.advance(0.1).ok());
     WorldState& state = WorldAccess::state_of(world);
     const std::uint64_t before = world.state_hash();
-    // What is neither state nor link is none of the hash's business: it may hold anything.
+    // Columns that are neither state nor link are not hashed, so they may hold any bytes.
     state.model.for_each_table([&](const char*, auto& columns) {
         columns.for_each_column([](const char*, auto& column, ColumnRole role) {
             if (is_state(role)) return;

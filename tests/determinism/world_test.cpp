@@ -1,4 +1,4 @@
-// Whole worlds give the same bits on any number of workers, on every backend, and when run again.
+// Whole worlds give the same bits on any number of workers, on every backend, and in a second run.
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
@@ -8,8 +8,8 @@ namespace skerry::test::world_test {
 
 namespace {
 
-/// Balls that fall onto each other and a box: contacts between bodies, with colliders, and regions of many sizes; large
-/// enough not to run inline.
+/// Balls that fall onto each other and a box. Contacts between bodies and with colliders form regions of many sizes.
+/// The scene is large enough not to run inline.
 World pile(Backend backend, int threads, MaterialModel model = MaterialModel::stable_neo_hookean) {
     Settings settings;
     settings.backend = backend;
@@ -92,7 +92,7 @@ TEST_CASE("the hash sees a change of the last bit of one velocity", "[determinis
 }
 
 TEST_CASE("budgets that skip what cannot be close change no bit that matters", "[determinism]") {
-    // Searching everything in every step finds the same contacts, in the same order, so that the runs stay equal.
+    // Searching everything in every step finds the same contacts in the same order, so the runs stay equal.
     std::vector<std::uint64_t> hashes;
     for (bool budgets : {true, false}) {
         Settings settings;

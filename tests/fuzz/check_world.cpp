@@ -37,7 +37,7 @@ void check_bodies(const World& world) {
     expect(energy.kinetic >= 0, "kinetic energy below zero");
 }
 
-/// All digits: a weight of rounding may be what is wrong.
+/// The weights with all digits, because a weight that is only a rounding error may be the fault.
 std::string describe(const std::array<Real, 4>& weight) {
     std::ostringstream text;
     text.precision(17);
@@ -56,7 +56,7 @@ void check_contacts(const World& world) {
                who + "not finite");
         expect(std::abs(c.normal.norm() - 1) < 1e-6, who + "normal of length " + std::to_string(c.normal.norm()));
         expect(world.alive(c.first) || world.alive(c.second), who + "of no body");
-        // rounding of the sums that a method projects with
+        // The tolerance covers rounding in the sums that the solver methods project with.
         expect(c.impulse.dot(c.normal) >= -1e-9 * largest,
                who + "pulls with " + std::to_string(-c.impulse.dot(c.normal) / largest) + " of the largest impulse " +
                    std::to_string(largest) + " region " + std::to_string(c.region) + " state " +
@@ -67,7 +67,7 @@ void check_contacts(const World& world) {
                    who + "weight " + std::to_string(c.weight[a]));
             if (c.weight[a] == 0) continue;
             const BodyHandle body = c.weight[a] > 0 ? c.first : c.second;
-            if (!world.alive(body)) continue;  // a collider's
+            if (!world.alive(body)) continue;  // belongs to a collider
             expect(c.node[a] >= 0 && c.node[a] < static_cast<Index>(world.positions(body).size()),
                    who + "node " + std::to_string(c.node[a]) + " of " + world.name(body) + ", weights " +
                        describe(c.weight));

@@ -1,14 +1,14 @@
-// What must hold of a world after every step, whatever the scene is.
+// Invariants of a world that must hold after every step of any scene.
 #pragma once
 
 #include "skerry/world.h"
 
 namespace skerry::test {
 
-/// Throws std::runtime_error that says what is wrong.
+/// Each function throws std::runtime_error with a description of the fault.
 void check_bodies(const World& world);
 void check_contacts(const World& world);
-/// `extent`: m, from end to end of all that is in the world.
+/// `extent`: diameter of everything in the world [m]
 void check_report(const StepReport& report, Real extent);
 
 }  // namespace skerry::test

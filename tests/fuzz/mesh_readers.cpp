@@ -1,4 +1,4 @@
-// Mesh files, read as tetrahedra and as a surface.
+// Fuzz targets for mesh files, which are read as tetrahedra and as a surface.
 #include <algorithm>
 
 #include "readers.h"

@@ -1,4 +1,4 @@
-// FCLIB files: read, checked and solved for a few sweeps.
+// Fuzz targets for FCLIB files, which are read, checked and solved for a few sweeps.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -35,7 +35,7 @@ void use_problem(const std::string& content) {
     }
 }
 
-/// The data sets of a problem, by path.
+/// The data sets of a problem, keyed by path.
 struct ProblemValues {
     std::map<std::string, std::vector<Index>> integers;
     std::map<std::string, std::vector<Real>> reals;
@@ -79,7 +79,7 @@ ProblemValues global_values() {
     return values;
 }
 
-/// One change of one data set: what, at which entry, to which value.
+/// Makes one change of one data set. `code` selects the set, the kind of change, the entry and the value.
 template <class T, std::size_t N>
 void change(std::map<std::string, std::vector<T>>& sets, FileBytes code, const T (&telling)[N]) {
     const auto set = std::next(sets.begin(), static_cast<std::ptrdiff_t>(code[0] % sets.size()));

@@ -9,7 +9,7 @@ namespace skerry::test {
 
 namespace {
 
-/// Nodes moved, down to tetrahedra that are nearly flat, also on the surface.
+/// A box with moved nodes, also on the surface; some tetrahedra become nearly flat.
 Mesh moved_nodes(RandomNumbers& random, Real size) {
     const std::array<Index, 3> cells{random.count(1, 4), random.count(1, 4), random.count(1, 4)};
     const Real edge = size / static_cast<Real>(std::max({cells[0], cells[1], cells[2]}));
@@ -23,18 +23,18 @@ Mesh moved_nodes(RandomNumbers& random, Real size) {
     return mesh;
 }
 
-/// Cells that shrink towards one corner, each direction at its own rate.
+/// A box whose cells shrink towards one corner, at a different rate in each direction.
 Mesh graded(RandomNumbers& random, Real size) {
     Mesh mesh = mesh::box(Vec3::Ones(), {random.count(2, 5), random.count(2, 5), random.count(2, 5)});
     const Vec3 power(random.within(1, 3), random.within(1, 3), random.within(1, 3));
     for (Vec3& x : mesh.nodes)
         for (Index i = 0; i < 3; ++i)
-            // rounding may leave a node of the lower face below it
+            // Rounding may leave a node slightly below the lower face.
             x[i] = size * (std::pow(std::max(Real(0), x[i] + Real(0.5)), power[i]) - Real(0.5));
     return mesh;
 }
 
-/// Needles or plates of one cell across.
+/// Needles or plates that are one cell thick.
 Mesh slender(RandomNumbers& random, Real size) {
     const Real thin = random.by_decade(0.01, 0.2);
     const bool plate = random.chance(0.5);

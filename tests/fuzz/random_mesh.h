@@ -1,5 +1,5 @@
-// Random meshes of the qualities that people's own meshes have: slivers, moved nodes, cells that shrink towards a
-// corner, needles.
+// Random meshes with the defects of real users' meshes: slivers, moved nodes, cells that shrink towards a corner,
+// needles.
 #pragma once
 
 #include "random_numbers.h"
@@ -7,7 +7,7 @@
 
 namespace skerry::test {
 
-/// A block about as large as `size` (m), its middle at the origin, of at most some thousand tetrahedra, all of positive
+/// A block of about `size` [m] with its middle at the origin. It has at most a few thousand tetrahedra, all of positive
 /// volume. The flattest have from a third to a thousandth of the altitude that they would have in an even mesh.
 Mesh make_poor_mesh(RandomNumbers& random, Real size);
 

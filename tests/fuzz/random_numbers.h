@@ -1,4 +1,4 @@
-// Random numbers of the kinds that random scenes are made of, the same on every machine.
+// Random numbers for random scenes, equal on every machine.
 #pragma once
 
 #include <cmath>
@@ -13,14 +13,14 @@ class RandomNumbers : public SplitMix {
 public:
     using SplitMix::SplitMix;
 
-    /// In [low, high).
+    /// A number in [low, high), uniform
     Real within(Real low, Real high) { return low + (high - low) * fraction(); }
-    /// In [low, high), every decade as likely as the next.
+    /// A number in [low, high), uniform in its logarithm
     Real by_decade(Real low, Real high) { return std::exp(within(std::log(low), std::log(high))); }
-    /// From low to high, both included.
+    /// An integer from low to high, both included
     int count(int low, int high) { return low + static_cast<int>(next() % static_cast<std::uint64_t>(high - low + 1)); }
     bool chance(Real probability) { return within(0, 1) < probability; }
-    /// A direction; along an axis every other time, where faces and edges meet exactly.
+    /// A unit vector. Half of the time it lies along an axis, so that faces and edges meet exactly.
     Vec3 direction() {
         if (chance(0.5)) return (chance(0.5) ? 1 : -1) * Vec3::Unit(count(0, 2));
         const Real z = within(-1, 1), angle = within(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);

@@ -19,7 +19,7 @@ Json list(const Vec3& v) {
     return Json::array({v.x(), v.y(), v.z()});
 }
 
-/// One scene in the making: sizes and speeds are chosen so that something happens within a few hundred stable steps.
+/// Builds one scene. Sizes and speeds are chosen so that something happens within a few hundred stable steps.
 class SceneMaker {
 public:
     explicit SceneMaker(std::uint64_t seed) : seed_(seed), random_(seed) {}
@@ -32,7 +32,7 @@ public:
         density_ = random_.by_decade(1, 1e4);
         wave_speed_ = std::sqrt(stiffness_ / density_);
         duration_ = scene_.advances * scene_.steps_per_advance * 0.05 * scene_.length / wave_speed_;
-        // up to 100 m/s whatever the material, or slow enough for it to stand the impact
+        // up to 100 m/s for any material, or slow enough for the material to survive the impact
         top_speed_ = random_.chance(0.2) ? random_.by_decade(0.1, 100)
                                          : std::min(100.0, wave_speed_ * random_.by_decade(1e-3, 0.5));
         scene_.speed = top_speed_;
@@ -61,10 +61,10 @@ private:
 
     Json settings() {
         Json s;
-        // what overlaps and goes on is worth more scenes than what is taken apart, or refused, at the start
+        // Most scenes ignore start overlaps: a run that goes on tests more than one that is moved apart or refused.
         constexpr std::uint64_t one_in = 16;
         s["start_overlaps"] = seed_ % one_in == 0 ? "resolve" : "ignore";
-        // as on Earth, none, or strong enough to be felt within so short a run
+        // gravity of the Earth, none, or strong enough to matter within so short a run
         const Real strong = random_.by_decade(1e-4, 1e-1) * wave_speed_ * wave_speed_ / scene_.length;
         s["gravity"] = list(random_.one_of<Real>({0, 9.81, strong, strong}) * random_.direction());
         if (random_.chance(0.3)) s["step_safety"] = random_.within(0.05, 1);
@@ -89,7 +89,7 @@ private:
         s["tolerance"] = random_.by_decade(1e-10, 0.5);
         s["max_iterations"] = random_.count(1, 300);
         if (random_.chance(0.1)) s["fixed_iterations"] = true;
-        // sweeps that go too far may add energy before they converge, and may be cut off there
+        // Over-relaxed sweeps may add energy before they converge, and may be cut off there.
         if (random_.chance(0.1)) s["relaxation"] = random_.within(0.1, 1.9);
         if (random_.chance(0.2)) s["max_strain_step"] = random_.by_decade(0.01, 1);
         for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating",
@@ -100,8 +100,8 @@ private:
         return s;
     }
 
-    /// By the engine's own limits, and soon enough to be seen; by numbers of its own, so that all else is drawn as
-    /// ever.
+    /// Uses the engine's own sleep limits and a sleep time short enough to matter in the run. Its random numbers are
+    /// separate, so that all other draws stay unchanged.
     void draw_rest(Json& s) const {
         RandomNumbers random(seed_ ^ 0x9e3779b97f4a7c15u);
         s["sleep"] = random.chance(0.8);
@@ -188,12 +188,12 @@ private:
         return {{"axis", list(random_.direction())}, {"radians", random_.one_of<Real>({0, random_.within(-4, 4)})}};
     }
 
-    /// Apart by a part of their sizes, exactly touching, or one in the other.
+    /// A position beside the last body: separated by a part of their sizes, exactly touching, or one inside the other.
     Vec3 next_to_last(Real size) {
         const Real reach = (last_size_ + size) / 2;
         const Real apart = random_.one_of<Real>(
             {1, 1, 1, 1.001, random_.within(1, 1.1), random_.within(0.9, 1), random_.within(0, 1)});
-        // one in the other: they may be pushed out only later, when their surfaces meet
+        // Nested bodies may be pushed apart later, when their surfaces meet.
         if (apart < 0.9) scene_.passive = false;
         const Vec3 position = last_position_ + apart * reach * random_.direction();
         last_size_ = size;
@@ -232,7 +232,7 @@ private:
         body["material"] = "m" + std::to_string(random_.count(0, material_count_ - 1));
         const Vec3 place = number == 0 ? Vec3(Vec3::Zero()) : next_to_last(size);
         if (number == 0) last_size_ = size;
-        // far from the origin positions have fewer digits behind the point
+        // Far from the origin, positions have fewer digits after the decimal point.
         if (number == 0 && random_.chance(0.05)) last_position_ = 1e4 * scene_.length * random_.direction();
         body["position"] = list(number == 0 ? last_position_ : place);
         if (random_.chance(0.5)) body["rotation"] = rotation();
@@ -319,7 +319,7 @@ private:
 
     const std::uint64_t seed_;
     RandomNumbers random_;
-    // lists of their own: other draws stay as they were before
+    // Separate generators, so that the draws of random_ stay unchanged.
     RandomNumbers of_frames_{~seed_};
     RandomNumbers of_meshes_{~seed_ * 3};
     RandomNumbers of_spheres_{~seed_ * 5};
@@ -327,10 +327,10 @@ private:
     RandomNumbers of_cylinders_{~seed_ * 11};
     RandomNumbers of_long_steps_{~seed_ * 13};
     RandomScene scene_;
-    Real stiffness_ = 0, density_ = 0;  // Pa, kg/m^3, of the first material
-    Real wave_speed_ = 0;               // m/s, of it
-    Real duration_ = 0;                 // s, of the run, about
-    Real top_speed_ = 0;                // m/s
+    Real stiffness_ = 0, density_ = 0;  // of the first material [Pa, kg/m^3]
+    Real wave_speed_ = 0;               // of the first material [m/s]
+    Real duration_ = 0;                 // approximate length of the run [s]
+    Real top_speed_ = 0;                // [m/s]
     int material_count_ = 0;
     Vec3 last_position_ = Vec3::Zero();
     Real last_size_ = 0;

@@ -1,5 +1,5 @@
-// The random scenes themselves, and a few of them in every test run. The program random_scenes runs them for as long as
-// asked.
+// Tests of the generator of random scenes, and a few random scenes in every test run. The program random_scenes runs as
+// many as there is time for.
 #include <catch2/catch.hpp>
 
 #include "run_random_scene.h"
@@ -39,12 +39,12 @@ TEST_CASE("random scenes run or are refused, with finite numbers all the way", "
         steps += run.steps;
         contacts = std::max(contacts, run.max_contacts);
     }
-    // the scenes are worth running: they move, and they touch
+    // Sanity check: the scenes move and touch.
     CHECK(steps > 1000);
     CHECK(contacts > 100);
 }
 
-// Found by random scenes: each step in which something crossed was halved anew, and grew back by a tenth, until time
+// Regression, found by random scenes: each step with a crossing was halved again and grew back by a tenth, until time
 // stood still.
 TEST_CASE("time goes on in a scene where surfaces keep crossing", "[scene]") {
     Scene scene = load_scene(std::filesystem::path(SKERRY_SOURCE_DIR) / "tests/fuzz/scenes/keeps_crossing.json");
@@ -53,8 +53,7 @@ TEST_CASE("time goes on in a scene where surfaces keep crossing", "[scene]") {
         const Real dt = 9.7118 * scene.world.stable_step();
         const StepReport report = scene.world.advance(dt);
         REQUIRE(report.ok());
-        // ten stable steps, each of them halved at most seven times; twice as many where the stable step shrinks
-        // meanwhile
+        // ten stable steps, each halved at most seven times; the factor 2 allows for a shrinking stable step
         REQUIRE(report.steps <= 10 * 128 * 2);
         crossed += static_cast<std::uint64_t>(report.shortened);
     }

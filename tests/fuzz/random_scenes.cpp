@@ -1,5 +1,4 @@
-// Random scenes for as long as asked, each in a process of its own: a crash or a hang of one is written down and the
-// next one runs.
+// Runs random scenes for a given time, each in its own process. A crash or hang is recorded and the next scene runs.
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -20,15 +19,15 @@ using namespace skerry::test;
 namespace {
 
 struct Options {
-    double seconds = 60;                   // of wall time, for all
-    std::uint64_t seed = 1;                // of the first scene
+    double seconds = 60;                   // wall time for all scenes [s]
+    std::uint64_t seed = 1;                // seed of the first scene
     std::uint64_t scenes = 0;              // 0: as many as the time allows
-    double scene_seconds = 20;             // of CPU time, after which no further step of a scene is tried: cut short
-    double hang_seconds = 200;             // of CPU time, after which a scene that did not end counts as hung
-    int compare_every = 8;                 // every so many scenes is run again on other threads
-    bool list = false;                     // one line a scene
-    std::filesystem::path out;             // where scenes that failed are put
-    std::vector<std::string> assignments;  // in all scenes, SceneOverrides
+    double scene_seconds = 20;             // CPU time after which a scene is cut short before its next step [s]
+    double hang_seconds = 200;             // CPU time after which an unfinished scene counts as hung [s]
+    int compare_every = 8;                 // one scene in so many is run again on other threads
+    bool list = false;                     // print one line per scene
+    std::filesystem::path out;             // folder for failed scenes
+    std::vector<std::string> assignments;  // settings for all scenes, as in SceneOverrides
 };
 
 class Clock {
@@ -44,14 +43,14 @@ struct Verdict {
     std::string text;
 };
 
-/// What the process of a scene says: the kind, a space, and the rest.
+/// Runs a scene in the current process and returns the verdict that the child process reports.
 Verdict run_here(const RandomScene& scene, bool compare, const Options& options) {
     const TemporaryFolder folder;
     char text[512];
     try {
         const SceneRun run =
             run_random_scene(scene, folder.path(), {.assignments = options.assignments}, options.scene_seconds);
-        // without the time limit of the clock both runs end at the same step
+        // A run that the clock did not cut short ends at the same step as its rerun.
         if (compare && run.end != SceneEnd::cut_short) {
             const SceneOverrides other{.threads = 4, .backend = Backend::threads, .assignments = options.assignments};
             const SceneRun again = run_random_scene(scene, folder.path(), other);
@@ -74,7 +73,7 @@ Verdict run_apart(const RandomScene& scene, bool compare, const Options& options
     const pid_t child = fork();
     if (child == 0) {
         close(channel[0]);
-        // of CPU time: on a busy machine the clock on the wall says nothing
+        // The limit is CPU time, because wall time means nothing on a busy machine.
         const rlimit limit{static_cast<rlim_t>(options.hang_seconds), RLIM_INFINITY};
         setrlimit(RLIMIT_CPU, &limit);
         const Verdict verdict = run_here(scene, compare, options);

@@ -1,4 +1,4 @@
-// What the fuzzers have found is read once more by every test run. See docs/fuzzing.md.
+// Every test run reads again all files that the fuzzers have found. See docs/fuzzing.md.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -24,7 +24,7 @@ std::optional<Handle> any_of(const std::vector<Handle>& handles, RandomNumbers& 
     return handles[random.next() % handles.size()];
 }
 
-/// Makes the changes of a scene in mid-run.
+/// Makes the changes of a scene during the run.
 class Changer {
 public:
     Changer(World& world, const RandomScene& scene) : world_(world), scene_(scene) {}
@@ -71,7 +71,7 @@ private:
     }
 
     void add_body(RandomNumbers& random) {
-        // of the softest kind that the scenes have, and light: the step of the others need not shrink for it
+        // The softest material of the scenes, and light, so that the step of the others need not shrink.
         const MaterialHandle material =
             world_.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3, .density = 1000, .friction = 0});
         const Mesh mesh = random.chance(0.5) ? mesh::ball(scene_.length / 2, random.count(1, 4))
@@ -119,27 +119,27 @@ private:
     std::vector<AttachmentHandle> attachments_;
 };
 
-/// Symplectic Euler's own error, close to the limit of stability, and contacts pushed out of each other in between;
-/// what blows up grows by orders of magnitude.
+/// Largest allowed growth factor of the energy. It covers symplectic Euler's error near the stability limit and
+/// contacts that are pushed apart in between. An instability grows by orders of magnitude.
 constexpr Real most_growth = 3;
 
-/// Error of a region: impulses of zero have one of about 1.
+/// Error of a region from which it counts as unsolved. Zero impulses have an error of about 1.
 constexpr Real as_good_as_unsolved = 0.5;
 
-/// Energy of a scene that nothing does work on but gravity.
+/// Watches the energy of a scene in which only gravity does work.
 class EnergyWatch {
 public:
     EnergyWatch(const World& world, Real length) : start_(world.energy()) {
         for (const BodyHandle body : world.bodies()) mass_ += world.mass(body);
-        // what falling through one stable step gains: the order of symplectic Euler's error in a field of weight
+        // Speed gained by falling for one stable step: the order of symplectic Euler's error in a gravity field.
         const Real fall = world.settings().gravity.norm() * world.stable_step();
-        // and what rounding does to strains, in the energy that a strain of one would hold
+        // Rounding of strains, relative to the energy at a strain of one.
         const Real sound = length / world.stable_step();
         floor_ = mass_ * (10 * fall * fall + 1e-20 * sound * sound);
     }
 
     Real start() const { return start_.kinetic + start_.elastic + floor_; }
-    /// The mechanical energy over that of the start.
+    /// Ratio of the mechanical energy to that of the start.
     Real growth(const Energy& now) const {
         const Real begun = start();
         const Real gained = now.kinetic + now.elastic + now.potential - start_.potential;
@@ -153,7 +153,7 @@ private:
     Real mass_ = 0, floor_ = 0;
 };
 
-/// m: how far colliders are moved. A plane that is swept past a body has it as far behind it as that.
+/// Distance that colliders are moved [m]. A plane that is swept past a body can be that deep in it.
 Real way_of_colliders(const RandomScene& scene) {
     const nlohmann::json json = nlohmann::json::parse(scene.json);
     const auto vector = [](const nlohmann::json& v) {
@@ -172,13 +172,13 @@ Real way_of_colliders(const RandomScene& scene) {
     return way;
 }
 
-/// From end to end of the bodies, and how far things can have come.
+/// Diameter of all bodies plus the size of the largest collider, a bound on depths in the world [m]
 Real extent_of(const World& world, const RandomScene& scene) {
     Vec3 lower = Vec3::Constant(1e300), upper = -lower;
     for (const BodyHandle body : world.bodies())
         for (const Vec3& x : world.positions(body)) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
     const Real bodies = world.bodies().empty() ? 0 : (upper - lower).norm();
-    return bodies + 100 * scene.length;  // the largest collider
+    return bodies + 100 * scene.length;  // the size of the largest collider
 }
 
 }  // namespace
@@ -212,16 +212,16 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
         StepReport report;
         try {
             report = world.advance(dt, time_is_left);
-        } catch (const SceneError& error) {  // what a change added overlaps something and has no way out
+        } catch (const SceneError& error) {  // an added object overlaps something and has no way out
             run.end = SceneEnd::refused;
             run.message = error.what();
             break;
         }
         run.steps += static_cast<std::uint64_t>(report.steps);
         run.max_contacts = std::max(run.max_contacts, report.contacts);
-        // A plane that turns sweeps over everything, and in a step of a large turn comes down on it anywhere: no depth
-        // is too deep then. The report names it.
-        constexpr Real resolved_turn = 0.25;  // rad in a step
+        // A turning plane sweeps over everything. In a step of a large turn it can come down on a body anywhere, so any
+        // depth is valid then. The report names the plane.
+        constexpr Real resolved_turn = 0.25;  // turn in one step [rad]
         const bool swept = world.report().collider_turn > resolved_turn;
         check_report(report, swept ? std::numeric_limits<Real>::infinity() : extent_of(world, scene) + way);
         check_bodies(world);
@@ -233,9 +233,9 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
             break;
         }
         if (!stopped && world.time() != before + dt) throw std::runtime_error("time went wrong");
-        // what is pressed in from the start is pushed out, which loads it
+        // Contacts that overlap at the start are pushed out, which adds energy.
         passive &= next_change == 0 && !(a == 0 && report.max_gap_violation > 0);
-        // and what comes in since a method left its contacts as good as unsolved, which the report says
+        // A method that leaves contacts unsolved lets bodies overlap; the report says so, and pushing out adds energy.
         passive &= !(report.worst_error > as_good_as_unsolved);
         if (passive) run.energy_growth = std::max(run.energy_growth, energy.growth(world.energy()));
         if (run.energy_growth > most_growth)

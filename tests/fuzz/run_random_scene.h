@@ -1,4 +1,4 @@
-// Runs a random scene and looks at everything that it says.
+// Runs a random scene and checks all of its results and reports.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +9,23 @@
 namespace skerry::test {
 
 enum class SceneEnd {
-    done,      // all of it ran
-    refused,   // the scene, or a step of it, was refused with a message that says whose fault it was
-    cut_short  // it used up its time; what ran was fine
+    done,      // the whole scene ran
+    refused,   // the scene, or a step of it, was refused with a message that names the cause
+    cut_short  // the time was used up; everything that ran was valid
 };
 
 struct SceneRun {
     SceneEnd end = SceneEnd::done;
-    std::string message;  // of the refusal
+    std::string message;  // message of the refusal
     std::uint64_t steps = 0, hash = 0;
     Index max_contacts = 0;
-    Real energy_growth = 0;       // of a passive scene: the highest energy so far over what it started with
-    Real energy_error_share = 0;  // WorldReport, at the end
+    Real energy_growth = 0;       // for a passive scene: highest energy so far over the start energy
+    Real energy_error_share = 0;  // WorldReport::energy_error_share at the end
 };
 
-/// Builds the scene in `folder` and runs it. Throws std::runtime_error that says what is wrong: a number that is not
-/// finite, a contact that makes no sense, a refusal without a culprit, energy out of nothing. `seconds`: CPU time after
-/// which no further step is tried.
+/// Builds the scene in `folder` and runs it. `seconds`: CPU time after which no further step is tried. Throws
+/// std::runtime_error with the fault: a number that is not finite, an invalid contact, a refusal that names no cause,
+/// or energy that appears from nothing.
 SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path& folder,
                           const SceneOverrides& overrides = {}, double seconds = 1e9);
 

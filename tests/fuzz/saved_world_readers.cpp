@@ -1,4 +1,4 @@
-// Saved worlds: as bytes, and whole files with wrong values in them, which are then moved by a step.
+// Fuzz targets for saved worlds: raw bytes, and valid files with wrong values, which are then advanced by a step.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,7 +19,7 @@ const TemporaryFolder& folder() {
     return made;
 }
 
-/// Something in every table that can be small: two kinds of elements, contacts, a held node, a mesh collider, a script.
+/// A world with a row in every small table: two kinds of elements, contacts, a held node, a mesh collider, a script.
 World small_world(ElementKind element) {
     World world({.backend = Backend::serial, .threads = 1, .sleep_speed = 0.01});
     const auto soft = world.add_material({.young_modulus = 2e4});
@@ -68,7 +68,7 @@ std::string write(std::span<const char> bytes) {
     return folder().write("world.skerry", {bytes.data(), bytes.size()}).string();
 }
 
-/// One step, or a refusal of it.
+/// Advances by one step, which may be refused.
 void move(World& world) {
     const Settings& settings = world.settings();
     constexpr int few_sweeps = 1000;

@@ -1,4 +1,4 @@
-// Scene files, built and moved by one step unless they ask for more than a fuzzer has time for.
+// Fuzz target for scene files. Scenes are built and advanced by one step unless that costs too much time.
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +12,10 @@ namespace skerry::test {
 
 namespace {
 
-// elements of a body, or copies: few bytes of a scene can ask for millions, and rightly so
+// Limit on elements and on copies: a few bytes of a valid scene can ask for millions.
 constexpr Real most_parts = 4000;
 
-/// The scene's folder, with the files that the scenes of the corpus name.
+/// The scene's folder with the files that the scenes of the corpus refer to.
 const TemporaryFolder& folder() {
     static const TemporaryFolder made;
     static const bool written = [] {
@@ -57,12 +57,12 @@ bool affordable(const SceneFile& scene) {
         const Real repeated =
             body.repeat ? Real(1) * body.repeat->count[0] * body.repeat->count[1] * body.repeat->count[2] : 1;
         copies += repeated + static_cast<Real>(body.positions.size());
-        constexpr Real of_sphere = 1280;  // what draws it
+        constexpr Real of_sphere = 1280;  // elements of the mesh that draws a sphere
         elements += repeated * (body.mesh ? elements_of(*body.mesh) : of_sphere);
     }
     for (const ColliderEntry& collider : scene.colliders)
         if (collider.shape.mesh) elements += elements_of(*collider.shape.mesh);
-    return copies <= most_parts && elements <= most_parts;  // false for not-a-number, too
+    return copies <= most_parts && elements <= most_parts;  // also false for NaN
 }
 
 }  // namespace

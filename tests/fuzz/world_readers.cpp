@@ -1,4 +1,4 @@
-// Meshes from files in a world, which may refuse what it cannot move.
+// Fuzz targets for mesh files in a world. The world may refuse a mesh that it cannot simulate.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ World quiet_world() {
     return World({.step_size = {}, .backend = Backend::serial, .threads = 1});
 }
 
-/// One step of the world, or a refusal of it.
+/// Advances the world by one step, which may be refused.
 void move(World& world) {
     expect_valid(world.stable_step() > 0, "a stable step that is none");
     world.advance(std::min(world.stable_step(), 1.0));

@@ -1,4 +1,4 @@
-// Writes what the fuzzers start from: FOLDER/READER/FILE, valid files of every kind.
+// Writes the seed corpus of the fuzzers, valid files of every kind, to FOLDER/READER/FILE.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

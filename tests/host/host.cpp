@@ -1,4 +1,4 @@
-// host SCENE EVERY FRAMES: a program that computes with Eigen itself, and with Skerry in between. Prints the state.
+// host SCENE EVERY FRAMES: computes with Eigen itself, with Skerry in between. Prints the state hash.
 #include <skerry/instruction_set.h>
 #include <skerry/output.h>
 #include <skerry/problem.h>
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     if (argc != 4) return 2;
     const double own_before = solve_own_systems();
     skerry::Scene scene = skerry::load_scene(argv[1]);
-    // All that has Eigen's own allocations inside: solvers, problems in files, fields, pages.
+    // Uses everything in Skerry that allocates through Eigen: solvers, problems in files, fields, pages.
     std::vector<skerry::ContactProblem> problems;
     scene.world.watch_contact_problems([&](const skerry::StepProblem& step) { problems.push_back(step.problem); }, 100);
     const double every = std::atof(argv[2]);
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     try {
         skerry::load_scene("no such file.json");
         return 8;
-    } catch (const skerry::SceneError&) {  // passes from one to the other
+    } catch (const skerry::SceneError&) {  // the exception crosses from Skerry to the host
     }
     if (solve_own_systems() != own_before) return 9;
     std::printf("0x%016" PRIx64 "\n", scene.world.state_hash());

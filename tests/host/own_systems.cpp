@@ -1,5 +1,5 @@
-// Eigen as a host uses it, compiled with the host's own flags: matrices of any size, dense and sparse factorisations.
-// Weak functions of the same names are in Skerry, perhaps for other instructions and alignments: none may be mixed.
+// Uses Eigen as a host does, compiled with the host's own flags: matrices of any size, dense and sparse factorisations.
+// Skerry contains weak functions with the same names, perhaps for other instructions and alignments. They must not mix.
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <vector>

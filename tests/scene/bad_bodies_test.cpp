@@ -1,4 +1,4 @@
-// Bodies that are refused, with what is wrong with them.
+// Bodies that are refused, and the message that says why.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
@@ -11,7 +11,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Two regular corners, one on each side of the plane z = 0.
+/// Two tetrahedra with right-angled corners, one on each side of the plane z = 0.
 Mesh two_sided() {
     return {.nodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)},
             .tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}}};
@@ -25,13 +25,13 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     CHECK_NOTHROW(world.add_body(two_sided(), {.material = rubber}));
 
     Mesh twice = two_sided();
-    twice.tetrahedra.push_back({2, 0, 1, 3});  // the first one again
+    twice.tetrahedra.push_back({2, 0, 1, 3});  // a copy of the first tetrahedron
     CHECK_THROWS_WITH(world.add_body(twice, {.material = rubber, .name = "twice"}),
                       Contains("body 'twice'") && Contains("tetrahedra 0 and 2 on the same side of a face"));
 
     Mesh inside = two_sided();
     inside.nodes.push_back(Vec3(0.2, 0.2, 0.2));
-    inside.tetrahedra.push_back({0, 1, 2, 5});  // within the first one, on its ground
+    inside.tetrahedra.push_back({0, 1, 2, 5});  // inside the first one, on its base
     CHECK_THROWS_WITH(world.add_body(inside, {.material = rubber}), Contains("tetrahedra 0 and 2 on the same side"));
     CHECK(world.bodies().size() == 1);
 }
@@ -47,7 +47,7 @@ TEST_CASE("a mesh is looked at though one like it came before, if it is not the 
     Mesh flat = two_sided();
     flat.nodes[4].z() = 1e-300;
     CHECK_THROWS_WITH(world.add_body(flat, {.material = rubber, .name = "flat"}), Contains("body 'flat'"));
-    // nor does the mesh make up for the rest
+    // A known mesh does not excuse other invalid settings.
     CHECK_THROWS_WITH(world.add_body(two_sided(), {.material = rubber, .position = Vec3(0, 0, NAN), .name = "nowhere"}),
                       Contains("body 'nowhere'") && Contains("position"));
     CHECK(world.bodies().size() == 2);

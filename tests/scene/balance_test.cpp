@@ -1,4 +1,4 @@
-// What a run says of its own errors: energy and momentum that add up, elements that turned inside out.
+// Error estimates of a run: balances of energy and momentum, and inverted elements.
 #include <catch2/catch.hpp>
 
 #include "tests/support/worlds.h"
@@ -7,8 +7,8 @@ namespace skerry::test::balance_test {
 
 namespace {
 
-/// Everything that exchanges momentum and energy with the outside: loads, weight, a moving collider, a held and a led
-/// face, contact between bodies.
+/// A world with every exchange of momentum and energy with the outside: loads, gravity, a moving collider, a held and a
+/// moving face, contact between bodies.
 World busy_world(Real step_safety, Real damping = 0, const MaterialSettings& losses = {}) {
     Settings settings;
     settings.step_safety = step_safety;
@@ -53,9 +53,9 @@ TEST_CASE("momentum adds up to rounding whatever exchanges it, energy to the err
         CHECK(report.balanced_steps == report.steps);
         REQUIRE(report.mean_contacts > 5);
         REQUIRE(report.energy.dissipated > 0.1);
-        // rounding adds up as a random walk
+        // Rounding errors add up as a random walk.
         CHECK(report.momentum_error_share < 1e-13 * std::sqrt(static_cast<Real>(report.steps)));
-        // below what the steps themselves are wrong by: energies are those of one time
+        // The balance error is below the error of the steps themselves, since all energies are taken at one time.
         CHECK(report.energy_error_share < most);
     }
 }
@@ -70,7 +70,7 @@ TEST_CASE("a change from outside starts the balance afresh, and a held body that
     REQUIRE(world.advance(0.2).ok());
     const WorldReport report = world.report();
     CHECK(report.balanced_steps < report.steps - before + 1);
-    CHECK(report.energy_error_share < 0.05);  // the kick is no error
+    CHECK(report.energy_error_share < 0.05);  // the change of velocity does not count as an error
     CHECK(report.momentum_error_share < 1e-12);
 
     World damped = busy_world(1, 5);
@@ -95,7 +95,7 @@ TEST_CASE("what rests without weight has no doubtful energy: shares of rounding 
 TEST_CASE("motion that is small, but none of rounding, has the share of error that it has when it is large",
           "[scene]") {
     std::vector<Real> shares;
-    for (const Real rate : {1e-3, 1e-7}) {  // 1/s: strains of about 1e-6 and 1e-10
+    for (const Real rate : {1e-3, 1e-7}) {  // strain rates [1/s]; the strains are about 1e-6 and 1e-10
         Settings settings;
         settings.gravity.setZero();
         World world(settings);
@@ -123,7 +123,7 @@ TEST_CASE("a report names the body and the element that turned inside out", "[sc
     CHECK(world.report().inverted == 0);
     const std::vector<Index> fixed{0, 1, 2}, led{3};
     world.attach(body, fixed);
-    world.attach(body, led, {.velocity = {0.4, 0.4, -1.5}});  // through the face of the other three
+    world.attach(body, led, {.velocity = {0.4, 0.4, -1.5}});  // moves the node through the face of the other three
     REQUIRE(world.advance(0.9).ok());
     const WorldReport report = world.report();
     CHECK(report.inverted >= 1);

@@ -34,7 +34,7 @@ TEST_CASE("a body whose strain is the same everywhere says so, with every kind o
         std::vector<Vec3> velocity;
         for (const Vec3& x : nodes) velocity.push_back(rate * x);
         world.set_velocities(body, velocity);
-        // nothing pulls yet: the first step moves every node by h times its velocity
+        // The body is free of stress: the first step moves every node by h times its velocity.
         const Real h = world.stable_step() / 2;
         REQUIRE(world.advance(h).steps == 1);
 
@@ -64,7 +64,7 @@ TEST_CASE("a node has the mean stress of its tetrahedra by volume", "[scene]") {
     REQUIRE(world.advance(10 * world.stable_step()).ok());
 
     const std::vector<Mat3> stress = world.stress(body), of_nodes = world.node_stress(body);
-    constexpr Index node = 13;  // the one in the middle
+    constexpr Index node = 13;  // the inner node
     Mat3 sum = Mat3::Zero();
     Real weight = 0;
     for (std::size_t t = 0; t < tetrahedra.size(); ++t) {

@@ -1,4 +1,4 @@
-// What the turn of a capsule in the step takes of its distances (docs/methods/rigid_bodies.md 6.2).
+// Reduction of contact distances by the rotation of a capsule within a step (docs/methods/rigid_bodies.md 6.2).
 #include <catch2/catch.hpp>
 
 #include "tests/support/capsules.h"
@@ -11,7 +11,7 @@ TEST_CASE("a capsule that spins on its end is not turned into what it spins on",
     for (const Floor floor : {plane, box, mesh_collider, rigid_slab}) {
         CAPTURE(floor);
         Capsules c(steps_of(2e-3, Vec3::Zero()), 0);
-        // nearly flat, its momentum turns the lower end about an axis that leans over it: down, as seen from the middle
+        // The capsule is nearly flat. It turns about an axis that leans over its lower end and moves the end down.
         constexpr Real tilt = 0.1;
         const Vec3 axis(std::cos(tilt), 0, -std::sin(tilt)), turn = 50 / std::sqrt(2.0) * Vec3(-1, 0, 1);
         const Vec3 spin = turn + (across / axial - 1) * turn.dot(axis) * axis;

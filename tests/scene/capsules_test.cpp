@@ -1,4 +1,4 @@
-// Rigid capsules, which are round about their axes to what they touch (docs/methods/rigid_bodies.md 6).
+// Rigid capsules, whose contact shape is exactly round about their axes (docs/methods/rigid_bodies.md 6).
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -15,7 +15,7 @@ using namespace skerry::test::capsules;
 
 namespace {
 
-/// m, of the axis to the nearest triangle of a surface: of its ends, and where edges pass it.
+/// Distance from the axis to the nearest triangle of a surface, from its ends and where edges pass it [m]
 Real distance_to_faces(const Vec3& a, const Vec3& b, std::span<const Vec3> x,
                        std::span<const std::array<Index, 3>> faces) {
     Real least = std::numeric_limits<Real>::infinity();
@@ -67,7 +67,7 @@ TEST_CASE("a capsule that lies on a floor stays, half of its weight on either en
         for (const Contact& contact : c.world.contacts()) {
             const Vec3 impulse = (contact.first == body ? 1 : -1) * contact.impulse;
             sum += impulse;
-            // told points are on the second body; impulses act on the surface of the capsule
+            // Reported points are on the second body; impulses act on the surface of the capsule.
             const Vec3 point =
                 contact.first == body ? Vec3(contact.point + contact.distance * contact.normal) : contact.point;
             moment += (point - c.middle(body)).cross(impulse);
@@ -129,7 +129,7 @@ TEST_CASE("two capsules that cross rest on each other at the sum of their radii"
         if (!c.world.alive(contact.second) || contact.impulse.isZero(0)) continue;
         ++between;
         CHECK(contact.distance == Approx(kept).epsilon(1e-6));
-        CHECK((contact.point - Vec3(0, 0, low + radius)).norm() < 1.001 * kept);  // on either surface
+        CHECK((contact.point - Vec3(0, 0, low + radius)).norm() < 1.001 * kept);  // on the surface of either capsule
         CHECK(contact.impulse.norm() == Approx(mass * g * 5e-3).epsilon(1e-8));
     }
     CHECK(between == 1);
@@ -144,7 +144,7 @@ TEST_CASE("a capsule thrown against another, a sphere or a block meets it on its
         const BodyHandle thrown = c.add({-start, 0, 0}, target == end_on ? along_x : along_y, {2, 0, 0});
         BodyHandle still;
         const Vec3 other = target == end_on ? along_x : target == beside ? along_y : Vec3::Zero();
-        const Real same = target == sphere ? radius * std::cbrt(mass / ball) : radius;  // m
+        const Real same = target == sphere ? radius * std::cbrt(mass / ball) : radius;  // [m]
         if (target == sphere)
             still = c.world.add_body(Sphere{same}, c.placed({0, 0, 0}, Vec3::Zero()));
         else if (target == block)
@@ -172,7 +172,7 @@ TEST_CASE("friction between capsules keeps the angular momentum", "[scene]") {
     REQUIRE(c.world.advance(0.3).ok());
     CHECK(c.spin(a).norm() > 0.5);
     CHECK(c.spin(b).norm() > 0.5);
-    // the two surfaces are the contact distance apart, which friction bridges without a moment
+    // The two surfaces are the contact distance apart. Friction bridges this gap without a balancing moment.
     CHECK((c.world.report().angular_momentum - before).norm() < 0.01 * before.norm());
     CHECK(c.world.report().momentum_error < 1e-12);
     CHECK(c.world.report().max_penetration == 0);
@@ -186,12 +186,12 @@ TEST_CASE("a capsule lies on two edges of meshes, along one, and over two corner
         c.world.add_collider(slab, {.position = {side * (0.25 + between), 0, -0.1}, .contact_distance = kept});
     const Real height = std::sqrt((radius + kept) * (radius + kept) - between * between);
     const BodyHandle body = c.add({0, 0.01, height + 1e-4}, along_y);
-    // longer than the diagonal of a block
+    // A capsule longer than the diagonal of the block lies over two corners.
     const SurfaceMesh block = mesh::boundary(mesh::box({0.2, 0.2, 0.2}, {2, 2, 2}));
     const Mat3 diagonal = Eigen::AngleAxis<Real>(pi / 4, Vec3::UnitZ()).toRotationMatrix() * rotation_matrix(along_x);
     c.world.add_collider(block, {.position = {3, 0, -0.1}, .contact_distance = kept});
     const BodyHandle over = c.add({3, 0, radius + kept}, rotation_vector(diagonal));
-    // across a narrow ridge, its ends free
+    // A capsule lies across a narrow ridge with its ends free.
     c.world.add_collider(mesh::boundary(mesh::box({0.2, 1, 0.2}, {1, 5, 1})),
                          {.position = {6, 0, -0.1}, .contact_distance = kept});
     const BodyHandle across_ridge = c.add({6.01, 0, radius + kept}, along_x);
@@ -211,7 +211,7 @@ TEST_CASE("a capsule lies over the sides of colliders", "[scene]") {
     c.world.add_collider(Cylinder{0.3, 1}, {.position = {3, 0, -0.3}, .rotation = along_y});
     const BodyHandle over_drum = c.add({3, 0, radius + kept / 2}, along_x);
     const BodyHandle upright = c.world.add_body(Capsule{radius, length}, c.placed({6, 0, 0.3 + kept / 2}, {0, 0, 0}));
-    c.world.add_collider(Plane{});  // through the others
+    c.world.add_collider(Plane{});  // only for the upright capsule; it passes through the others
     c.world.set_collision(over_box, c.world.colliders().back(), false);
     c.world.set_collision(over_drum, c.world.colliders().back(), false);
     REQUIRE(c.world.advance(0.3).ok());
@@ -232,7 +232,7 @@ TEST_CASE("a capsule lies on a soft block, which does not come into it", "[scene
         REQUIRE(c.world.advance(0.025).ok());
         CHECK(distance_to_faces(c.end(body, 0), c.end(body, 1), c.world.positions(pad), c.world.surface(pad)) > radius);
     }
-    // it goes on swinging for a while
+    // The capsule goes on oscillating for a while, so the impulses are summed over time.
     Vec3 carried = Vec3::Zero();
     Index most = 0;
     const Real before = c.world.time();
@@ -352,7 +352,7 @@ TEST_CASE("capsules that overlap at the start are refused or moved apart", "[sce
     REQUIRE(moved.world.advance(1e-3).ok());
     const auto bodies = moved.world.bodies();
     CHECK(moved.apart(bodies[0], bodies[1]) > 2 * radius);
-    // into a collider by an end of its axis, and by its middle
+    // The capsule is in a collider with an end of its axis or with its middle.
     for (const bool middle : {false, true}) {
         Capsules c(settings);
         c.world.add_collider(Box{{0.1, 0.1, 1}}, {.position = {0, 0, -0.5}});

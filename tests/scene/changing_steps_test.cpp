@@ -1,4 +1,4 @@
-// Symplectic Euler while steps change their length (docs/methods/time_stepping.md 1.5).
+// Symplectic Euler with steps of changing length (docs/methods/time_stepping.md 1.5).
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -12,17 +12,17 @@ namespace skerry::test::changing_steps_test {
 
 namespace {
 
-/// Between a half and 1, without a pattern.
+/// A fraction of the step between 0.5 and 1, without a pattern.
 Real part_of_step(int step) {
     return 0.5 + 0.5 * std::fmod(step * std::numbers::phi, 1);
 }
 
-/// s, for which forces acted in the last step.
+/// Length of the force interval (kick) in the last step [s]
 Real kick_of(const World& world) {
     return WorldAccess::state_of(world).scratch.parameters.kick;
 }
 
-/// One step.
+/// Makes one step of length h.
 void take(World& world, Real h) {
     const StepReport report = world.advance(h);
     REQUIRE(report.ok());
@@ -38,7 +38,7 @@ Settings step_of(Real h) {
 }  // namespace
 
 TEST_CASE("what swings in steps that are short while it is fast keeps its energy", "[scene]") {
-    // one tetrahedron, three of its nodes held: the fourth swings along z with omega^2 = 4 (lambda + 2 mu) / rho
+    // One tetrahedron with three held nodes: the fourth oscillates along z with omega^2 = 4 (lambda + 2 mu) / rho.
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
@@ -52,7 +52,7 @@ TEST_CASE("what swings in steps that are short while it is fast keeps its energy
     const Real omega = std::sqrt(4 * 3 * 4e4 / 1000), start_speed = 0.01;
     world.set_velocities(body, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), {0, 0, start_speed}});
 
-    constexpr Real longest = 0.1;  // over 1/omega
+    constexpr Real longest = 0.1;  // in units of 1/omega
     for (const Real end = 20 * 2 * std::numbers::pi / omega; world.time() < end;) {
         const Real speed = world.velocities(body)[3].z() / start_speed;
         take(world, longest / omega * (1 - 0.5 * std::min<Real>(1, speed * speed)));
@@ -60,8 +60,8 @@ TEST_CASE("what swings in steps that are short while it is fast keeps its energy
     const Real place = omega * (world.positions(body)[3].z() - 1) / start_speed;
     const Real speed = world.velocities(body)[3].z() / start_speed -
                        omega * WorldAccess::state_of(world).clock.step_before / 2 * place;
-    // A step is as long as the speed half a step before it says, which is as far from symmetric: (omega h)^2 a period.
-    // With kicks as long as steps 0.39 is left.
+    // The step depends on the speed half a step earlier, the strongest asymmetry: (omega h)^2 per period. With force
+    // intervals (kicks) as long as the steps, 0.39 of the energy would be left.
     CHECK(place * place + speed * speed == Approx(1).margin(0.02));
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a fall is a parabola whatever its steps", "[scene]") {
     const Real first = 4e-3 * part_of_step(1);
     for (int step = 1; step <= 100; ++step) {
         take(world, 4e-3 * part_of_step(step));
-        // the velocity that it starts with is that of half a step before
+        // The start velocity counts as that of half a step before the start.
         const Real t = world.time();
         const Vec3 expected = start + t * (velocity + first / 2 * g) + t * t / 2 * g;
         REQUIRE((world.center_of_mass(body) - expected).norm() < 1e-14 * (1 + step));
@@ -190,7 +190,8 @@ TEST_CASE("what stands much shorter steps is not thrown by the length of the las
     CHECK(kick_of(world) <= 1.5 * stable);
     REQUIRE(world.advance(20 * stable).ok());
     const Energy after = world.energy();
-    // some of it is what a kick of 1.2 stable steps does to what is strained; one of half the last step: 1600 times
+    // Part of it comes from a force interval (kick) of 1.2 stable steps on a strained body. One of half the last step
+    // would give 1600 times the energy.
     CHECK(after.elastic + after.kinetic - before.kinetic < 4 * before.elastic);
 }
 

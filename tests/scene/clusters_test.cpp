@@ -1,4 +1,4 @@
-// Clusters: the few elements that do not stand the step of the others (docs/methods/clusters.md).
+// Clusters: groups of the few elements that are not stable at the step of the others (docs/methods/clusters.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
@@ -24,13 +24,13 @@ Settings weightless(bool clusters) {
     return settings;
 }
 
-/// Tetrahedra of many shapes, none smaller than this part of what it would be in an even box.
+/// Tetrahedra of many shapes. None has less than `least_volume` times the volume it would have in an even box.
 Mesh uneven_box(Real least_volume) {
     const test::TetMesh box = test::jittered_box({8, 6, 6}, 0.02, 0.4, 21, least_volume);
     return {box.nodes, box.tetrahedra};
 }
 
-/// Cells of 2 cm, of which some layers at one end are thinner.
+/// A box of 2 cm cells with `layers` thinner layers at one end.
 Mesh graded_box(const std::array<Index, 3>& cells, Index layers, Real thickness) {
     test::TetMesh box = test::jittered_box(cells, 0.02, 0, 1);
     for (Vec3& x : box.nodes) x.x() -= 0.02 * (1 - thickness) * std::min<Real>(x.x() / 0.02, layers);
@@ -89,7 +89,7 @@ TEST_CASE("clusters add at most a hundredth to a moment of inertia, or a quarter
         World world(weightless(true));
         const BodyHandle body =
             world.add_body(mesh, {.material = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.47})});
-        REQUIRE(world.stable_step() > 0);  // clusters are found
+        REQUIRE(world.stable_step() > 0);  // this finds the clusters
         const Model& model = WorldAccess::state_of(world).model;
         const Real of_lumping =
             moment_of_lumping(model.tetrahedra.node, model.tetrahedra.volume, model.nodes.rest_position);
@@ -117,10 +117,10 @@ TEST_CASE("a body with clusters that is strained in one place stands what its sh
     const Real rest = world.stable_step();
     const auto now = world.positions(body);
     std::vector<Vec3> position(now.begin(), now.end());
-    position.front() -= Vec3(0.04, 0.04, 0.04);  // a corner, drawn out by twice the size of a cell
+    position.front() -= Vec3(0.04, 0.04, 0.04);  // a corner, pulled out by twice the size of a cell
     world.set_positions(body, position);
     REQUIRE(world.report().clusters > 0);
-    CHECK(world.stable_step() > 0.3 * rest);  // 0.25 by mass forms
+    CHECK(world.stable_step() > 0.3 * rest);  // mass forms would give 0.25
 }
 
 TEST_CASE("bodies that are alike have the same implicit elements, as many as one alone", "[scene][clusters][long]") {
@@ -164,7 +164,7 @@ TEST_CASE("where implicit elements of some bodies change, all clusters are those
     for (const Index b : {0, 1, 3, 4}) REQUIRE(clusters_of(b) > 0);
     REQUIRE(clusters_of(2) == 0);
 
-    // one has more implicit elements, one has none any more, one its first
+    // Body 1 gets more implicit elements, body 3 loses all, body 2 gets its first.
     const auto modulus_of = [&](std::size_t b) {
         return rows_of(model.elements.implicit_modulus, model.bodies.blocks[b]);
     };
@@ -187,7 +187,7 @@ TEST_CASE("where implicit elements of some bodies change, all clusters are those
     CHECK(std::ranges::equal(quick.place, model.clusters.place));
     CHECK(quick.inverse.size() != before.inverse.size());
 
-    // what is not said to have changed is not looked at: matrices that have followed their elements stay as they are
+    // Bodies that are not reported as changed are skipped: the altered entry of the matrix stays.
     model.clusters.inverse[0] *= 1.5;
     const Real followed = model.clusters.inverse[0];
     model.rebuild_clusters(changed);
@@ -206,14 +206,14 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
     CHECK(report.clusters > 0);
     CHECK(report.momentum_error_share < 1e-12);
     CHECK(report.energy_error_share < 1e-4);
-    // that of nodes by their own masses: it wavers with what the clusters have of it
+    // Angular momentum of the nodes with their own masses. It oscillates with the part that the clusters hold.
     CHECK((report.angular_momentum - angular).norm() < 2e-3 * angular.norm());
     CHECK(world.center_of_mass(body).x() == Approx(0.3).epsilon(1e-6));
 }
 
 TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     Settings settings = weightless(true);
-    settings.step_safety = 0.3;  // velocities that no step follows: 0.04 of the energy at the whole step, 3e-4 here
+    settings.step_safety = 0.3;  // error of unresolved velocities: 0.04 of the energy at the full step, 3e-4 here
     World world(settings);
     MaterialSettings rubber = lossless_rubber();
     rubber.damping = 30;
@@ -229,9 +229,9 @@ TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
     REQUIRE(world.advance(0.1).ok());
     const WorldReport end = world.report();
     CHECK(end.energy.dissipated > 0.1 * start.energy.kinetic);
-    // what stiffens brings nothing in: with velocities that it kept 8.6 J were dissipated of 1.2 J
+    // Stiffening must not add energy. With velocities that it kept, 8.6 J would be dissipated from 1.2 J.
     CHECK(end.energy.dissipated + end.energy.kinetic + end.energy.elastic < 1.5 * start.energy.kinetic);
-    CHECK(end.energy_error_share < 1e-2);  // booked by the masses of the nodes: 0.13
+    CHECK(end.energy_error_share < 1e-2);  // 0.13 if computed with the masses of the nodes
 }
 
 TEST_CASE("what hangs from clusters hangs as low as without", "[scene][clusters][long]") {
@@ -277,7 +277,7 @@ TEST_CASE("bodies with clusters that meet exchange momentum, and energy adds up 
         CHECK(report.unconverged == 0);
         energy_error.push_back(report.energy_error_share);
     }
-    // of a method of order 2 at a step that what the impact excites just stands
+    // Errors of a second-order method at a step that is just stable for the vibrations after the impact.
     CHECK(energy_error[0] < 1e-2);
     CHECK(energy_error[1] < 0.35 * energy_error[0]);
 }
@@ -297,7 +297,7 @@ TEST_CASE("with clusters a vibration converges with the second order", "[scene][
         corner.push_back(world.positions(body)[0]);
     }
     CHECK(std::min(clusters[0], clusters[1]) > 0);
-    CHECK(clusters[3] == 0);  // the limit is that of the elements
+    CHECK(clusters[3] == 0);  // the reference run has no implicit elements
     const Real coarse = (corner[0] - corner[3]).norm(), half = (corner[1] - corner[3]).norm(),
                quarter = (corner[2] - corner[3]).norm();
     INFO(coarse << " " << half << " " << quarter);

@@ -1,4 +1,4 @@
-// Sharp and round parts of colliders meet a body between its nodes.
+// Sharp and round parts of colliders touch a body between its nodes.
 #include <catch2/catch.hpp>
 #include <numbers>
 
@@ -12,19 +12,19 @@ namespace {
 
 constexpr Real pi = std::numbers::pi;
 
-/// A shape that is pressed from above into a block, 20 x 20 x 10 cm, that stands on a fixed floor.
+/// A shape that is pressed from above into a block, 20 x 20 x 10 cm, on a fixed floor.
 struct Press {
     const char* name;
     Shape shape;
     ColliderGeometry geometry;
     Vec3 rotation;
-    Real lowest;              // m, of the shape below its origin
-    Vec3 beside;              // m, from the middle of the block
+    Real lowest;              // lowest point of the shape below its origin [m]
+    Vec3 beside;              // horizontal offset from the middle of the block [m]
     Real depth;               // m
-    bool to_the_end = false;  // with cells of 6 mm, too
+    bool to_the_end = false;  // also run with cells of 6 mm
 };
 
-/// With one corner straight down.
+/// Rotation that points one corner of a box straight down.
 Vec3 corner_down() {
     const Vec3 corner = Vec3(-1, -1, -1).normalized(), down(0, 0, -1);
     const Vec3 axis = corner.cross(down);
@@ -102,11 +102,11 @@ const Press presses[] = {
 };
 
 struct Pressed {
-    Real overlap = 0;  // m, the deepest place of the block's surface within the shape, over the run
-    Real force = 0;    // N, upward on the shape, at its depth
+    Real overlap = 0;  // over the run: largest depth of the block's surface inside the shape [m]
+    Real force = 0;    // upward force on the shape at its final depth [N]
 };
 
-/// Looks at the faces between their nodes, too.
+/// Largest depth of the block's surface in the shape. Also samples the faces between their nodes.
 Real deepest(const World& world, BodyHandle block, const Press& press, const MotionKey& pose) {
     const RigidMotion motion{pose.position, rotation_matrix(pose.rotation), Vec3::Zero(), Vec3::Zero()};
     const auto x = world.positions(block);
@@ -175,7 +175,7 @@ TEST_CASE("the force on what is pressed into a block converges as its cells beco
         const Pressed finest = press_block(press, 16);
         CHECK(finest.force < f8);
         CHECK(finest.overlap < 1e-5);
-        CHECK(f8 - finest.force < 0.55 * (f4 - f8));  // the first order at least
+        CHECK(f8 - finest.force < 0.55 * (f4 - f8));  // at least first order
     }
 }
 

@@ -1,4 +1,4 @@
-// A ball dropped on each kind of collider.
+// Balls dropped on each kind of collider, moving colliders, and refused steps.
 #include <catch2/catch.hpp>
 
 #include "systems/geometry/rotation.h"
@@ -11,7 +11,7 @@ namespace {
 struct Dropped {
     World world;
     BodyHandle ball;
-    Real lowest = 1e9;  // m, over the run
+    Real lowest = 1e9;  // over the run [m]
 
     Dropped(const Shape& shape, const ColliderSettings& collider, const Vec3& from, Real seconds,
             const Vec3& velocity = Vec3::Zero()) {
@@ -51,7 +51,7 @@ TEST_CASE("a ball comes to rest on every kind of collider whose top is at z = 0"
     for (const Case& c : cases) {
         INFO(c.name);
         const Dropped dropped(c.shape, c.collider, {0.01, 0.02, 0.1}, 1.0);
-        CHECK(dropped.lowest > -1e-4);  // surfaces do not overlap by more than a hundredth of a millimetre in ten
+        CHECK(dropped.lowest > -1e-4);  // overlap of at most a hundredth of a millimetre in ten
         CHECK(dropped.world.center_of_mass(dropped.ball).z() > 0.03);
         CHECK(dropped.world.center_of_mass(dropped.ball).z() < 0.06);
         CHECK(dropped.world.energy().kinetic < 1e-3 * dropped.world.mass(dropped.ball));
@@ -71,7 +71,7 @@ TEST_CASE("a ball rolls off a sphere and off a capsule without sinking in", "[sc
         for (const Vec3& x : world.positions(ball)) nearest = std::min(nearest, x.norm());
     }
     CHECK(nearest > 0.1 - 1e-4);
-    CHECK(world.center_of_mass(ball).z() < -0.5);  // it has left
+    CHECK(world.center_of_mass(ball).z() < -0.5);  // the ball has rolled off
     CHECK(world.report().max_contacts > 0);
 }
 
@@ -86,7 +86,7 @@ TEST_CASE("a moving collider pushes a ball along and a moving plane carries it",
     world.add_collider(Box{{0.1, 0.4, 0.4}}, piston);
     const auto ball = world.add_body(mesh::ball(0.05, 6), {.material = material, .position = {-0.08, 0, 0}});
     REQUIRE(world.advance(1.0).ok());
-    CHECK(world.center_of_mass(ball).x() > 0.35 + 0.04);  // face of the box is at -0.15 + 0.5
+    CHECK(world.center_of_mass(ball).x() > 0.35 + 0.04);  // the face of the box is at -0.15 + 0.5
     CHECK(world.pose(world.colliders()[0]).position.x() == Approx(0.3));
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("a plane with its own normal keeps it while keys move it", "[scene]") 
     REQUIRE(world.advance(1.0).ok());
     Real nearest = 1e9;
     for (const Vec3& x : world.positions(ball)) nearest = std::min(nearest, x.x());
-    CHECK(nearest > 0.1 - 1e-4);  // pushed along, and not thrown far
+    CHECK(nearest > 0.1 - 1e-4);  // pushed along without being thrown far
     CHECK(world.center_of_mass(ball).x() < 0.3);
     CHECK((rotation_matrix(world.pose(world.colliders()[0]).rotation) * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-12);
 }
@@ -139,7 +139,7 @@ TEST_CASE("bodies can be removed and added in mid-run while other handles stay v
     CHECK_THROWS_AS(world.positions(balls[1]), SceneError);
     CHECK(std::equal(kept.begin(), kept.end(), world.positions(balls[3]).begin()));
     const auto late = world.add_body(mesh::ball(0.05, 5), {.material = material, .position = {0.2, 0, 0.3}});
-    CHECK_FALSE(world.alive(balls[1]));  // the slot lives again, the handle does not
+    CHECK_FALSE(world.alive(balls[1]));  // the slot is in use again, but the old handle stays invalid
     REQUIRE(world.advance(3.0).ok());
     for (BodyHandle ball : {balls[0], balls[2], balls[3], late}) {
         CHECK(world.center_of_mass(ball).z() > 0.03);
@@ -147,7 +147,7 @@ TEST_CASE("bodies can be removed and added in mid-run while other handles stay v
     }
 }
 
-// Found by random scenes: impulses that are not finite stood among the contacts after the refusal.
+// Regression, found by random scenes: after a refusal the contacts held impulses that were not finite.
 TEST_CASE("a refused step shows no contacts, the next one that is taken does", "[scene]") {
     World world;
     world.add_collider(Plane{});
@@ -184,7 +184,7 @@ TEST_CASE("a step with a load that is not finite is refused where it is set, and
     CHECK(report.message().find("ball") != std::string::npos);
     CHECK(world.state_hash() == before);
 
-    // With the cause gone the world goes on as if nothing had happened.
+    // Without the bad load the world continues as if nothing had happened.
     load.assign(load.size(), Vec3::Zero());
     world.set_loads(ball, load);
     World untouched;

@@ -1,4 +1,4 @@
-// What the look at the motion of a step costs and gives, beyond the shots of tunnelling_test.cpp.
+// Cost and effect of the crossing test of a step's motion, in addition to the shots of tunnelling_test.cpp.
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
@@ -36,12 +36,12 @@ TEST_CASE("a scene without fast pairs never looks at the motion of a feature", "
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});
     const Mesh ball = mesh::ball(0.05, 6);
-    // Shells 2 mm thick, falls of 1 mm: they meet at 0.15 m/s, less than 0.1 mm a step.
+    // Shells 2 mm thick and falls of 1 mm: the balls meet at 0.15 m/s and move less than 0.1 mm a step.
     for (int i = 0; i < 6; ++i)
         world.add_body(ball, {.material = rubber,
                               .position = {0.103 * (i % 3), 0.0, 0.052 + 0.104 * (i / 3)},
                               .contact_distance = 0.002});
-    REQUIRE(world.advance(0.8).ok());  // later the upper ones roll down
+    REQUIRE(world.advance(0.8).ok());  // later the upper balls roll down
     const WorldReport report = world.report();
     CHECK(report.max_contacts > 20);
     CHECK(report.crossing_tests == 0);
@@ -63,7 +63,7 @@ TEST_CASE("a sheet pinched hard between two balls stays between them", "[scene]"
         std::vector<Index> cap;
         for (std::size_t n = 0; n < round.nodes.size(); ++n)
             if (side * round.nodes[n].z() > 0.02) cap.push_back(static_cast<Index>(n));
-        // Until the caps are 5 mm from where the balls would touch flat: both are squeezed to a half.
+        // The caps stop 5 mm from where the balls would touch flat: both are squeezed to a half.
         world.attach(balls.back(), cap, {.velocity = {0, 0, -0.1 * side}});
     }
     int contacts = 0;
@@ -84,7 +84,7 @@ TEST_CASE("a body put half into another leaves it about as slowly as it is pushe
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
     const auto lower = world.add_body(mesh::box({0.1, 0.1, 0.1}, {4, 4, 4}), {.material = rubber, .name = "lower"});
-    // More than half of the upper one is inside, its corners between the nodes of the lower one.
+    // More than half of the upper body is inside, with its corners between the nodes of the lower one.
     const auto upper = world.add_body(mesh::box({0.04, 0.04, 0.04}, {2, 2, 2}),
                                       {.material = rubber, .position = {0.003, 0.004, 0.045}, .name = "upper"});
     REQUIRE(crossings(surface_of(world, lower), surface_of(world, upper)) > 0);
@@ -95,9 +95,9 @@ TEST_CASE("a body put half into another leaves it about as slowly as it is pushe
         most = std::max(most, energy.kinetic + energy.elastic);
     }
     CHECK(crossings(surface_of(world, lower), surface_of(world, upper)) == 0);
-    CHECK(world.center_of_mass(upper).z() > 0.069);  // out, through the face that was nearest
-    // The push moves positions only, at a hundredth of recovery_speed where there is no weight: 5 mm/s. What it bends
-    // springs back: that is all the energy there is, and less than both would have if they moved at twice that.
+    CHECK(world.center_of_mass(upper).z() > 0.069);  // it has left through the nearest face
+    // The push moves positions only, at a hundredth of recovery_speed without gravity: 5 mm/s. The bodies spring back
+    // from the bending. This is all of the energy, and less than both would have at twice that speed.
     const Vec3 before = world.center_of_mass(upper);
     REQUIRE(world.advance(0.01).ok());
     CHECK((world.center_of_mass(upper) - before).norm() < 0.01 * 0.01);

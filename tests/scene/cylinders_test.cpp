@@ -1,4 +1,4 @@
-// Rigid cylinders, with flat ends and sharp rims to what they touch (docs/methods/rigid_bodies.md 6.3).
+// Rigid cylinders, whose contact shape has flat ends and sharp rims (docs/methods/rigid_bodies.md 6.3).
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -131,16 +131,16 @@ TEST_CASE("a cylinder that rolls on its side keeps its speed for ten turns", "[s
 }
 
 TEST_CASE("a cylinder tips over its rim where its middle has passed the rim", "[scene][long]") {
-    // on a slope that it does not slide down it falls from tan(a) = 2 r / height on
+    // On a slope too rough for sliding it tips over from tan(a) = 2 r / height on.
     const Real falls = std::atan(2 * radius / height) * 180 / pi;
     for (const Floor floor : floors)
-        for (const Real turn : {0.0, 0.3, pi / 8})  // whichever places of the rim stand lowest
+        for (const Real turn : {0.0, 0.3, pi / 8})  // angles of the rim points that are lowest
             for (const Real beyond : {-0.1, 0.1}) {
                 CAPTURE(floor, turn, beyond);
                 Cylinders c(steps_of(5e-3, tilted_gravity(falls + beyond)), 2);
                 const BodyHandle body = c.add({-1, 0.03, height / 2 + add_floor(c, floor)}, {0, 0, turn});
                 REQUIRE(c.world.advance(beyond < 0 ? 1 : 2).ok());
-                if (beyond < 0)  // on places of the rim at 45 degrees, until the one that is lowest carries
+                if (beyond < 0)  // it stands on rim points at 45 degrees until the lowest one carries
                     CHECK(c.axis(body).head<2>().norm() < 1e-4);
                 else
                     CHECK(c.axis(body).z() < 0.9);
@@ -231,7 +231,7 @@ TEST_CASE("friction between cylinders keeps the angular momentum", "[scene]") {
     REQUIRE(c.world.advance(0.3).ok());
     CHECK(c.spin(a).norm() > 0.5);
     CHECK(c.spin(b).norm() > 0.5);
-    // the two surfaces are the contact distance apart, which friction bridges without a moment
+    // The two surfaces are the contact distance apart. Friction bridges this gap without a balancing moment.
     CHECK((c.world.report().angular_momentum - before).norm() < 0.01 * before.norm());
     CHECK(c.world.report().momentum_error < 1e-12);
     CHECK(c.world.report().max_penetration == 0);

@@ -1,4 +1,4 @@
-// Bodies whose dynamics the engine chooses.
+// Bodies with automatic dynamics, which the engine chooses.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,7 @@ struct Chosen {
     DynamicsEstimate estimate;
 };
 
-/// Of a cube of 10 cm with this modulus, alone in a world.
+/// Choice of the engine for a cube of 10 cm with this modulus, alone in a world.
 Chosen choose(Real young_modulus, const Settings& settings = {}, bool self_contact = false) {
     World world(settings);
     const auto material = world.add_material({.young_modulus = young_modulus});
@@ -39,7 +39,7 @@ TEST_CASE("what is stiff becomes implicit, what is soft stays explicit, and both
     const Chosen rubber = choose(1e5);
     CHECK(rubber.dynamics == BodyDynamics::explicit_elastic);
     CHECK(rubber.estimate.reason == DynamicsReason::strain);
-    // the fall of a metre, v = sqrt(2 g 1 m), in a bar: v / sqrt(E / rho)
+    // The strain is that of a bar after a fall of a metre: v = sqrt(2 g 1 m) over the wave speed sqrt(E / rho).
     CHECK(rubber.estimate.strain == Approx(std::sqrt(2 * 9.81 * 1) / std::sqrt(1e5 / 1000)));
 
     const Chosen folded = choose(2e11, {}, true);
@@ -72,11 +72,11 @@ TEST_CASE("step_size above the stable step is granted where what does not stand 
 }
 
 TEST_CASE("where implicit bodies may take longer steps the choice counts with them", "[scene]") {
-    // beside a soft box that sets short steps: a block that is not worth it at their pace, and is at its own
+    // A block beside a soft box that requires short steps. Implicit dynamics pay off at the longer step only.
     const auto choose_beside = [](Real implicit_step) {
         Settings settings;
         settings.implicit_step = implicit_step;
-        settings.gravity = {0, 0, -1};  // a fall that strains it little
+        settings.gravity = {0, 0, -1};  // a slow fall with little strain
         World world(settings);
         const auto soft = world.add_material({.young_modulus = 1e5}),
                    stiff = world.add_material({.young_modulus = 5.6e7});

@@ -1,5 +1,5 @@
-// Bodies and colliders come, go and change while others move and rest: what the search knows of the others stays valid,
-// who rests beside them wakes, and nobody else is looked at.
+// Bodies and colliders are added, removed and changed while others move and rest. Known pairs of the others stay valid,
+// resting neighbours wake, and no other pairs are searched.
 #include <catch2/catch.hpp>
 #include <functional>
 #include <optional>
@@ -13,7 +13,7 @@ namespace skerry::test::edits_test {
 
 namespace {
 
-constexpr Real radius = 0.05;  // m, of the balls
+constexpr Real radius = 0.05;  // of the balls [m]
 
 Settings edited(bool budgets, int threads = 1, Real sleep_speed = 0.05) {
     Settings settings;
@@ -24,7 +24,7 @@ Settings edited(bool budgets, int threads = 1, Real sleep_speed = 0.05) {
     return settings;
 }
 
-/// A pile in a world that is changed at random: everything that can be done to bodies and colliders between steps.
+/// A pile in a world with random edits: every possible change of bodies and colliders between steps.
 class EditedPile {
 public:
     EditedPile(const Settings& settings, std::uint64_t seed) : world(settings), random_(seed) {
@@ -43,7 +43,7 @@ public:
     void edit() {
         for (int edits = below(4) - 1; edits > 0; --edits) edit_once();
     }
-    /// Twins whose clones and files go on.
+    /// Copies that continue from a clone and from a file.
     EditedPile clone() const { return {*this, world.clone()}; }
     EditedPile saved_and_loaded() const {
         const TemporaryFolder folder;
@@ -56,7 +56,7 @@ public:
 private:
     struct PlacedCollider {
         ColliderHandle handle;
-        Real room;  // m, around its middle: what it needs
+        Real room;  // free distance that it needs around its middle [m]
     };
 
     int below(int count) { return std::min(count - 1, static_cast<int>((random_.number() + 1) / 2 * count)); }
@@ -74,19 +74,19 @@ private:
     void add_body(const Vec3& where) {
         bodies_.push_back(world.add_body(mesh::ball(radius, 3), {.material = soft_, .position = where}));
     }
-    /// Above everything, so that nothing begins in something else.
+    /// A position above everything, so that nothing starts inside something else.
     Vec3 above() {
         Real top = 0.3;
         for (const BodyHandle body : bodies_) top = std::max(top, world.center_of_mass(body).z());
         return {0.15 + 0.15 * random_.number(), 0.1 * random_.number(), top + 0.15};
     }
-    /// In the pile, where nothing is within a distance (m).
+    /// A random position in the pile, or nothing if something is within `distance` [m]
     std::optional<Vec3> beside(Real distance) {
         const Vec3 place(0.15 + 0.4 * random_.number(), 0.3 * random_.number(), 0.15 + 0.15 * random_.number());
         if (world.nearest_point(place, distance)) return std::nullopt;
         return place;
     }
-    /// Where a body all but touches another from above, and nothing else; or above everything.
+    /// A position just above another body that has no other neighbours, or else above everything.
     Vec3 close_above(BodyHandle body) {
         const BodyHandle under = any(bodies_);
         const Vec3 place = world.center_of_mass(under) + Vec3(0, 0, 2.15 * radius);
@@ -164,7 +164,7 @@ private:
     std::vector<AttachmentHandle> held_;
 };
 
-/// Balls that rest on a floor, `side` by `side`, too far from each other to touch.
+/// `side` x `side` balls that rest on a floor, too far apart to touch.
 struct Field {
     World world;
     MaterialHandle soft;
@@ -188,7 +188,7 @@ struct Searches {
     std::uint64_t broad, pairs;
 };
 
-/// What a change and the step after it search.
+/// Number of searches caused by a change and by the step after it.
 Searches searches_of(World& world, const std::function<void()>& change) {
     const WorldReport before = world.report();
     change();
@@ -232,7 +232,7 @@ TEST_CASE("a changed world goes on with the same bits on all threads, cloned, an
         CAPTURE(call);
         one.edit();
         four.edit();
-        if (call % 8 == 3) {  // before and after the step that comes after a change
+        if (call % 8 == 3) {  // the copies are made after a change and before the next step
             EditedPile copy = one.clone(), loaded = one.saved_and_loaded();
             for (EditedPile* other : {&copy, &loaded}) {
                 EditedPile here = one.clone();
@@ -254,8 +254,8 @@ TEST_CASE("a changed world goes on with the same bits on all threads, cloned, an
 
 TEST_CASE("what is new or thrown by hand is met in every try of its first step, and after one that was refused",
           "[scene]") {
-    // A tile without a contact distance comes down on a plane. In the same step a cube beside it is pulled further than
-    // the list of its pair is good for, so that there is another try.
+    // A tile without a contact distance falls on a plane. In the same step a cube beside it is pulled further than the
+    // list of its pair is valid for, so that the step is tried again.
     enum class Start { added, thrown, refused };
     const Start start = GENERATE(Start::added, Start::thrown, Start::refused);
     CAPTURE(start);
@@ -319,7 +319,7 @@ TEST_CASE("many removed at once leave what the same removed one by one leave", "
         after_each();
         field.world.remove(of[0]);
         after_each();
-        // a slot that is free again names another body at once
+        // A freed slot is immediately reused for another body.
         const BodyHandle late =
             field.world.add_body(mesh::ball(radius, 3), {.material = field.soft, .position = {0, 0, 0.3}});
         CHECK(late.slot == field.balls[0].slot);
@@ -354,7 +354,7 @@ TEST_CASE("a change searches the pairs of what changed, as many in a large world
         BodyHandle body;
         const Vec3 on_top(0.11, 0.11, 0.135), beside(0, 0.11, 0.135);
         std::vector<std::uint64_t> of_side;
-        // whether something is near a ball now that was not, or is not known to be as it was
+        // `is_new`: something is near a ball that was not there before, or is not known to be unchanged
         const auto look = [&](bool is_new, const std::function<void()>& change) {
             const Searches searches = searches_of(world, change);
             CHECK(searches.broad == (is_new ? 1 : 0));
@@ -467,7 +467,7 @@ TEST_CASE("a collider put into the way of what rests pushes it", "[scene]") {
         else
             field.world.add_collider(Sphere{0.02}, {.position = at, .motion = {.velocity = {0, 0, -0.2}}});
         const Real height = field.world.center_of_mass(ball).z();
-        REQUIRE(field.world.advance(0.1).ok());  // some of it goes on with the swing that rest has held
+        REQUIRE(field.world.advance(0.1).ok());  // the ball resumes a part of the vibration that sleep had frozen
         CHECK(field.world.center_of_mass(ball).z() < height - 0.001);
     }
 }

@@ -1,5 +1,5 @@
-// Elements of what only flies are left out (docs/methods/skipping.md 1.1). The twin that they are held against has one
-// node whose velocity differs by the last bit: its elements are not.
+// Elements of a freely flying body are skipped (docs/methods/skipping.md 1.1). The body is compared with a twin in
+// which one node's velocity differs in the last bit, so that its elements are not skipped.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,7 +27,7 @@ struct Fall {
                                      .rotation = {0.3, 0.2, 0.1},
                                      .velocity = {0.5, 0.25, 0}});
     }
-    /// Nobody could tell by looking.
+    /// Changes one velocity by its last bit, which does not visibly change the motion.
     void nudge() {
         std::vector<Vec3> velocity(world.velocities(body).begin(), world.velocities(body).end());
         velocity.back().x() = std::nextafter(velocity.back().x(), 1);

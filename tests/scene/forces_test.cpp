@@ -1,4 +1,4 @@
-// What contacts and attachments give, told beside what it does.
+// Forces reported for contacts and attachments, compared with their effect on the motion.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@ namespace skerry::test::forces_test {
 
 namespace {
 
-/// Momentum and angular momentum about the origin, of all nodes of a body.
+/// Momentum, and angular momentum about the origin, of all nodes of a body.
 struct Momenta {
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
 
@@ -33,14 +33,14 @@ std::vector<Index> nodes_where(const World& world, BodyHandle body, auto&& wante
     return found;
 }
 
-/// Two blocks that meet on a moving plane, on a mesh collider, and a bar with a held and a turned end.
+/// Two stacked blocks on a moving plane and a mesh collider, and a bar with a held and a turned end.
 struct BusyWorld {
     World world;
     Mesh block = mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), beam = mesh::box({0.4, 0.05, 0.05}, {8, 1, 1});
     BodyHandle low, high, bar;
     AttachmentHandle held, led;
     ColliderHandle plane, slab;
-    Vec3 load = {0.01, 0.02, 0};  // N, on each node of `low`
+    Vec3 load = {0.01, 0.02, 0};  // on each node of `low` [N]
 
     explicit BusyWorld(const Settings& settings, bool loaded = true) : world(settings) {
         const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.4});
@@ -66,7 +66,7 @@ Settings with(Integrator integrator) {
     return settings;
 }
 
-constexpr Real density = 1000;  // kg/m^3, the default
+constexpr Real density = 1000;  // the default density [kg/m^3]
 
 }  // namespace
 
@@ -79,7 +79,7 @@ TEST_CASE("impulses of contacts and attachments, weight and loads are the change
         world.measure_forces(true);
         const std::vector<std::pair<BodyHandle, const Mesh*>> bodies{
             {busy.low, &busy.block}, {busy.high, &busy.block}, {busy.bar, &busy.beam}};
-        Real met = 0, last = 0;  // s, the last step before a call, or the first of all
+        Real met = 0, last = 0;  // `last`: step before the call, or the first step of all [s]
         world.watch_steps([&last](const StepReport& step) { last = last > 0 ? last : step.step_size; });
         for (int call = 0; call < 12; ++call) {
             std::vector<Momenta> before;
@@ -101,7 +101,7 @@ TEST_CASE("impulses of contacts and attachments, weight and loads are the change
                 INFO("body " << b << ", call " << call);
                 CHECK((after.linear - before[b].linear - impulse).norm() < 1e-12 * scale);
             }
-            // from half a step before the call to half a step before its end
+            // The forces act from half a step before the call to half a step before its end.
             const bool behind = settings.integrator == Integrator::symplectic_euler;
             CHECK(forces.on(busy.low).seconds ==
                   Approx(dt + (behind ? (last - step.step_size) / 2 : 0)).epsilon(1e-12));
@@ -116,8 +116,8 @@ TEST_CASE("moments of contacts and attachments are the change of angular momentu
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         INFO(name_of(integrator));
         Settings settings = with(integrator);
-        settings.gravity.setZero();  // the moment of weight is not told
-        // what overlaps is moved without momentum, which turns a little of it, and so is what a solve leaves
+        settings.gravity.setZero();  // the moment of gravity is not reported
+        // Push-out moves bodies without momentum and so changes their angular momentum; a solver residual does so, too.
         settings.recovery_speed = 1e-12;
         settings.tolerance = 1e-12;
         settings.max_iterations = 20000;
@@ -170,7 +170,7 @@ TEST_CASE("partners of a contact get opposite impulses to the last bit, and sums
     }
     CHECK(all == forces.on(busy.low).impulse);
     CHECK(on_slab == forces.on(busy.slab).impulse);
-    // moments differ by what the contact distance makes of friction
+    // The moments differ by friction times the contact distance.
     const ForceReport one = forces.on(busy.low, busy.high), other = forces.on(busy.high, busy.low);
     CHECK((one.moment_impulse + other.moment_impulse).norm() <= 0.01 * one.pressing_impulse);
     CHECK(forces.on(busy.bar).impulse == Vec3::Zero());
@@ -211,7 +211,7 @@ TEST_CASE("a block on a slope presses by its weight's normal part and holds by t
         CHECK(on.pressing_impulse / on.seconds == Approx(-settings.gravity.z() / standard_gravity * weight));
         CHECK(on.contacts > 3);
         CHECK(on.largest_force < 1.02 * weight);
-        // about its centre of mass nothing turns it
+        // Nothing turns the block about its centre of mass.
         const Vec3 centre = slope.world.center_of_mass(slope.block);
         CHECK(on.moment_about(centre).norm() < 1e-4 * weight * 0.1);
     }
@@ -245,7 +245,7 @@ TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, d
         for (const Real damping : {0.0, 30.0}) {
             INFO((slivers ? "slivers, damping " : "damping ") << damping);
             Settings settings;
-            settings.sleep = false;  // rest takes what is left of the swinging
+            settings.sleep = false;  // sleep would freeze the rest of the vibration
             World world(settings);
             const auto rubber =
                 world.add_material({.young_modulus = 1e5, .damping = damping, .loss_factor = damping > 0 ? 0.05 : 0.3});
@@ -254,7 +254,7 @@ TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, d
             const auto nodes = world.positions(body);
             const Real left = std::ranges::min(nodes, {}, [](const Vec3& x) { return x.x(); }).x();
             std::vector<Index> held = nodes_where(world, body, [&](const Vec3& x) { return x.x() < left + 1e-9; });
-            // and corners of flat tetrahedra: implicit elements that hang from what holds the body
+            // Slivers: corners of flat tetrahedra are held, too, so that implicit elements hang from held nodes.
             for (const auto& t : slivers ? mesh.tetrahedra : std::vector<std::array<Index, 4>>{}) {
                 const auto from = [&](std::size_t k) -> Vec3 { return nodes[t[k]] - nodes[t[0]]; };
                 const bool flat = from(1).cross(from(2)).dot(from(3)) < 0.05 * std::pow(0.2 / 6, 3);
@@ -276,14 +276,14 @@ TEST_CASE("a hanging body pulls at what holds it by its weight, with clusters, d
                     CHECK((change - by.impulse - by.seconds * world.mass(body) * settings.gravity).norm() <
                           1e-12 * 0.1 * weight);
                 worst = std::max(worst, (by.force() + world.mass(body) * settings.gravity).norm());
-                // it hangs beside what holds it: the moment of its weight
+                // The body hangs beside the attachment, which also carries the moment of its weight.
                 const Vec3 lever = world.center_of_mass(body);
                 if (damping > 0)
                     CHECK((by.moment() + lever.cross(world.mass(body) * settings.gravity)).norm() <
                           1e-3 * weight * 0.2);
             }
             CHECK(worst < (damping > 0 ? 1e-5 : 0.2) * weight);
-            // what implicit elements take from held nodes is in the reaction, not in the balance of the run
+            // Forces of implicit elements on held nodes are in the reaction, but not in the run's momentum balance.
             if (damping == 0 && !slivers) CHECK(world.report().momentum_error_share < 1e-12);
             if (slivers) CHECK(std::isnan(world.report().momentum_error_share));
         }
@@ -339,7 +339,7 @@ TEST_CASE("what holds a body at rest goes on as it was while it was still", "[sc
         CHECK(forces.on(low).seconds == Approx(0.1));
         CHECK(world.clone().forces().on(low).impulse == forces.on(low).impulse);
     }
-    // what was not measured while it came to rest is as in the last step before
+    // Measuring that starts during sleep reports the forces of the last step before sleep.
     const Vec3 mean = world.forces().on(low, floor).force();
     world.measure_forces(true);
     REQUIRE(world.advance(0.1).ok());
@@ -365,7 +365,7 @@ TEST_CASE("measuring changes no step, costs nothing that is not asked for, and s
     one.world.remove(one.high);
     CHECK(one.world.forces().on(one.low).seconds == on.seconds);
     CHECK_THROWS_AS(one.world.forces().on(one.high), SceneError);
-    // a slot that is used again begins with nothing
+    // A slot that is used again starts with zero forces.
     one.world.remove(one.bar);
     const auto again = one.world.add_body(one.block, {.material = one.world.add_material({}), .position = {0, 0, 3}});
     CHECK(one.world.forces().on(again).impulse == Vec3::Zero());
@@ -380,7 +380,7 @@ TEST_CASE("a body pressed on itself adds nothing to what it gets, but is told ho
     settings.gravity.setZero();
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 1e5});
-    // two blocks of one body, apart but for nothing: they fly together
+    // Two separate blocks of one body fly at each other.
     Mesh two = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
     const Mesh one = two;
     for (const Vec3& x : one.nodes) two.nodes.push_back(x + Vec3(0.11, 0, 0));
@@ -397,7 +397,7 @@ TEST_CASE("a body pressed on itself adds nothing to what it gets, but is told ho
     REQUIRE(world.advance(0.1).ok());
     const Forces forces = world.forces();
     CHECK(forces.on(body).impulse.norm() < 1e-14);
-    // each half changes its momentum of 0.5 kg m/s to about the opposite
+    // Each half changes its momentum of 0.5 kg m/s to about the opposite.
     CHECK(forces.on(body).pressing_impulse > 0.5);
     CHECK(forces.on(body, body).pressing_impulse == forces.on(body).pressing_impulse);
     CHECK(forces.on(body, body).most_contacts > 0);

@@ -1,4 +1,4 @@
-// A block at rest on the floor; friction itself is in accuracy/incline_test.cpp and accuracy/sliding_test.cpp.
+// A block at rest on the floor. accuracy/incline_test.cpp and accuracy/sliding_test.cpp test friction itself.
 #include <catch2/catch.hpp>
 
 #include "tests/support/worlds.h"

@@ -1,4 +1,4 @@
-// Small tetrahedra that are kept from turning over (docs/methods/elasticity.md 7.7), in a world.
+// Inversion barriers of small tetrahedra (docs/methods/elasticity.md 7.7) in a world.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <vector>
@@ -23,7 +23,7 @@ MaterialSettings rubber() {
     return {.young_modulus = 5e4, .poisson_ratio = 0.4, .density = 1000, .friction = 0.3};
 }
 
-/// Thrown at a floor, on a corner.
+/// A body that is thrown at a floor and lands on a corner.
 World thrown(const Settings& settings = {}, const BodySettings& as = {}, const Mesh& mesh = knotted()) {
     World world(settings);
     BodySettings body = as;
@@ -67,7 +67,7 @@ TEST_CASE("knots of a body that is thrown come out as they were, and energy adds
         REQUIRE(world.advance(0.1).ok());
         const WorldReport report = world.report();
         CHECK(report.inverted == 0);
-        CHECK(report.energy_error_share < 1.5e-3);  // without guards 0.8e-3 to 1.4e-3
+        CHECK(report.energy_error_share < 1.5e-3);  // without barriers 0.8e-3 to 1.4e-3
         CHECK(report.momentum_error_share < 1e-10);
     }
 }
@@ -95,7 +95,7 @@ TEST_CASE("guards follow what bodies become", "[scene][guards]") {
     const BodyHandle body = world.bodies()[0];
     const std::size_t guards = world.report().guards, blocks = guard_blocks(world);
     const Real step = world.stable_step();
-    // other materials, and back
+    // Changes the material and changes it back.
     const MaterialHandle material = model_of(world).material_map.handle_of_slot(model_of(world).materials.slot[0]);
     MaterialSettings other = rubber();
     other.young_modulus *= 4;
@@ -105,7 +105,7 @@ TEST_CASE("guards follow what bodies become", "[scene][guards]") {
     world.set_material(material, rubber());
     CHECK(world.stable_step() == step);
     CHECK(world.report().guards == guards);
-    // another way to move, and back
+    // Changes the dynamics and changes them back.
     world.set_dynamics(body, BodyDynamics::implicit_elastic);
     CHECK(guard_blocks(world) == 0);
     CHECK(world.report().guards == 0);

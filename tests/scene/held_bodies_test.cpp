@@ -1,4 +1,4 @@
-// Rigid bodies that attachments hold and lead (docs/methods/rigid_bodies.md 5).
+// Rigid bodies that attachments hold and move (docs/methods/rigid_bodies.md 5).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,12 +11,12 @@ namespace skerry::test::held_bodies_test {
 namespace {
 
 const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
-const Real cube_mass = 1;  // kg, of water
+const Real cube_mass = 1;  // with the density of water [kg]
 
-/// Three corners.
+/// Nodes at three corners of the cube.
 const std::vector<Index> corners{0, 2, 6};
 
-/// A cube that is led about and turned, and what falls onto it.
+/// A cube that is moved and turned by an attachment, and a body that falls onto it.
 struct LedCube {
     World world;
     MaterialHandle material;
@@ -55,7 +55,7 @@ TEST_CASE("a rigid body that is held stands still whatever falls on it, and the 
     REQUIRE(scene.world.advance(0.5).ok());
     const ForceReport reaction = scene.world.forces().by(scene.attachment);
     CHECK(reaction.force().z() == Approx(2 * cube_mass * standard_gravity).epsilon(1e-4));
-    const Vec3 arm = scene.world.center_of_mass(scene.falls);  // of the weight that is not at the origin
+    const Vec3 arm = scene.world.center_of_mass(scene.falls);  // lever arm of the falling cube's weight
     CHECK((reaction.moment() - arm.cross(Vec3(0, 0, cube_mass * standard_gravity))).norm() < 1e-3);
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("the reaction of an attachment is what a rigid body gains, less what o
         const auto [momentum, angular] = motion();
         Vec3 loads = Vec3::Zero(), moments = Vec3::Zero();
         const Vec3 weight(0, 0, -world.mass(body) * standard_gravity);
-        // of forces where the body is at the start of each step
+        // Forces act at the position of the body at the start of each step.
         world.watch_steps([&, seen = std::pair(world.center_of_mass(body), Vec3(world.positions(body)[3]))](
                               const StepReport&) mutable {
             loads += settings.step_size.value() * (weight + load[3]);
@@ -146,7 +146,7 @@ TEST_CASE("what a rigid body is led into sees what it sees of a collider with th
     };
     const Vec3 by_body = pushed(true), by_collider = pushed(false);
     CHECK(by_body.x() > 0.2);
-    // other numbers of nodes and triangles: another order of contacts
+    // Other numbers of nodes and triangles give another order of contacts.
     CHECK((by_body - by_collider).norm() < 2e-3 * (by_collider - Vec3(0.13, 0.02, 0.01)).norm());
 }
 
@@ -204,8 +204,8 @@ TEST_CASE("held rigid bodies are put elsewhere with what holds them", "[scene][r
     world.set_pose(body, {{0, 0, 1}, {0, 0.3, 0}});
     is_at({{0, 0, 1}, {0, 0.3, 0}});
     world.move_to(second, {{1, 2, 4}, {0.4, 0, 0}}, 0.05);
-    is_at({{0, 0, 2}, world.pose(body).rotation});  // by one along z
-    // the other has it where it was told last
+    is_at({{0, 0, 2}, world.pose(body).rotation});  // moved by 1 m along z
+    // The remaining attachment holds the body at the pose that was set last.
     world.remove(second);
     is_at({{0, 0, 1}, {0, 0.3, 0}});
     world.remove(first);

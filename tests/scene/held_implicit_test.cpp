@@ -1,4 +1,4 @@
-// Implicit bodies that attachments hold and lead (docs/methods/implicit_bodies.md 7).
+// Implicit bodies that attachments hold and move (docs/methods/implicit_bodies.md 7).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace skerry::test::held_implicit_test {
 
 namespace {
 
-/// Nodes with the smallest x, or the largest.
+/// Nodes with the smallest x, or with the largest.
 std::vector<Index> end_of(const Mesh& mesh, bool far = false) {
     Real end = 0;
     for (const Vec3& x : mesh.nodes) end = far ? std::max(end, x.x()) : std::min(end, x.x());
@@ -31,7 +31,7 @@ Settings settings_of(Real h, Real theta, const Vec3& gravity) {
 
 const Mesh bar = mesh::box({0.4, 0.1, 0.1}, {4, 1, 1});
 
-/// A bar along x that is held at its end.
+/// A bar along x that is held at one end.
 struct Cantilever {
     World world;
     MaterialHandle material;
@@ -58,10 +58,10 @@ Mat3 turn_by(const Vec3& rotation) {
 
 TEST_CASE("a held implicit body hangs as far down as an explicit one", "[scene][implicit]") {
     const auto sag = [](BodyDynamics dynamics) {
-        // so light that it is linear
+        // The load is so light that the response is linear.
         Settings settings = settings_of(0.02, 1, {0, 0.5e-3, -1e-3});
         if (dynamics == BodyDynamics::explicit_elastic) settings.step_size.reset();
-        settings.sleep = false;  // rest takes what is left of the sinking
+        settings.sleep = false;  // sleep would stop the last part of the sinking
         Cantilever scene(settings, {.young_modulus = 1e5, .poisson_ratio = 0.3, .damping = 15}, {}, dynamics);
         const Vec3 start = scene.tip();
         REQUIRE(scene.world.advance(6).ok());
@@ -84,7 +84,7 @@ TEST_CASE("a cantilever keeps its amplitude over five periods of fifty steps", "
             REQUIRE(scene.world.advance(h).ok());
             sag.push_back(start - scene.tip(mesh).z());
         }
-        // peaks of periods: the first two tell how long one is
+        // The first peak of the sag is half a period after the start.
         const auto peak = std::max_element(sag.begin(), sag.begin() + 60);
         period = 2 * h * static_cast<Real>(peak - sag.begin());
         const auto fifth = sag.begin() + static_cast<std::ptrdiff_t>(4 * period / h);
@@ -169,7 +169,7 @@ TEST_CASE("a held implicit body that is spun is stretched by what spins", "[scen
     Settings settings = settings_of(1e-3, 1, Vec3::Zero());
     World world(settings);
     const auto material = world.add_material({.young_modulus = E, .poisson_ratio = 0, .damping = 0});
-    // about its end
+    // The rod spins about its end.
     const auto body = world.add_body(rod, {.material = material,
                                            .position = {0.2, 0, 0},
                                            .velocity = {0, 0.2 * omega, 0},
@@ -187,7 +187,8 @@ TEST_CASE("a held implicit body that is spun is stretched by what spins", "[scen
     REQUIRE(world.advance(0.02).ok());
     const Vec3 force = world.forces().by(hold).force();
     CHECK(force.norm() == Approx(world.mass(body) * omega * omega * 0.2).epsilon(0.02));
-    // what holds it gives what turning about by backward Euler takes; forces of 1e8 Pa, 1,000 times
+    // The attachment supplies the energy that backward Euler takes from a rotation. The error is rounding of forces
+    // at 1e8 Pa over 1,000 steps.
     CHECK(world.report().energy_error_share < 1e-8);
 }
 
@@ -218,14 +219,14 @@ TEST_CASE("the reaction of an attachment is what an implicit body gains, less wh
         world.watch_steps({});
         const WorldReport after = world.report();
         const ForceReport reaction = world.forces().by(scene.hold);
-        // forces of 1e6 Pa add up to zero by rounding, 75 times
+        // Rounding of internal forces at 1e6 Pa, over 75 steps.
         CHECK((reaction.impulse - (after.momentum - before.momentum - loads)).norm() < 1e-10);
         CHECK(reaction.impulse.norm() > 1);
         const auto about_point = [&](const WorldReport& report) {
             return Vec3(report.angular_momentum - about.cross(report.momentum));
         };
         const Real off = (reaction.moment_impulse - (about_point(after) - about_point(before) - moments)).norm();
-        // velocities of the step are those at its end where theta is 1: then arms are exact
+        // If theta is 1, the velocities of a step are those at its end, and the lever arms are exact.
         CHECK(off < (theta == 1 ? 1e-10 : 0.01 * reaction.moment_impulse.norm()));
     }
 }
@@ -264,7 +265,7 @@ TEST_CASE("an implicit body that is attached and let go keeps its places, veloci
     Vec3 momentum = Vec3::Zero();
     for (std::size_t n = 0; n < mass.size(); ++n) momentum += mass[n] * velocity[n];
     world.remove(hold);
-    differ(0, 2e-2 * momentum.norm());  // the split leaves out terms of the order of the strain
+    differ(0, 2e-2 * momentum.norm());  // the split omits terms of the order of the strain
     CHECK((world.report().momentum - momentum).norm() < 1e-13);
     REQUIRE(world.advance(0.2).ok());
     CHECK((world.report().momentum - momentum).norm() < 1e-13);
@@ -307,10 +308,10 @@ TEST_CASE("a bar between two attachments is stretched as they part", "[scene][im
     world.measure_forces(true);
     REQUIRE(world.advance(4).ok());
     REQUIRE(world.advance(0.1).ok());
-    const Real force = E * 0.01 * 1e-3;  // E A e
+    const Real force = E * 0.01 * 1e-3;  // E times area times strain
     CHECK(world.forces().by(right).force().x() == Approx(force).epsilon(1e-3));
     CHECK(world.forces().by(left).force().x() == Approx(-force).epsilon(1e-3));
-    // without the one that had the frame the other has it, and the bar shrinks to its length
+    // The remaining attachment takes over the frame, and the bar shrinks to its rest length.
     world.remove(right);
     REQUIRE(world.advance(4).ok());
     for (std::size_t n = 0; n < bar.nodes.size(); ++n) CHECK((world.positions(body)[n] - bar.nodes[n]).norm() < 1e-9);

@@ -45,7 +45,7 @@ ImplicitCube on_incline(Real degrees, Real mu, Real h, Real modulus) {
     return scene;
 }
 
-/// Two cubes, one thrown at the other, beside an elastic one that is not implicit.
+/// Two implicit cubes, one thrown at the other, and an explicit elastic one beside them.
 struct Collision {
     World world;
     std::array<BodyHandle, 3> body;
@@ -83,7 +83,7 @@ TEST_CASE("a free implicit body keeps its momenta, and loses no energy of its sp
     CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-12 * before.angular_momentum.norm());
     CHECK(std::abs(after.energy.kinetic / before.energy.kinetic - 1) < 1e-3);
     CHECK(after.energy.elastic < 1e-20);
-    const Real mass = 6;  // of a solid brick, with the density of water
+    const Real mass = 6;  // a solid brick with the density of water
     CHECK(before.angular_momentum.y() == Approx(6 * mass * (0.01 + 0.09) / 12).epsilon(1e-12));
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("an implicit body in equilibrium stays where it is, whatever the step"
     Real force = 0;
     for (const Contact& contact : scene.world.contacts()) force += contact.impulse.z() / 1e-3;
     CHECK(force == Approx(standard_gravity).epsilon(1e-9));
-    // it is compressed as a column under its weight: rho g L^2 / (2 E), where the floor lets it widen
+    // It is compressed like a column under its weight: rho g L^2 / (2 E), where the floor lets it widen.
     CHECK(scene.world.positions(scene.body)[0].z() < 0.1 - 0.3 * 1000 * standard_gravity * 0.01 / 2e6);
     REQUIRE(scene.world.advance(1).ok());
     for (std::size_t n = 0; n < still.size(); ++n)
@@ -135,10 +135,10 @@ TEST_CASE("implicit bodies exchange momentum with each other and with explicit o
     const WorldReport after = scene.world.report();
     CHECK(after.mean_contacts > 0);
     CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
-    // contacts have a distance, across which their impulses are no pair
+    // The contact distance separates the two points of each impulse, which gives a small moment.
     CHECK((after.angular_momentum - before.angular_momentum).norm() < 2e-3 * before.momentum.norm() * 0.1);
     CHECK(after.energy.kinetic + after.energy.elastic < before.energy.kinetic);
-    CHECK(after.energy_error_share < 1e-2);  // of the explicit one
+    CHECK(after.energy_error_share < 1e-2);  // error of the explicit body
     CHECK(scene.world.velocities(scene.body[2])[0].x() > 0.1);
 }
 
@@ -170,9 +170,9 @@ TEST_CASE("a world with implicit bodies goes on bit by bit when it is cloned or 
 }
 
 TEST_CASE("an implicit body vibrates as a rod does, damped as theta says", "[scene][implicit]") {
-    // free-free, first mode along the rod: period 2 L sqrt(rho/E) with nu = 0
+    // First longitudinal mode of a free rod: period 2 L sqrt(rho/E) with nu = 0
     const Real length = 1, modulus = 1e6, density = 1000, period = 2 * length * std::sqrt(density / modulus);
-    constexpr int steps = 100;  // a period
+    constexpr int steps = 100;  // per period
     const Mesh rod = mesh::box({length, 0.05, 0.05}, {20, 1, 1});
     std::vector<Vec3> stretched;
     for (const Vec3& x : rod.nodes)
@@ -186,7 +186,7 @@ TEST_CASE("an implicit body vibrates as a rod does, damped as theta says", "[sce
     const auto end = [&] { return scene.world.positions(scene.body).back().x() - rod.nodes.back().x(); };
     CHECK(end() == Approx(1e-3).epsilon(1e-9));
     const Real start = scene.world.report().energy.elastic;
-    Real crossing = 0;  // s, a quarter of the period
+    Real crossing = 0;  // time of the first crossing, a quarter of the period [s]
     for (int k = 0; k < steps && crossing == 0; ++k) {
         const Real before = end();
         REQUIRE(scene.world.advance(period / steps).ok());
@@ -225,7 +225,7 @@ TEST_CASE("stacks of implicit and rigid blocks come to rest, implicit ones by Ne
     Real speed = 0, swept_speed = 0;
     const Index with = unconverged(SolverMethod::automatic, speed),
                 without = unconverged(SolverMethod::ags, swept_speed);
-    // sweeps do for so small a stack of rigid blocks
+    // Sweeps suffice for so small a stack of rigid blocks.
     if (dynamics == BodyDynamics::implicit_elastic) CHECK(4 * with < without);
     CHECK(speed < 2e-6);
 }
@@ -253,8 +253,8 @@ TEST_CASE("a soft stack that lands is solved by Newton steps where sweeps do not
 
 TEST_CASE("stiff implicit blocks that land on each other are solved as if they moved as wholes first",
           "[scene][implicit][long]") {
-    // few iterations: sweeps and Newton steps alone leave 32 regions of the stack; of the one whose lowest block is
-    // held 35 are left where that moves as a whole, too
+    // With few iterations, sweeps and Newton steps alone leave 32 regions of the stack unconverged. In the stack whose
+    // lowest block is held, 35 are left if the coarse correction moves that block as a whole, too.
     const auto unconverged = [](int count, Index most, bool held) {
         Settings settings;
         settings.step_size = 0.01;
@@ -281,7 +281,7 @@ TEST_CASE("stiff implicit blocks that land on each other are solved as if they m
 }
 
 TEST_CASE("contacts that Newton steps turn round are stopped", "[scene][implicit][long]") {
-    // few iterations: where such contacts go on sliding 31 regions are left
+    // With few iterations, 31 regions are left unconverged if such contacts go on sliding.
     Settings settings;
     settings.step_size = 0.002;
     settings.tolerance = 1e-6;
@@ -342,19 +342,19 @@ TEST_CASE("an implicit body that is set by hand keeps its deformation", "[scene]
     scene.world.set_velocities(scene.body, velocity);
     for (std::size_t n = 0; n < position.size(); ++n) {
         CHECK((scene.world.positions(scene.body)[n] - position[n]).norm() < 1e-12);
-        // the spin of the solid is that of the nodes where they turn as a whole
+        // The spin of the solid equals that of the nodes if they rotate as a whole.
         CHECK((scene.world.velocities(scene.body)[n] - velocity[n]).norm() < 1e-3);
     }
     CHECK(scene.world.dynamics(scene.body) == BodyDynamics::implicit_elastic);
     const Energy before = scene.world.report().energy;
     CHECK(before.elastic > 0);
     REQUIRE(scene.world.advance(0.5).ok());
-    CHECK(scene.world.report().energy.elastic < 1e-3 * before.elastic);  // it has swung out
+    CHECK(scene.world.report().energy.elastic < 1e-3 * before.elastic);  // the vibration has died away
 }
 
 TEST_CASE("a load on a node of an implicit body deforms it as its stiffness says", "[scene][implicit]") {
     ImplicitCube scene(without_gravity(1e-2), {}, {.young_modulus = 1e6});
-    // squeezed between two opposite corners
+    // Two opposite forces squeeze the cube between opposite corners.
     std::vector<Vec3> load(cube.nodes.size(), Vec3::Zero());
     std::size_t high = 0, low = 0;
     for (std::size_t n = 0; n < cube.nodes.size(); ++n) {
@@ -368,13 +368,13 @@ TEST_CASE("a load on a node of an implicit body deforms it as its stiffness says
     REQUIRE(scene.world.advance(5).ok());
     const std::span<const Vec3> position = scene.world.positions(scene.body);
     const Vec3 squeezed = (position[high] - cube.nodes[high]) - (position[low] - cube.nodes[low]);
-    // Clapeyron: the work of the loads, slowly applied, is the energy
+    // Clapeyron: the energy is the work of slowly applied loads.
     CHECK(scene.world.report().energy.elastic == Approx(force.dot(squeezed) / 2).epsilon(1e-9));
     CHECK(scene.world.report().energy.kinetic < 1e-20);
 }
 
 TEST_CASE("stress and strain of an implicit body turn with it", "[scene][implicit]") {
-    // nu = 0: a stretch by 1e-5 along x gives E times that, and nothing across
+    // nu = 0: a stretch of 1e-5 along x gives a stress of E times that, and none across.
     ImplicitCube scene(without_gravity(1e-3), {}, {.young_modulus = 1e6, .poisson_ratio = 0});
     const Mat3 turn = Eigen::AngleAxis<Real>(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     std::vector<Vec3> position;

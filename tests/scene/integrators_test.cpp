@@ -1,5 +1,5 @@
-// Orders of the integrators, measured against closed forms and against very small steps
-// (docs/methods/time_stepping.md 1).
+// Orders of the integrators, measured against closed forms and against very small steps (docs/methods/time_stepping.md
+// 1).
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace skerry::test::integrators_test {
 
 namespace {
 
-/// One tetrahedron whose three nodes at the bottom are held. The gradient of the fourth is along z, so that it swings
+/// One tetrahedron with three held bottom nodes. The gradient of the fourth shape function is along z. It oscillates
 /// there with m x'' = -V (lambda + 2 mu) g^2 x, V g^2 / m = 4 / rho for unit edges: one mode, in closed form.
 struct Oscillator {
     World world;
@@ -53,7 +53,7 @@ struct Oscillator {
     }
 };
 
-constexpr Real run_length = 0.5;  // s, some two periods
+constexpr Real run_length = 0.5;  // about two periods [s]
 
 Real oscillator_error(Integrator integrator, int steps) {
     Oscillator one(integrator, run_length / steps);
@@ -61,7 +61,7 @@ Real oscillator_error(Integrator integrator, int steps) {
     return one.error(run_length);
 }
 
-/// A neo-Hookean block that turns and rings: nothing linear about it.
+/// A neo-Hookean block that rotates and vibrates, a fully nonlinear case.
 std::vector<Vec3> block_after(Integrator integrator, int steps, bool in_one_call = true) {
     Settings settings;
     settings.gravity = {0, 0, -9.81};
@@ -82,7 +82,7 @@ std::vector<Vec3> block_after(Integrator integrator, int steps, bool in_one_call
         for (int frame = 0; frame < 10; ++frame) REQUIRE(world.advance(seconds / 10).ok());
     }
     std::vector<Vec3> state(world.positions(body).begin(), world.positions(body).end());
-    const Real time_scale = 0.01;  // s, makes lengths of velocities
+    const Real time_scale = 0.01;  // converts velocities to lengths [s]
     for (const Vec3& v : world.velocities(body)) state.push_back(time_scale * v);
     return state;
 }
@@ -93,7 +93,7 @@ Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return std::sqrt(sum / static_cast<Real>(a.size()));
 }
 
-/// A block thrown onto the floor, after it has come off again: height and mean velocity.
+/// Height and mean velocity of a block after it was thrown onto the floor and has left it again.
 struct Rebound {
     Real height = 0, velocity = 0;
 };
@@ -122,8 +122,8 @@ TEST_CASE("one mode converges with order 1 by symplectic Euler and with order 2 
         INFO(name_of(integrator));
         const Real coarse = oscillator_error(integrator, 400), middle = oscillator_error(integrator, 800),
                    fine = oscillator_error(integrator, 1600);
-        // The next term of the error of symplectic Euler is omega h = 0.03 of it at the coarsest: its order comes as
-        // near.
+        // At the coarsest step the second term of symplectic Euler's error is omega h = 0.03 of the first. Its order is
+        // only that accurate.
         CHECK(std::log2(coarse / middle) == Approx(order).margin(0.03));
         CHECK(std::log2(middle / fine) == Approx(order).margin(0.015));
     }
@@ -169,9 +169,9 @@ TEST_CASE("leapfrog keeps order 2 when the length of the step changes all the ti
 }
 
 TEST_CASE("after an impact symplectic Euler converges with order 1 and leapfrog no slower", "[scene][long]") {
-    // When the surface is met within a step changes the errors from step length to step length, so the order is taken
-    // over a factor of eight. A single soft touch such as this one leaves leapfrog nearly its second order; only order
-    // 1 is asked of it.
+    // The moment of first contact within a step varies with the step length, and the errors with it. The order is
+    // therefore taken over a factor of eight. A single soft contact leaves leapfrog nearly its second order; only
+    // order 1 is required.
     const Rebound reference = rebound(Integrator::leapfrog, 25600);
     std::array<Real, 2> order{};
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {

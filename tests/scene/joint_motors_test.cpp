@@ -10,13 +10,13 @@ namespace skerry::test::joint_motors_test {
 
 namespace {
 
-constexpr Real length = 0.4, side = 0.04, reach = 0.2;  // m, of an arm that lies along x from the hinge at the origin
+constexpr Real length = 0.4, side = 0.04, reach = 0.2;  // of an arm along x from the hinge at the origin [m]
 const Mesh arm_mesh = mesh::box({length, side, side}, {2, 1, 1});
 const Real mass = 1000 * side * side * length;                                            // kg
-const Real inertia = mass * (length * length + side * side) / 12 + mass * reach * reach;  // kg m^2, about the hinge
-const Real weight_moment = mass * standard_gravity * reach;                               // N m, lying flat
+const Real inertia = mass * (length * length + side * side) / 12 + mass * reach * reach;  // about the hinge [kg m^2]
+const Real weight_moment = mass * standard_gravity * reach;  // for the horizontal arm [N m]
 
-/// An arm on a hinge: turned about -y it rises.
+/// An arm on a hinge. A rotation about -y raises it.
 struct Arm {
     World world;
     BodyHandle body;
@@ -51,7 +51,7 @@ TEST_CASE("a hinge stops at its limits, which carry the weight", "[scene][joints
     arm.world.set_gravity({0, 0, standard_gravity});
     REQUIRE(arm.world.advance(2).ok());
     CHECK(arm.state().coordinate == Approx(0.3).epsilon(1e-6));
-    // beyond a limit it is taken back
+    // A joint beyond a limit is moved back to it.
     Joints(arm.world).set_limits(arm.hinge, -0.5, 0.1);
     REQUIRE(arm.world.advance(1).ok());
     CHECK(arm.state().coordinate == Approx(0.1).epsilon(1e-6));
@@ -71,7 +71,7 @@ TEST_CASE("a motor speeds up with its strength, and goes on at its speed", "[sce
     CHECK(arm.state().speed == Approx(speed).epsilon(1e-6));
     CHECK(arm.state().moment.norm() < 1e-3);
     const Real before = arm.state().coordinate;
-    REQUIRE(arm.world.advance(5).ok());  // more than three turns
+    REQUIRE(arm.world.advance(5).ok());  // turns by more than three revolutions
     CHECK(arm.state().coordinate - before == Approx(5 * speed).epsilon(1e-4));
     Joints(arm.world).set_motor(arm.hinge, JointMotor{.speed = -1, .strength = 100});
     REQUIRE(arm.world.advance(0.01).ok());
@@ -103,13 +103,13 @@ TEST_CASE("a motor takes a hinge to a position at its speed, and stops there", "
     REQUIRE(arm.world.advance(1).ok());
     CHECK(arm.state().coordinate == Approx(target).epsilon(1e-6));
     CHECK(arm.state().moment.y() == Approx(-weight_moment * std::cos(target)).epsilon(1e-4));
-    // a stop in its way is stronger
+    // A limit on the way overrides the motor.
     Joints(arm.world).set_limits(arm.hinge, -1, 1.2);
     Joints(arm.world).set_motor(arm.hinge, JointMotor{.position = 3, .strength = 50, .fastest = fastest});
     REQUIRE(arm.world.advance(1).ok());
     CHECK(arm.state().coordinate == Approx(1.2).epsilon(1e-6));
     Joints(arm.world).set_motor(arm.hinge, JointMotor{.position = 0, .strength = 50});
-    REQUIRE(arm.world.advance(0.2).ok());  // as fast as it can brake: no further
+    REQUIRE(arm.world.advance(0.2).ok());  // it brakes within the motor's strength and does not overshoot
     CHECK(std::abs(arm.state().coordinate) < 1e-6);
     CHECK(std::abs(arm.state().speed) < 1e-6);
 }

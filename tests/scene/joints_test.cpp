@@ -12,11 +12,11 @@ namespace skerry::test::joints_test {
 
 namespace {
 
-constexpr Real length = 0.4, side = 0.04, reach = 0.25;  // m, of a bar, and from its centre to the joint
+constexpr Real length = 0.4, side = 0.04, reach = 0.25;  // of a bar; `reach`: from its centre to the joint [m]
 const Mesh bar = mesh::box({side, side, length}, {1, 1, 2});
-const Real bar_mass = 1000 * side * side * length;                         // kg, of water
-const Real bar_inertia = bar_mass * (length * length + side * side) / 12;  // kg m^2, about x or y
-const Real swing_inertia = bar_inertia + bar_mass * reach * reach;         // about the joint
+const Real bar_mass = 1000 * side * side * length;                         // density of water [kg]
+const Real bar_inertia = bar_mass * (length * length + side * side) / 12;  // about x or y [kg m^2]
+const Real swing_inertia = bar_inertia + bar_mass * reach * reach;         // about the joint [kg m^2]
 
 Settings with_step(Real h, const Vec3& gravity = {0, 0, -standard_gravity}) {
     Settings settings = accurate(gravity, 1e-10);
@@ -24,7 +24,7 @@ Settings with_step(Real h, const Vec3& gravity = {0, 0, -standard_gravity}) {
     return settings;
 }
 
-/// Bars that hang from each other, the first from the world at the origin, all at one angle from where they would rest.
+/// A chain of bars, the first attached to the world at the origin. All start at one angle from their rest positions.
 struct Bars {
     World world;
     MaterialHandle material;
@@ -53,7 +53,7 @@ struct Bars {
     }
 };
 
-/// s, from the first to the third passage of the lowest place: a period.
+/// Period: time from the first to the third passage of the lowest point [s]
 Real period_of(Bars& bars, Real h) {
     std::vector<Real> passages;
     Real before = bars.world.center_of_mass(bars.body[0]).x();
@@ -98,7 +98,7 @@ TEST_CASE("a double pendulum keeps its energy", "[scene][joints]") {
     for (const Real h : {1.0 / 120, 1.0 / 480}) {
         Bars bars(with_step(h), 2, 2.0, JointKind::hinge);
         const Energy start = bars.world.energy();
-        const Real scale = 4 * bar_mass * standard_gravity * reach;  // J, between hanging and upright of the second
+        const Real scale = 4 * bar_mass * standard_gravity * reach;  // energy to turn the second bar upright [J]
         Real most = 0;
         for (int k = 0; k < 200; ++k) {
             REQUIRE(bars.world.advance(0.05).ok());
@@ -192,7 +192,7 @@ TEST_CASE("a slider lets a body fall along its axis alone, on a slope against fr
             block,
             {.material = material, .position = {0, 0, 0.025}, .contact_distance = 0, .dynamics = BodyDynamics::rigid});
         if (with_plane) world.add_collider(Plane{});
-        // with the plane beneath it the slider keeps it from turning and from the side
+        // With the plane beneath, the slider prevents rotation and sideways motion.
         const auto slider = Joints(world).add(
             {.kind = JointKind::slider, .first = body, .point = {0, 0, 0.025}, .axis = {1, 0, 0}, .upper = 0.5});
         if (with_plane) world.set_gravity(tilted_gravity(degrees) + Vec3(0, 1, 0));
@@ -202,7 +202,7 @@ TEST_CASE("a slider lets a body fall along its axis alone, on a slope against fr
         const JointState now = Joints(world).state(slider);
         const Real down = standard_gravity * std::sin(degrees * std::numbers::pi / 180);
         if (!with_plane) CHECK((now.speed - before.speed) / 0.1 == Approx(down).epsilon(1e-9));
-        // which of the two carries the weight is not said: it may be the slider alone
+        // The division of the weight between slider and plane is not unique: the slider may carry all of it.
         CHECK((now.speed - before.speed) / 0.1 < down * (1 + 1e-9));
         CHECK(std::abs(world.center_of_mass(body).y()) < 1e-9);
         CHECK(world.center_of_mass(body).z() == Approx(0.025).margin(1e-6));
@@ -297,7 +297,7 @@ TEST_CASE("joints go with their bodies, and rows of others follow", "[scene][joi
     REQUIRE(bars.world.advance(0.2).ok());
     CHECK(bars.world.center_of_mass(bars.body[0]).z() == Approx(-reach).epsilon(1e-9));
     CHECK(Joints(bars.world).state(bars.joint[3]).error < 1e-9);
-    CHECK(Joints(bars.world).state(bars.joint[3]).force.norm() < 1e-9);  // both fall
+    CHECK(Joints(bars.world).state(bars.joint[3]).force.norm() < 1e-9);  // both fall freely
     CHECK(Joints(bars.world).state(bars.joint[3]).first == bars.body[3]);
     CHECK(Joints(bars.world).state(bars.joint[3]).second == bars.body[2]);
 }

@@ -1,4 +1,4 @@
-// What is found of a mesh once, for all bodies of it that come one after the other.
+// Data that are derived from a mesh once and shared by consecutive bodies of that mesh.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdint>

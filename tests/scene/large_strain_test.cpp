@@ -1,4 +1,4 @@
-// Implicit bodies of large strain in whole steps (docs/methods/implicit_bodies.md 8).
+// Implicit bodies with large strain in whole steps (docs/methods/implicit_bodies.md 8).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +19,7 @@ Settings settings_of(Real h, Real theta, const Vec3& gravity) {
     return settings;
 }
 
-/// Nodes with the smallest x, or the largest.
+/// Nodes with the smallest x, or with the largest.
 std::vector<Index> end_of(const Mesh& mesh, bool far) {
     Real end = mesh.nodes.front().x();
     for (const Vec3& x : mesh.nodes) end = far ? std::max(end, x.x()) : std::min(end, x.x());
@@ -29,7 +29,7 @@ std::vector<Index> end_of(const Mesh& mesh, bool far) {
     return nodes;
 }
 
-/// A bar along x that is held at its end.
+/// A bar along x that is held at one end.
 struct Cantilever {
     Mesh mesh;
     World world;
@@ -62,7 +62,7 @@ Real energy_of(const World& world) {
 
 const Mesh bar = mesh::box({1, 0.1, 0.1}, {8, 1, 1});
 
-/// kg m^2/s about the origin, of the solid whose velocities go linearly from node to node.
+/// Angular momentum about the origin of the solid with velocities linear between nodes [kg m^2/s]
 Vec3 angular_momentum_of_solid(const Mesh& mesh, Real density, const World& world, BodyHandle body) {
     const auto x = world.positions(body), v = world.velocities(body);
     Vec3 sum = Vec3::Zero();
@@ -86,7 +86,7 @@ Vec3 angular_momentum_of_solid(const Mesh& mesh, Real density, const World& worl
     return sum;
 }
 
-/// A free bar that spins, longer by a tenth at the start, as it is in its first mode.
+/// A free spinning bar that starts longer by a tenth, in the shape of its first mode.
 struct Spun {
     static constexpr Real rate = 4;  // rad/s
     Mesh mesh;
@@ -119,7 +119,7 @@ struct Spun {
     }
 };
 
-/// A free bar that is stretched and twisted, and turns.
+/// A free bar that is stretched and twisted, and rotates.
 struct Twisted {
     World world;
     BodyHandle body;
@@ -176,10 +176,10 @@ TEST_CASE("a thin bar that is bent by a load at its end is an elastica", "[scene
         CHECK((scene.world.report().large_strain_steps > 0) == (load > 1));
         return Vec3(scene.tip() - start);
     };
-    // what bends it, by how little a small load does: alpha / 3 of its length, alpha = P L^2 / (E I)
+    // Bending stiffness from a small load: the deflection is alpha / 3 of the length, alpha = P L^2 / (E I).
     constexpr Real small = 1e-3;
     const Real stiffness = small / (-3 * tip_under(small).z());
-    // Mattiasson 1981: alpha, down and back over the length
+    // Mattiasson 1981: alpha, and the displacements of the tip down and back over the length
     const std::array<std::array<Real, 3>, 3> table{
         {{1, 0.301721, 0.056433}, {2, 0.493457, 0.160642}, {5, 0.713792, 0.387628}}};
     for (const auto& [alpha, down, back] : table) {
@@ -209,7 +209,7 @@ TEST_CASE("a bent cantilever that is let go moves as an explicit one, to the ord
         REQUIRE(scene.world.advance(0.1).ok());
         return Vec3(scene.tip() - still.tip());
     };
-    const Vec3 exact = way_of_tip(2e-5, BodyDynamics::explicit_elastic);  // which has an error of 1e-3 in its own step
+    const Vec3 exact = way_of_tip(2e-5, BodyDynamics::explicit_elastic);  // its own step gives it an error of 1e-3
     CHECK(exact.norm() > 0.04);
     std::array<Real, 4> error;
     for (std::size_t k = 0; k < error.size(); ++k)
@@ -295,7 +295,7 @@ TEST_CASE("a free bar that spins stretched turns and shortens as an explicit one
 
 TEST_CASE("a free bar is as long as its spin makes it", "[scene][implicit]") {
     constexpr Real young = 1e5, density = 1000, length = 1;
-    const Real rate = GENERATE(7.0, 11.0);  // rad/s, at the start: of a bar that is not strained at all
+    const Real rate = GENERATE(7.0, 11.0);  // at the start, for an unstrained bar [rad/s]
     const Mesh mesh = mesh::box({length, 0.05, 0.05}, {20, 1, 1});
     World world(settings_of(1.0 / 120, 1, Vec3::Zero()));
     const auto rubber =
@@ -330,7 +330,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
                lossless({.young_modulus = 1e6, .poisson_ratio = 0, .damping = 5}));
     const Vec3 whole = scene.world.report().angular_momentum;
     const auto copy_of = [](std::span<const Vec3> of) { return std::vector<Vec3>(of.begin(), of.end()); };
-    std::vector<Real> kicked, beside;  // m/s, of each step: by what velocities change, and what nodes do not move with
+    std::vector<Real> kicked, beside;  // largest velocity change, and velocity minus displacement rate, per step [m/s]
     std::vector<std::size_t> entered, left;
     std::uint64_t before = 0;
     bool large = true;
@@ -355,7 +355,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
     }
     CHECK(entered.size() > 0);
     CHECK(left.size() == entered.size() + 1);
-    // no more than in the steps around, but for the spin, by 2 % of 4 rad/s at the ends
+    // A switch changes both no more than neighbouring steps do, except for the spin: 2 % of 4 rad/s at the ends.
     for (const std::vector<std::size_t>* switched : {&entered, &left})
         for (const std::size_t at : *switched)
             for (const std::size_t k : {at - 1, at}) {
@@ -363,7 +363,7 @@ TEST_CASE("a spinning bar that comes to rest in its frame leaves large strain, a
                 CHECK(kicked[k] < std::max(kicked[k - 2], kicked[k + 2]) + 0.05);
                 CHECK(beside[k] < std::max(beside[k - 2], beside[k + 2]) + 0.05);
             }
-    CHECK(scene.world.report().energy_error_share < 1e-7);  // that of turns while strain is small, as of rigid bodies
+    CHECK(scene.world.report().energy_error_share < 1e-7);  // error of rotations with small strain, as for rigid bodies
 }
 
 TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, and rests as flat",
@@ -377,7 +377,7 @@ TEST_CASE("a soft implicit ball that lands is pressed flat as an explicit one, a
         for (int k = 0; k < 100; ++k) {
             REQUIRE(scene.world.advance(1.0 / 240).ok());
             least = std::min(least, scene.height());
-            // where linear elasticity is left, energy jumps by a hundredth of what is elastic
+            // When the body leaves linear elasticity, the energy jumps by a hundredth of the elastic energy.
             if (dynamics == BodyDynamics::implicit_elastic) CHECK(energy_of(scene.world) < energy + 2e-3 * whole);
             energy = energy_of(scene.world);
         }

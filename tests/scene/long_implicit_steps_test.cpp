@@ -1,5 +1,4 @@
-// Implicit bodies whose steps are longer than those of the explicit ones beside them
-// (docs/methods/implicit_bodies.md 9).
+// Implicit bodies with longer steps than the explicit bodies beside them (docs/methods/implicit_bodies.md 9).
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -20,7 +19,7 @@ Settings settings_of(Real h, Real implicit_step, const Vec3& gravity) {
     return settings;
 }
 
-/// A soft explicit cube flies at a stiff implicit one, which may be light, and turns.
+/// A soft explicit cube that flies at a stiff, rotating implicit one, which may be light.
 struct Hit {
     World world;
     BodyHandle stiff, soft;
@@ -35,7 +34,7 @@ struct Hit {
     }
 };
 
-/// A soft explicit cube on a stiff implicit one on a floor, both just above what is below them.
+/// A soft explicit cube on a stiff implicit one on a floor; each starts just above its support.
 struct Stack {
     World world;
     BodyHandle stiff, soft;
@@ -125,7 +124,7 @@ TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[sce
     CAPTURE(density, short_steps, modulus);
     Hit scene(settings_of(h, short_steps * h, Vec3::Zero()), density, Vec3::Zero(), modulus);
     const WorldReport before = scene.world.report();
-    Real deepest = 0;  // m, in the distance that is kept
+    Real deepest = 0;  // largest violation of the contact distance [m]
     for (int k = 0; k < 30; ++k) {
         const StepReport report = scene.world.advance(40 * h);
         REQUIRE(report.ok());
@@ -134,7 +133,7 @@ TEST_CASE("long steps keep momenta, gain no energy, and nothing overlaps", "[sce
         REQUIRE((now.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
         REQUIRE(now.energy.kinetic + now.energy.elastic < before.energy.kinetic * (1 + 1e-3));
     }
-    // a step goes 0.2 mm: pressed in is half of one in short steps, too, where contacts are new
+    // Bodies move 0.2 mm in a step. New contacts are pressed in by half of one step, in short steps, too.
     CHECK(deepest < 1.5e-4);
     CHECK(scene.world.report().mean_contacts > 0);
 }
@@ -155,7 +154,7 @@ TEST_CASE("what lies on a light implicit body gains no energy by its long steps"
     }
     CHECK(deepest == 0);
     CHECK(scene.world.report().energy.kinetic < 1e-6 * scale);
-    // the floor carries both; the upper one still trembles
+    // The floor carries both bodies. The upper one still vibrates.
     Real weight = 0;
     for (const Contact& contact : scene.world.contacts())
         if (!scene.world.alive(contact.second)) weight += contact.impulse.z() / h;
@@ -163,7 +162,7 @@ TEST_CASE("what lies on a light implicit body gains no energy by its long steps"
 }
 
 TEST_CASE("long steps are of first order", "[scene][implicit][long]") {
-    // a soft ball on a light block that is not much stiffer, whose vibrations each of these steps follows
+    // A soft ball on a light block that is not much stiffer; the steps resolve all of its vibrations.
     constexpr Real h_fine = 5e-6;
     const auto speed = [](Real implicit_step) {
         World world(settings_of(h_fine, implicit_step, Vec3::Zero()));
@@ -209,7 +208,7 @@ TEST_CASE("worlds with long steps go on bit by bit, on any number of workers, sa
     settings.threads = 3;
     Stack with_three(settings, 100);
     int steps = 0;
-    const auto some = [&steps](const StepReport&) { return ++steps <= 29; };  // ends in the midst of a long step
+    const auto some = [&steps](const StepReport&) { return ++steps <= 29; };  // ends in the middle of a long step
     for (Stack* scene : {&reference, &with_three}) {
         steps = 0;
         REQUIRE(scene->world.advance(0.02, some).status == StepStatus::stopped);

@@ -1,4 +1,4 @@
-// What materials lose: loss_factor and bulk_viscosity (docs/methods/elasticity.md 6).
+// Material losses: loss_factor and bulk_viscosity (docs/methods/elasticity.md 6).
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real length = 1, thickness = 0.15;
 
-/// A free beam along x that starts to bend in z as it would in its lowest mode.
+/// A free beam along x that starts to bend in z in the shape of its lowest mode.
 struct Beam {
     World world;
     BodyHandle body;
@@ -40,16 +40,16 @@ struct Beam {
     }
 };
 
-/// Of the decay of a vibration: log of the ratio of amplitudes a period apart, over pi.
+/// Loss factor from the decay of a vibration: log of the ratio of amplitudes one period apart, over pi.
 Real measured_loss_factor(Beam& beam, Real period) {
     constexpr int samples = 64, periods = 8;
-    std::vector<Real> peaks;  // of every half period
+    std::vector<Real> peaks;  // at every half period
     Real before = 0, last = 0;
     for (int i = 0; i < samples * periods; ++i) {
         REQUIRE(beam.world.advance(period / samples).ok());
         const Real now = std::abs(beam.amplitude());
         if (last > before && last >= now) {
-            // top of the parabola through three samples
+            // The peak is the top of the parabola through three samples.
             const Real bend = before - 2 * last + now, slope = (now - before) / 2;
             peaks.push_back(last - slope * slope / (2 * bend));
         }
@@ -105,7 +105,7 @@ TEST_CASE("losses keep momentum and leave rigid motion alone", "[scene]") {
         const Real size = world.mass(body) * 0.5;
         CHECK((end.momentum - start.momentum).norm() < 1e-11 * size);
         CHECK((end.angular_momentum - start.angular_momentum).norm() < 1e-11 * size);
-        // what was not rigid is gone
+        // Only the rigid motion is left.
         CHECK(end.energy.elastic < 1e-3 * start.energy.kinetic);
     }
 }
@@ -137,12 +137,12 @@ TEST_CASE("at its stable step a body with losses is stable, and energy adds up",
                 last = now;
             }
             CHECK(last.dissipated > 0.5 * start.kinetic);
-            // white noise at the highest frequencies, where a step is a third of a period
+            // The start velocities are white noise with the highest frequencies, where a step is a third of a period.
             CHECK(world.report().energy_error_share < 3e-4);
         }
 }
 
-// Booked by what springs are stretched at the end of steps alone it was 2 to 3 %.
+// Regression: accounting only with the stretch of springs at the end of steps had an error of 2 to 3 %.
 TEST_CASE("a body that bounces on the floor loses what is booked as lost", "[scene]") {
     for (const ElementKind kind : {ElementKind::linear, ElementKind::smoothed}) {
         World world;
@@ -152,13 +152,13 @@ TEST_CASE("a body that bounces on the floor loses what is booked as lost", "[sce
                        {.material = rubber, .position = {0, 0, 0.2}, .velocity = {0, 0, -5}, .element = kind});
         REQUIRE(world.advance(0.5).ok());
         const WorldReport report = world.report();
-        CHECK(report.energy.dissipated > 50);  // of 340 J
+        CHECK(report.energy.dissipated > 50);  // of 340 J at the start
         CHECK(report.energy_error_share < 2e-3);
     }
 }
 
-// Damping takes from the velocities that a step begins with: at the bound of its elements a body whose velocities are
-// damped away within a step blew up.
+// Damping acts on the velocities at the start of a step. At the step limit of the elements alone, a body whose
+// velocities are damped away within a step was unstable.
 TEST_CASE("a body that is damped heavily is stable at its stable step", "[scene]") {
     for (const Real damping : {30.0, 300.0, 3000.0}) {
         CAPTURE(damping);

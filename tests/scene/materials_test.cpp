@@ -1,4 +1,4 @@
-// Bodies whose tetrahedra have materials of their own, by their labels.
+// Bodies whose tetrahedra have different materials, assigned by labels.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -11,7 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// A block whose upper half (z > 0) has label 1, the lower one 0.
+/// A block whose upper half (z > 0) has label 1 and whose lower half has label 0.
 Mesh two_layers(const std::array<int, 3>& cells = {4, 2, 2}) {
     Mesh mesh = mesh::box({0.2, 0.1, 0.1}, cells);
     for (const auto& t : mesh.tetrahedra) {
@@ -50,7 +50,7 @@ TEST_CASE("each tetrahedron has the density of its material", "[scene]") {
     const auto light = world.add_material({.density = 500}), heavy = world.add_material({.density = 3500});
     const auto body = world.add_body(two_layers(), {.material = light, .materials = {{1, heavy}}});
     CHECK(world.mass(body) == Approx(0.001 * 500 + 0.001 * 3500));
-    // lumped: nodes between the layers have the weight of both, which is where the layers meet
+    // Lumped masses: the nodes between the layers carry mass of both, at the height where the layers meet.
     CHECK(world.center_of_mass(body).z() == Approx(0.025 * (3500 - 500) / 4000.0));
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("stress is that of each tetrahedron's own material, and a node between
         std::vector<Vec3> velocity;
         for (const Vec3& x : mesh.nodes) velocity.emplace_back(0.5 * x.x(), -0.2 * x.y(), 0.1 * x.z());
         world.set_velocities(body, velocity);
-        // nothing pulls yet: the first step moves every node by h times its velocity
+        // The body is free of stress: the first step moves every node by h times its velocity.
         const Real h = world.stable_step() / 2;
         REQUIRE(world.advance(h).steps == 1);
         const Mat3 small = h * Vec3(0.5, -0.2, 0.1).asDiagonal().toDenseMatrix(), F = Mat3::Identity() + small;
@@ -85,7 +85,7 @@ TEST_CASE("stress is that of each tetrahedron's own material, and a node between
             worst = std::max(worst, (stress[t] - (mesh.label[t] == 1 ? above : below)).norm());
         CHECK(worst <= 1e-9 * above.norm());
         for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-            Real share = 0, all = 0;  // of the tetrahedra around the node, which are of one size
+            Real share = 0, all = 0;  // number of the tetrahedra around the node, all of equal size
             for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
                 for (const Index corner : mesh.tetrahedra[t])
                     if (static_cast<std::size_t>(corner) == n) {
@@ -159,7 +159,7 @@ TEST_CASE("what materials of one body lose adds up", "[scene][long]") {
                           Case{MaterialModel::stable_neo_hookean, MaterialModel::corotational, 0, 0.3},
                           Case{MaterialModel::corotational, MaterialModel::stable_neo_hookean, 0.05, 0.2}}) {
         INFO(name_of(c.below) << " with " << c.loss_below << " below " << name_of(c.above) << " with " << c.loss_above);
-        // a fraction of the stable step, at which velocities are half a step off the positions
+        // The step is a fraction of the stable step, because velocities are half a step off the positions.
         World world(Settings{.gravity = Vec3::Zero(), .step_size = 5e-5});
         const auto material = [&](Real modulus, Real loss, MaterialModel model) {
             return world.add_material({.young_modulus = modulus,

@@ -1,4 +1,4 @@
-// What whole steps keep: momentum, and what is held.
+// Conservation of momentum in whole steps, and bodies and nodes that are held or moved.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
@@ -31,7 +31,7 @@ TEST_CASE("two bodies that collide keep their common momentum", "[scene]") {
     REQUIRE(world.advance(0.15).ok());
     const WorldReport after = world.report();
     REQUIRE(after.max_contacts > 3);
-    const Real scale = world.mass(world.bodies()[0]) * 2;  // sum of m |v| at speed 1 m/s
+    const Real scale = world.mass(world.bodies()[0]) * 2;  // sum of m |v| at a speed of 1 m/s
     CHECK((after.momentum - before.momentum).norm() <= 1e-13 * scale * static_cast<Real>(after.steps));
     CHECK(after.energy.kinetic + after.energy.elastic < before.energy.kinetic + before.energy.elastic);
 }
@@ -45,7 +45,7 @@ TEST_CASE("a report names the collider that turns fastest, and by how much in a 
     world.add_collider(Plane{}, {.position = {0, 0, -9}, .motion = {.angular_velocity = {0, 3, 4}}, .name = "mill"});
     CHECK(world.report().collider_turn == Approx(0.05).epsilon(1e-12));
     CHECK(world.report().turning_collider == "mill");
-    // 3 rad in a tenth of a second, then the shorter way round: a quarter of a turn about another axis
+    // The plane turns by 3 rad in a tenth of a second, then the shorter way by a quarter turn about another axis.
     const Vec3 along(0, 0, 3);
     const Vec3 across = rotation_vector(rotation_matrix({0.5 * std::numbers::pi, 0, 0}) * rotation_matrix(along));
     world.add_collider(Plane{}, {.position = {0, 0, -9},
@@ -70,7 +70,7 @@ TEST_CASE("colliders turn by whole turns between keys, whatever their shape", "[
     world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({})});
     ColliderSettings collider;
     collider.collision_mask = 0;
-    // three turns, then across half a turn
+    // Three turns, then a rotation that passes through half a turn.
     collider.motion.keys = {{0, {5, 0, 0}, {0, 0, 0}},
                             {1, {5, 0, 0}, {6 * pi, 0, 0}},
                             {2, {5, 0, 0}, {0.9 * pi, 0, 0}},
@@ -78,7 +78,7 @@ TEST_CASE("colliders turn by whole turns between keys, whatever their shape", "[
     const Vec3 tilted = Vec3(1, 2, 2) / 3;
     struct Case {
         ColliderHandle collider;
-        Mat3 frame;  // its own, unturned
+        Mat3 frame;  // own orientation without the turn
     };
     std::vector<Case> cases;
     for (const Shape& shape :
@@ -117,7 +117,7 @@ TEST_CASE("pinned nodes stay where they are", "[scene]") {
     REQUIRE(world.advance(0.5).ok());
     for (Index n : top)
         CHECK(world.positions(bar)[static_cast<std::size_t>(n)] == mesh.nodes[static_cast<std::size_t>(n)]);
-    CHECK(world.center_of_mass(bar).z() < -1e-3);  // the rest hangs
+    CHECK(world.center_of_mass(bar).z() < -1e-3);  // the free part hangs down
 }
 
 TEST_CASE("an attachment follows its keys, and a released body is free again", "[scene]") {
@@ -148,14 +148,14 @@ TEST_CASE("an element that one step would throw inside out is stopped by its own
           "[scene]") {
     Settings settings;
     settings.gravity = Vec3::Zero();
-    settings.max_strain_step = 100;  // else the step would be refused for its speed
+    settings.max_strain_step = 100;  // otherwise the step would be refused for its speed
     World world(settings);
     const auto body =
         world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
                        {.material = world.add_material({.young_modulus = 1e5}), .contact_distance = {}, .name = "tet"});
     const Real h = world.stable_step();
     std::vector<Vec3> velocity(4, Vec3::Zero());
-    velocity[3] = {0, 0, -1.05 / h};  // 5 % beyond the face opposite
+    velocity[3] = {0, 0, -1.05 / h};  // 5 % beyond the opposite face
     world.set_velocities(body, velocity);
     const StepReport report = world.advance(h * (1 - 1e-12));
     CHECK(report.ok());
@@ -184,10 +184,10 @@ TEST_CASE("an element that is pressed inside out is reported with its body, and 
     CHECK(report.inverted_element == 0);
     CHECK_THAT(report.warning(),
                Catch::Contains("1 elements turned inside out, the first of them element 0 of body 'tet'"));
-    CHECK(report.shortened >= 2);  // to a quarter of the stable step, then it is let happen
+    CHECK(report.shortened >= 2);  // down to a quarter of the stable step, then the inversion is accepted
     CHECK(world.report().inversions == 1);
     CHECK(world.report().inverted == 1);
-    CHECK(world.advance(0.1).inverted == 0);  // it stays so: that is old news
+    CHECK(world.advance(0.1).inverted == 0);  // an element that stays inverted is not reported again
 }
 
 TEST_CASE("a push out of a step that was refused is not made in a later one", "[scene]") {
@@ -197,7 +197,7 @@ TEST_CASE("a push out of a step that was refused is not made in a later one", "[
     const auto body = world.add_body(mesh, {.material = material});
     const auto other = world.add_body(mesh, {.material = material, .position = {0.01, 0.005, 0.095}});  // overlaps
     std::vector<Vec3> velocity(mesh.nodes.size(), Vec3::Zero());
-    velocity[0] = {0, 0, -1e9};  // faster than any step stands
+    velocity[0] = {0, 0, -1e9};  // faster than any step allows
     world.set_velocities(other, velocity);
     const StepReport refused = world.advance(1e-3);
     REQUIRE(refused.status == StepStatus::too_fast);

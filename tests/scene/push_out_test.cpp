@@ -1,4 +1,4 @@
-// Touching is a fine place to start: what begins within the contact distance, or overlaps, is taken apart without a
+// Bodies may start touching: those that start within the contact distance, or overlapping, are moved apart without a
 // hop (docs/methods/contact.md 3.4).
 #include <catch2/catch.hpp>
 
@@ -24,7 +24,7 @@ TEST_CASE("a block that starts on a floor, or in it, is lifted and not thrown", 
                 peak = std::max(peak, world.center_of_mass(block).z());
             }
             INFO("E " << young_modulus << " Pa, lower face at " << start << " m");
-            // of the lowest nodes; a soft block also sags
+            // `lowest` is the height of the lowest nodes; a soft block also sags.
             Real lowest = 1;
             for (const Vec3& x : world.positions(block)) lowest = std::min(lowest, x.z());
             CHECK(lowest == Approx(shell).margin(2e-5 + 3e-3 * sag));

@@ -1,4 +1,4 @@
-// Contacts of bodies at rest: no step looks for them, and they are there all the same.
+// Contacts of sleeping bodies. No step searches for them, but they stay available.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +14,7 @@ namespace skerry::test::resting_contacts_test {
 
 namespace {
 
-/// Two blocks on each other, on a plane, and one beside them on a collider that is a mesh.
+/// Two stacked blocks on a plane, and one block beside them on a mesh collider.
 struct Stack {
     World world;
     ColliderHandle floor, table;
@@ -42,7 +42,7 @@ struct Stack {
                               {.material = rubber, .position = where, .velocity = velocity, .contact_distance = 0.002});
     }
     bool all_rest() const { return world.report().asleep == world.bodies().size(); }
-    /// False when they do not come to rest within so many seconds.
+    /// Returns false if the bodies do not fall asleep within `most` seconds.
     bool settle(Real most = 12) {
         for (const Real end = world.time() + most; world.time() < end && !all_rest();)
             if (!world.advance(0.01).ok()) return false;
@@ -94,7 +94,7 @@ TEST_CASE("contacts of what rests stay as they were in the last step before", "[
         REQUIRE(now.size() == last.size());
         REQUIRE(now.size() > 20);
         for (std::size_t c = 0; c < now.size(); ++c) {
-            // what came to rest earlier had no region any more
+            // Bodies that fell asleep earlier no longer have a region.
             Contact before = last[c];
             before.region = -1;
             check_same(before, now[c]);
@@ -150,7 +150,7 @@ TEST_CASE("what holds bodies at rest is known to who asks for forces only then",
     const Vec3 centre = stack.world.center_of_mass(hung);
     CHECK((forces.by(hook).moment_about(centre) + forces.by(pair).moment_about(centre)).norm() < 0.01 * weight * 0.1);
     CHECK(forces.by(pair).force().norm() > 0);
-    // and the same goes on when all of it is awake again
+    // The forces stay the same when all bodies are awake again.
     for (const BodyHandle body : stack.world.bodies()) stack.world.wake(body);
     REQUIRE(stack.world.advance(0.05).ok());
     CHECK(stack.world.forces().on(stack.high, stack.low).force().z() == Approx(weight).epsilon(0.02));
@@ -162,9 +162,9 @@ TEST_CASE("contacts of what wakes are those of the step, beside those of what re
     REQUIRE(stack.settle());
     stack.world.wake(stack.low);
     REQUIRE(stack.world.advance(1e-4).ok());
-    CHECK_FALSE(stack.world.asleep(stack.high));  // the impulse between them has woken it
+    CHECK_FALSE(stack.world.asleep(stack.high));  // the impulse between the blocks has woken it
     CHECK(stack.world.asleep(stack.beside));
-    // those of the block beside are shown together with those of this step
+    // The contacts of the block beside are shown together with those of this step.
     const auto contacts = stack.world.contacts();
     const auto of = [&](BodyHandle body) {
         return std::ranges::count_if(contacts,
@@ -234,16 +234,16 @@ TEST_CASE("worlds at rest that are cloned, saved and loaded show the same contac
     expect_same();
 }
 
-// Steps of which no stage is run
+// Steps in which no stage runs
 
 TEST_CASE("a step that nothing moves in is left out, with the bits that its stages would leave", "[scene][long]") {
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::leapfrog}) {
         Settings settings = Stack::sleepy();
         settings.integrator = integrator;
         Settings searching = settings;
-        searching.contact_budgets = false;  // leaves out nothing
+        searching.contact_budgets = false;  // skips nothing
         Stack quick(settings), slow(searching);
-        // a box far away that moves once
+        // A distant box that moves once.
         for (Stack* stack : {&quick, &slow})
             stack->world.add_collider(
                 Box{{0.1, 0.1, 0.1}},
@@ -274,7 +274,7 @@ TEST_CASE("a step that nothing moves in is left out, with the bits that its stag
 
 TEST_CASE("a collider that begins to move ends the steps that are left out", "[scene]") {
     Stack stack;
-    // a box that comes from above
+    // A box that comes down from above.
     stack.world.add_collider(Box{{0.1, 0.1, 0.1}}, {.motion = {.keys = {{.time = 0, .position = {0, 0, 1}},
                                                                         {.time = 12, .position = {0, 0, 1}},
                                                                         {.time = 13, .position = {0, 0, 0.2}}}}});

@@ -26,7 +26,7 @@ struct RigidCube {
     }
 };
 
-/// Largest change of a distance between two nodes, m.
+/// Largest change of the distance between two nodes [m]
 Real strain(std::span<const Vec3> position, const Mesh& mesh) {
     Real most = 0;
     for (std::size_t n = 1; n < position.size(); ++n)
@@ -34,7 +34,7 @@ Real strain(std::span<const Vec3> position, const Mesh& mesh) {
     return most;
 }
 
-/// A rigid block on a plane tilted by `degrees`, at rest.
+/// A rigid block at rest on a plane tilted by `degrees`.
 RigidCube on_incline(Real degrees, Real mu, Real h) {
     Settings settings = accurate(tilted_gravity(degrees), 1e-10);
     settings.step_size = h;
@@ -59,7 +59,7 @@ TEST_CASE("a free rigid body keeps its momenta and its shape", "[scene][rigid]")
     CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-12 * before.angular_momentum.norm());
     CHECK(std::abs(after.energy.kinetic / before.energy.kinetic - 1) < 1e-3);
     CHECK(strain(scene.world.positions(scene.body), brick) < 1e-14);
-    // of a solid brick, with the density of water: the middle axis is y
+    // A solid brick with the density of water. The axis of the middle moment is y.
     const Real mass = 6;
     CHECK(before.momentum.z() == Approx(0.3 * mass).epsilon(1e-12));
     CHECK(before.angular_momentum.y() == Approx(6 * mass * (0.01 + 0.09) / 12).epsilon(1e-12));
@@ -90,7 +90,7 @@ TEST_CASE("a load on a node of a rigid body moves and turns it", "[scene][rigid]
     CHECK((report.momentum - Vec3(0, 0, 2e-3)).norm() < 1e-15);
     const Vec3 moment = 1e-3 * cube.nodes[corner].cross(load[corner]);
     CHECK((report.angular_momentum - moment).norm() < 1e-15);
-    // 1 kg and edges of 0.1 m
+    // The cube has 1 kg and edges of 0.1 m.
     const Vec3 spin = moment / (0.01 / 6);
     const auto n = corner;
     CHECK((scene.world.velocities(scene.body)[n] - (Vec3(0, 0, 2e-3) + spin.cross(cube.nodes[n]))).norm() < 1e-5);
@@ -247,7 +247,7 @@ TEST_CASE("what a rigid body cannot have is refused by name", "[scene][rigid]") 
 }
 
 TEST_CASE("a rigid body of several materials has the mass and the inertia of all", "[scene][rigid]") {
-    // two cubes side by side in one mesh
+    // Two cubes side by side in one mesh
     constexpr Real side = 0.1, light = 1000, heavy = 3000, turn = 2;
     Mesh bar = mesh::box({2 * side, side, side}, {4, 2, 2});
     for (const auto& tetrahedron : bar.tetrahedra) {
@@ -279,7 +279,7 @@ TEST_CASE("a rigid body of several materials has the mass and the inertia of all
     World loaded = World::load(folder.path() / "world");
     World copy = world.clone();
     for (World* each : {&world, &loaded, &copy}) {
-        // of one of them alone; it goes on with the velocity that it has
+        // Changes one of the two materials. The body keeps its velocity.
         each->set_material(other, {.density = 5 * light});
         CHECK(each->report().energy.kinetic == Approx(energy_of(light, 5 * light)).epsilon(1e-12));
         REQUIRE(each->advance(0.1).ok());

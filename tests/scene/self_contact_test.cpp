@@ -19,7 +19,7 @@ struct Driven {
     static Settings weightless() {
         Settings settings;
         settings.gravity = Vec3::Zero();
-        settings.start_overlaps = StartOverlaps::ignore;  // the floor comes into the sheet's way when it is folded
+        settings.start_overlaps = StartOverlaps::ignore;  // the folded sheet comes to lie where the floor is
         return settings;
     }
     Driven(const Mesh& mesh, bool self_contact, Real young_modulus) : world(weightless()) {
@@ -36,7 +36,7 @@ struct Driven {
     }
 };
 
-/// A bar whose ends are turned against each other and pushed together: it buckles into a loop that lies on itself.
+/// A bar whose ends are twisted and pushed together. It buckles into a loop that lies on itself.
 Driven twisted_bar(bool self_contact) {
     const Mesh bar = mesh::box({0.4, 0.03, 0.03}, {26, 2, 2});
     Driven driven(bar, self_contact, 2e5);
@@ -50,7 +50,7 @@ Driven twisted_bar(bool self_contact) {
     return driven;
 }
 
-/// A sheet whose one side is turned over onto the other; then a block comes down and presses the loop flat.
+/// A sheet with one side folded over onto the other. A block then comes down and presses the loop flat.
 Driven folded_sheet(bool self_contact) {
     const Mesh sheet = mesh::box({0.2, 0.08, 0.006}, {20, 8, 1});
     Driven driven(sheet, self_contact, 2e5);
@@ -62,7 +62,7 @@ Driven folded_sheet(bool self_contact) {
     driven.world.remove(turning);
     driven.world.attach(driven.body, right);
     driven.world.add_collider(Plane{.normal = {0, 0, 1}, .point = {0, 0, -0.01}});
-    // Its lower side stops 9 mm above the floor: less than the two layers of 6 mm need.
+    // The lower face of the block stops 9 mm above the floor, less than the two layers of 6 mm need.
     driven.world.add_collider(Box{{0.16, 0.2, 0.05}},
                               {.position = {0.02, 0, 0.105}, .motion = {.velocity = {0, 0, -0.27}}});
     driven.run(0.3);
@@ -76,7 +76,7 @@ TEST_CASE("a twisted and buckled bar with self-contact does not go through itsel
     CHECK(with.crossed == 0);
     CHECK(with.most_contacts > 5);
     CHECK(with.world.report().crossed == 0);
-    CHECK(twisted_bar(false).crossed > 0);  // without it does: the test sees what it should
+    CHECK(twisted_bar(false).crossed > 0);  // without self-contact it does, so the test can fail
 }
 
 TEST_CASE("a sheet folded onto itself and pressed down does not go through itself", "[scene][long]") {

@@ -1,4 +1,4 @@
-// The scenes that ship, run as a user would: what each of them is there to show.
+// The shipped scenes, run as a user would run them, and the effect that each one demonstrates.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ Scene open_scene(const char* name, const SceneOverrides& overrides = {}) {
     return load_scene(std::string(SKERRY_SOURCE_DIR) + "/scenes/" + name + ".json", overrides);
 }
 
-/// Runs to `seconds`, looking after every sixtieth of a second.
+/// Advances to `seconds` and calls `look` after every sixtieth of a second.
 template <class Look>
 void play(World& world, Real seconds, Look look) {
     while (world.time() < seconds - 1e-9) {
@@ -63,10 +63,10 @@ TEST_CASE("the energy of the skittles adds up within 1 %, and better by nearly t
     };
     const Real longest = error_share(1);
     CAPTURE(longest);
-    CHECK(longest < 0.01);  // 0.60 %
+    CHECK(longest < 0.01);  // it is 0.60 %
     for (const Real part : {0.7, 0.5}) {
         CAPTURE(part);
-        // 0.35 and 0.19 %: the square gives 0.29 and 0.15
+        // The shares are 0.35 and 0.19 %; the square would give 0.29 and 0.15.
         CHECK(error_share(part) < 1.4 * part * part * longest);
     }
 }
@@ -119,7 +119,7 @@ TEST_CASE("the legs of the table stick and slip in turn while it creeps down the
     const BodyHandle table = world.bodies()[0];
     REQUIRE(scene.probes.size() == 2);
     const Vec3 start = world.center_of_mass(table);
-    std::array<int, 2> alone{};  // looks at which one pair of legs slides while the other sticks
+    std::array<int, 2> alone{};  // number of samples in which only one pair of legs slides
     while (world.time() < scene.seconds) {
         REQUIRE(world.advance(scene.probe_step).ok());
         std::array<bool, 2> slides{}, sticks{};
@@ -148,7 +148,7 @@ TEST_CASE("steel balls sink into a soft bed and come to rest on it, without an o
     play(world, scene.seconds, [&](const StepReport&) { peak = std::max(peak, world.energy().kinetic); });
     const WorldReport report = world.report();
     CHECK(report.max_penetration == 0);
-    // one ball may still roll: of ten runs at other tolerances of regions 0.004 to 0.07 J of a peak of 40
+    // One ball may still roll: ten runs at other tolerances of regions ended with 0.004 to 0.07 J, of a peak of 40 J.
     CHECK(report.energy.kinetic < 3e-3 * peak);
     CHECK(report.energy_error_share < 0.01);
     int sunk = 0;
@@ -156,7 +156,7 @@ TEST_CASE("steel balls sink into a soft bed and come to rest on it, without an o
         const Vec3 at = world.center_of_mass(body);
         CHECK(at.z() > 0);
         CHECK(at.head<2>().norm() < 0.36);
-        sunk += world.name(body) != "bed" && at.z() < 0.1255;  // a bed that gave nothing would hold it up there
+        sunk += world.name(body) != "bed" && at.z() < 0.1255;  // a rigid bed would hold the ball at this height
     }
     CHECK(sunk >= 16);
 }

@@ -1,4 +1,4 @@
-// Bodies at rest: left out of the step, and woken by whatever concerns them.
+// Sleeping bodies: they are left out of the step, and every relevant change wakes them.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Real sleep_speed = 5e-3;  // m/s
 constexpr Real sleep_time = 0.1;    // s
-constexpr Real own_limits = -1;     // in place of a speed: those of the engine
+constexpr Real own_limits = -1;     // in place of a speed: use the engine's own limits
 
 /// A tower of two blocks on a plane, and a block beside it.
 struct Tower {
@@ -47,7 +47,7 @@ struct Tower {
         return {x.begin(), x.end()};
     }
     bool all_asleep() const { return world.report().asleep == world.bodies().size(); }
-    /// Until all bodies rest: the tower sways for a while. False when they do not within eight seconds.
+    /// Advances until all bodies sleep; the tower sways for a while. Returns false if they do not within eight seconds.
     bool settle() {
         for (int i = 0; i < 160 && !all_asleep(); ++i)
             if (!world.advance(0.05).ok()) return false;
@@ -75,13 +75,13 @@ TEST_CASE("what has settled rests to the last bit, near to where it would have s
     CHECK(distance(high, tower.copy(tower.high)) == 0);
     CHECK(after.energy.kinetic == 0);
     CHECK(after.steps > before.steps + 100);
-    CHECK(after.contact_sum == before.contact_sum);  // nobody looks for them
+    CHECK(after.contact_sum == before.contact_sum);  // contacts are not searched
     CHECK(after.momentum_error_share < 1e-12 * static_cast<Real>(after.steps));
     CHECK(after.energy_error_share < 0.05);
 
     REQUIRE(awake.world.advance(tower.world.time()).ok());
     CHECK(awake.world.report().asleep == 0);
-    // a still body drifts by less than its speed limit in the time that it is watched for
+    // A still body drifts by less than its speed limit times the time for which it is observed.
     CHECK(distance(high, awake.copy(awake.high)) < sleep_speed * sleep_time);
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("taking the support away, a load, a kick or a hand that asks wakes a b
 TEST_CASE("a collider that starts to move wakes what lies on it, and nothing rests on one that moves", "[scene]") {
     World world(Tower::settings(sleep_speed, 1));
     const auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
-    // a box that stands for two seconds and then moves on
+    // A box that stands for two seconds and then moves on.
     world.add_collider(Box{{1, 1, 0.1}},
                        {.motion = {.keys = {{.time = 0}, {.time = 2}, {.time = 4, .position = {0.4, 0, 0}}}}});
     const Mesh mesh = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
@@ -184,7 +184,7 @@ TEST_CASE("by the engine's own limits what has settled rests close to where it w
 
 namespace {
 
-/// A block on a plane that is tilted, by gravity that turns.
+/// A block on a tilted plane; the tilt is a turn of gravity.
 struct Slab {
     World world;
     BodyHandle block;
@@ -207,7 +207,7 @@ struct Slab {
 }  // namespace
 
 TEST_CASE("a slab that should slide is never put to rest, one that has come to a stop is", "[scene][long]") {
-    for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds 16.699
+    for (const Real degrees : {16.71, 16.75, 16.8, 17.0, 18.0, 20.0, 22.0}) {  // friction holds up to 16.699 degrees
         Slab slab(degrees), awake(degrees, false);
         for (int i = 0; i < 40; ++i) {
             REQUIRE(slab.world.advance(0.05).ok());
@@ -225,13 +225,13 @@ TEST_CASE("a slab that should slide is never put to rest, one that has come to a
 
 namespace {
 
-/// Something heavy that sinks under its weight.
+/// A heavy body that sinks under its weight.
 struct Sinking {
     World world;
     Mesh mesh;
     BodyHandle body;
 
-    /// A cantilever whose first frequency is about 3 rad/s under a thousandth of gravity, or a block on a plane.
+    /// A cantilever with a first frequency of about 3 rad/s under a thousandth of gravity, or a block on a plane.
     Sinking(bool held, Real damping, bool sleep) : world(settings(held, sleep)) {
         mesh = held ? mesh::box({1, 0.05, 0.1}, {20, 1, 2}) : mesh::box({0.2, 0.2, 0.2}, {4, 4, 4});
         const auto soft = world.add_material({.young_modulus = held ? 1e6 : 5e4,
@@ -283,7 +283,7 @@ TEST_CASE("what sinks or swings under its own weight rests half a percent of its
 }
 
 TEST_CASE("a block that begins to tip over is never put to rest", "[scene][long]") {
-    for (const Real degrees : {14.2, 14.5, 15.5}) {  // a stiff one stands up to 14.04
+    for (const Real degrees : {14.2, 14.5, 15.5}) {  // a stiff block stands up to 14.04 degrees
         World world(Slab::settings(degrees));
         world.add_collider(Plane{});
         const auto stiff = world.add_material({.young_modulus = 1e7, .density = 500, .friction = 1, .damping = 0});
@@ -300,7 +300,7 @@ TEST_CASE("a block that begins to tip over is never put to rest", "[scene][long]
 
 TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling, carried, or by a motor",
           "[scene][long]") {
-    constexpr Real speed = 1e-4;  // m/s: 2 to 7 times slower than what comes too far to be still
+    constexpr Real speed = 1e-4;  // 2 to 7 times below the speed at which bodies move too far to count as still [m/s]
     enum What { on_ice, rolling, carried, by_motor };
     const auto what = GENERATE(on_ice, rolling, carried, by_motor);
     CAPTURE(what);
@@ -344,7 +344,7 @@ TEST_CASE("what goes on at one speed is never put to rest, be it on ice, rolling
 TEST_CASE("while all look still regions are solved to 1e-5, before that to the tolerance, with the same bits",
           "[scene][long]") {
     Tower tower(own_limits), awake(0);
-    std::vector<Real> error, error_awake;  // of each call
+    std::vector<Real> error, error_awake;  // error of each call
     while (!tower.all_asleep() && tower.world.time() < 8) {
         const StepReport report = tower.world.advance(0.01), report_awake = awake.world.advance(0.01);
         REQUIRE(report.ok());
@@ -354,7 +354,7 @@ TEST_CASE("while all look still regions are solved to 1e-5, before that to the t
         if (tower.world.time() < 0.05) CHECK(distance(tower.copy(tower.high), awake.copy(awake.high)) == 0);
     }
     REQUIRE(tower.all_asleep());
-    // the calls within the last sleep_time
+    // `still` is the number of calls within the last sleep_time.
     constexpr auto still = static_cast<std::ptrdiff_t>(sleep_time / 0.01) - 1;
     CHECK(*std::max_element(error.end() - still, error.end()) < 1e-5);
     CHECK(*std::max_element(error_awake.end() - still, error_awake.end()) > 1e-5);
@@ -365,7 +365,7 @@ TEST_CASE("rest is the same on any number of threads", "[scene][long]") {
     const Real speed = GENERATE(sleep_speed, own_limits);
     std::vector<std::uint64_t> hash;
     for (const int threads : {1, 2, 3}) {
-        Tower tower(speed, threads, {5, 5, 3});  // a step of smaller blocks is not worth a second thread
+        Tower tower(speed, threads, {5, 5, 3});  // a step of smaller blocks would not use a second thread
         for (int i = 0; i < 40; ++i) REQUIRE(tower.world.advance(0.02).ok());
         REQUIRE(tower.world.report().inline_steps == 0);
         REQUIRE(tower.world.report().asleep > 0);

@@ -1,4 +1,4 @@
-// Rigid spheres, which are round to what they touch (docs/methods/rigid_bodies.md 6).
+// Rigid spheres, whose contact shape is exactly round (docs/methods/rigid_bodies.md 6).
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <numbers>
@@ -212,7 +212,7 @@ TEST_CASE("a sphere that spins in one place moves, and does not come to rest", "
     CHECK(!s.world.asleep(ball));
     CHECK(s.world.asleep(still));
     CHECK(s.spin(ball).x() == Approx(2));
-    // drawn as it was put to rest
+    // The drawn nodes have the orientation in which the sphere fell asleep.
     const std::span<const Vec3> x = s.world.positions(still);
     const Mat3 turned = rotation_matrix(s.world.pose(still).rotation);
     CHECK(s.world.pose(still).rotation.norm() > 1e-3);
@@ -251,7 +251,7 @@ TEST_CASE("friction spins two spheres that graze each other, and angular momentu
     CHECK(s.spin(a).norm() > 1);
     CHECK((s.spin(a) - s.spin(b)).norm() < 1e-9);
     const Vec3 after = s.world.report().angular_momentum;
-    // the two surfaces are the contact distance apart, which friction bridges without a moment
+    // The two surfaces are the contact distance apart. Friction bridges this gap without a balancing moment.
     CHECK((after - before).norm() < 0.01 * before.norm());
     CHECK(s.world.report().momentum_error < 1e-12);
 }
@@ -289,7 +289,7 @@ TEST_CASE("a sphere rests on two edges of meshes, and on one corner", "[scene]")
         s.world.add_collider(slab, {.position = {side * (0.25 + apart), 0, -0.1}, .contact_distance = kept});
     const Real height = std::sqrt((radius + kept) * (radius + kept) - apart * apart);
     const BodyHandle ball = s.add({0, 0.01, height + 1e-4});
-    // upside down on a corner, in unstable balance without friction
+    // A sphere on the tip of a spike, in unstable balance without friction.
     const SurfaceMesh spike{{{0, 0, 0.5}, {-0.2, -0.2, 0}, {0.2, -0.2, 0}, {0, 0.3, 0}},
                             {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
     s.world.add_collider(spike, {.position = {3, 0, 0}, .friction = 0, .contact_distance = kept});
@@ -381,7 +381,7 @@ TEST_CASE("a sphere that strikes a sheet thinner than its shell meets the upper 
 TEST_CASE("a ball that another strikes does not come into a third, nor into a wall", "[scene]") {
     Spheres s(steps_of(1.0 / 120, Vec3::Zero()), 0, 1);
     s.world.add_collider(Plane{});
-    // of those that are at rest no contact is expected before they are struck
+    // The engine expects no contact between the resting balls before they are struck.
     const Real apart = 2 * radius + 0.002;
     s.add({0, 0, 2 * apart + 0.5}, {0, 0, -20});
     s.add({0, 0, radius + 0.002 + apart});

@@ -1,4 +1,5 @@
-// What overlaps before the first step is found, named, and moved apart, refused or reported.
+// Overlaps before the first step are found and named. They are resolved, refused or reported, depending on the
+// settings.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -20,7 +21,7 @@ Settings weightless(StartOverlaps overlaps) {
     return settings;
 }
 
-/// A world and a material to add bodies of.
+/// A world and a material for the bodies that are added.
 struct Stage {
     World world;
     MaterialHandle rubber;
@@ -35,7 +36,7 @@ struct Stage {
     }
 };
 
-/// A case that may not begin: what puts it into a world, and what the message says.
+/// A case that must be refused: a function that builds it, and a part of the message.
 struct Refused {
     const char* name;
     void (*build)(Stage&);
@@ -93,7 +94,8 @@ Real largest_move(const std::vector<Vec3>& before, std::span<const Vec3> after) 
     return largest;
 }
 
-/// Surfaces that cross, or a node of one within the tetrahedra of the other, which is moved by `shift` before.
+/// Brute-force overlap test after moving `b` by `shift`: surfaces cross, or a node of one body is in a tetrahedron of
+/// the other.
 bool overlap_by_force(const World& world, BodyHandle a, BodyHandle b, const Vec3& shift = Vec3::Zero()) {
     const std::vector<Vec3> fixed(world.positions(a).begin(), world.positions(a).end());
     std::vector<Vec3> moved(world.positions(b).begin(), world.positions(b).end());
@@ -113,7 +115,7 @@ bool overlap_by_force(const World& world, BodyHandle a, BodyHandle b, const Vec3
     return inside(fixed, moved, world.tetrahedra(b)) || inside(moved, fixed, world.tetrahedra(a));
 }
 
-/// Whether no small shift takes two bodies apart: a tenth of the contact distance counts as touching.
+/// True if no small shift separates two bodies. Overlaps up to a tenth of the contact distance count as touching.
 bool overlap_by_more_than_touching(const World& world, BodyHandle a, BodyHandle b) {
     const Real slack = 0.1 * (world.contact_distance(a) + world.contact_distance(b));  // twice that, in 26 directions
     for (int x = -1; x <= 1; ++x)
@@ -133,7 +135,7 @@ TEST_CASE("what is inside something, or half in it, is refused by both names and
             INFO(c.name << ", " << name_of(overlaps));
             const std::vector<Vec3> before = s.copy_of(s.world.bodies().front());
             CHECK_THROWS_WITH(s.world.advance(1e-3), Contains(c.said) && Contains("start_overlaps: found"));
-            CHECK_THROWS_WITH(s.world.settle_start(), Contains(c.said));  // again: nothing has changed
+            CHECK_THROWS_WITH(s.world.settle_start(), Contains(c.said));  // again, as nothing has changed
             CHECK(s.world.time() == 0);
             CHECK(largest_move(before, s.world.positions(s.world.bodies().front())) == 0);
             CHECK(s.world.report().start_overlaps.empty());
@@ -242,7 +244,7 @@ TEST_CASE("a body that something sharp is in between its nodes is lifted off it"
     struct Case {
         const char* name;
         Shape shape;
-        Vec3 tip, out;  // m: what is in the body furthest; unit but for its length
+        Vec3 tip, out;  // deepest point in the body [m]; outward direction, not normalised
     };
     const std::vector<Case> cases{
         {"corner", Box{{1, 1, 1}}, {0.5, 0.5, 0.5}, {1, 1, 1}},
@@ -268,12 +270,12 @@ TEST_CASE("a body that something sharp is in between its nodes is lifted off it"
             REQUIRE(report.start_overlaps.size() == (depth > 0 ? 1 : 0));
             if (report.start_overlaps.empty()) continue;
             CHECK(report.start_overlaps[0].collider == collider);
-            // by the shortest way of one point out of the other, which is not the shortest of the whole
+            // The depth is the shortest way out for one point, not for the whole body.
             CHECK(report.start_overlaps[0].depth > 0.1 * depth);
             CHECK(report.start_overlaps[0].depth < 1.001 * depth);
             REQUIRE(report.start_moves.size() == 1);
             CHECK(report.start_moves[0].translation.norm() < 0.004 + s.world.contact_distance(body));
-            // what is left counts as touching
+            // The remaining overlap counts as touching.
             const Real touching = 0.05 * s.world.contact_distance(body);
             CHECK(report.start_moves[0].translation.dot(out) > 0.004 - touching);
             s.world.advance(1e-6);
@@ -301,7 +303,7 @@ TEST_CASE("a mesh collider seen from inside is a room, and what is in it may beg
     world.add_collider(room);
     REQUIRE(world.advance(0.5).ok());
     CHECK(world.report().start_overlaps.empty());
-    CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // it lies on a facet
+    CHECK(world.center_of_mass(ball).z() == Approx(-0.45).margin(0.01));  // the ball lies on a facet
 }
 
 TEST_CASE("only what is new is moved: a body that is held or has made a step stays", "[scene]") {
@@ -369,7 +371,7 @@ TEST_CASE("random piles overlap where a search by force says so, and nowhere onc
             got.emplace_back(o.first, o.second);
             CHECK(std::ranges::find(expected, got.back()) != expected.end());
         }
-        // but for what is too shallow to be more than touching
+        // Overlaps that are too shallow count as touching and may be missing.
         CHECK(10 * got.size() >= 9 * expected.size());
         overlapping += static_cast<int>(got.size());
         try {

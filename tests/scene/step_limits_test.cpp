@@ -1,4 +1,4 @@
-// What keeps steps from being longer (docs/step_length.md).
+// Causes that limit the length of steps (docs/step_length.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace skerry::test::step_limits_test {
 
 namespace {
 
-/// Every step and every try that was shortened is counted under one cause.
+/// Checks that every step and every shortened try is counted under exactly one cause.
 void check_sums(const WorldReport& report) {
     std::uint64_t steps = 0, tries = 0;
     Real seconds = 0;
@@ -65,7 +65,7 @@ TEST_CASE("what deforms evenly is as fast as steps may be, and no try is in vain
     const auto body = world.add_body(mesh::ball(0.1, 4), {.material = world.add_material({.young_modulus = 1e4})});
     const Settings settings;
     const Real rate =
-        4 * settings.max_strain_step / world.stable_step() / std::sqrt(3.0);  // of |F'| a quarter is allowed
+        4 * settings.max_strain_step / world.stable_step() / std::sqrt(3.0);  // |F'| is four times the allowed one
     std::vector<Vec3> velocity;
     for (const Vec3& x : world.positions(body)) velocity.push_back(rate * x);
     world.set_velocities(body, velocity);
@@ -82,7 +82,7 @@ TEST_CASE("what deforms evenly is as fast as steps may be, and no try is in vain
 }
 
 TEST_CASE("a body that is thrown hard counts for what it makes of the steps", "[scene]") {
-    // At 1.4 times its speed of sound: elements are crushed and turn over, and steps grow back.
+    // The body hits at 1.4 times its speed of sound: elements are crushed and inverted, and the steps grow back.
     World world;
     world.add_collider(Plane{});
     const auto body =

@@ -1,4 +1,4 @@
-// The stable steps of bodies are found in parts, beside the steps that rely on them (docs/methods/stable_step.md 6).
+// The stable steps of bodies are computed in parts, during the steps that rely on them (docs/methods/stable_step.md 6).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <deque>
@@ -13,14 +13,14 @@ namespace skerry::test::step_watch_test {
 
 namespace {
 
-constexpr std::size_t two_rounds = 256;  // steps
+constexpr std::size_t two_rounds = 256;  // length of two rounds of the evaluation [steps]
 
-/// What a look without a break finds of each body, by its slot, after each of the last steps.
+/// Stable step of each body, by slot, computed in one go after each of the last steps.
 class History {
 public:
     explicit History(World& world) : world_(world) {}
 
-    /// After a step or an edit: every body's step is one of those that it really had not long ago.
+    /// Call after a step or an edit. Checks that every body's stable step is one of its recent exact values.
     void look() {
         Model& model = WorldAccess::state_of(world_).model;
         for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
@@ -45,7 +45,7 @@ private:
     std::map<std::uint32_t, std::deque<Real>> found_;
 };
 
-/// Balls that are stretched and pressed by a half at first, and swing.
+/// Balls that are stretched in one direction and compressed in another at the start, and vibrate.
 struct Swinging {
     World world;
     MaterialHandle rubber;
@@ -53,7 +53,7 @@ struct Swinging {
     ElementKind element;
 
     explicit Swinging(Settings settings, ElementKind kind = ElementKind::smoothed) : world(settings), element(kind) {
-        // without losses: what relaxes goes on while a shape that was kept is looked at
+        // no losses, because relaxation would go on while a saved shape is evaluated
         rubber = world.add_material(
             {.young_modulus = 1e5, .loss_factor = 0, .bulk_viscosity = 0, .model = MaterialModel::stable_neo_hookean});
         for (const int cells : {3, 5, 4}) add(cells);
@@ -112,7 +112,7 @@ TEST_CASE("a look in the frame of a body finds the same in parts, and the body s
     const Vec3 zero = Vec3::Zero();
     const Real at_rest = stands(zero, zero, ElementKind::linear, 0);
     CHECK(stands({0.3, -2, 1}, zero, ElementKind::linear, 0) == Approx(at_rest).epsilon(0.005));
-    // three rounds, in which it turns by radians
+    // three rounds, in which the body turns by several radians
     CHECK(stands(zero, {5, 3, 0}, ElementKind::linear, 400) == Approx(at_rest).epsilon(0.02));
     stands(zero, zero, ElementKind::smoothed, 0);
 }
@@ -123,14 +123,14 @@ TEST_CASE("bodies that come, go and change while they are looked at leave the lo
     History history(world);
     history.look();
     history.take_steps(150);
-    world.remove(scene.balls[0]);  // which has been looked at in this round
+    world.remove(scene.balls[0]);  // this ball has already been evaluated in this round
     history.take_steps(40);
     scene.add(4);
     history.look();
     history.take_steps(50);
     std::vector<Vec3> at_rest = mesh::ball(0.1, 5).nodes;
     for (Vec3& x : at_rest) x.x() += 1;
-    world.set_positions(scene.balls[1], at_rest);  // whose look is under way
+    world.set_positions(scene.balls[1], at_rest);  // this ball is being evaluated
     history.look();
     history.take_steps(60);
     world.remove(scene.balls[2]);

@@ -1,4 +1,4 @@
-// A step that is not taken changes nothing.
+// A refused step changes nothing.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -14,7 +14,7 @@ namespace skerry::test::transaction_test {
 
 namespace {
 
-/// A ball on a plane and a held one, one of which gets a load that no number holds.
+/// A ball on a plane and a held ball. One of them gets a load that overflows.
 struct Doomed {
     World world;
     BodyHandle ball, held;
@@ -29,11 +29,11 @@ struct Doomed {
     void overload() { world.set_loads(ball, std::vector<Vec3>(world.positions(ball).size(), Vec3(1e308, 1e308, 0))); }
 };
 
-/// A box with slivers, of what relaxes, shot at a held sheet: steps are tried again.
+/// A box with slivers and relaxing material that is shot at a held sheet, so that steps are tried again.
 World shot_at_sheet() {
     World world({.gravity = Vec3::Zero(), .integrator = Integrator::symplectic_euler});
     const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3});
-    const auto soft = world.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3});  // does not set the step
+    const auto soft = world.add_material({.young_modulus = 1e3, .poisson_ratio = 0.3});  // too soft to limit the step
     const Mesh thin = mesh::box({0.4, 0.4, 0.004}, {8, 8, 1});
     const auto sheet = world.add_body(thin, {.material = soft, .position = {0, 0, -0.105}});
     world.attach(sheet, std::vector<Index>{0, 8, 72, 80});
@@ -60,9 +60,10 @@ TEST_CASE("a try as long as the one before it has the same forces without a pass
         const StepPlan plan = plan_step(state.model, 1, tries.at_most());
         REQUIRE(plan_step(forgetful.model, 1, twin_tries.at_most()).h == plan.h);
         const StepOutcome outcome = try_step(state, plan, tries);
-        forgetful.scratch.parameters.h = 0;  // whatever was tried was not as long
+        forgetful.scratch.parameters.h = 0;  // so that no earlier try has the same length
         REQUIRE(try_step(forgetful, plan, twin_tries) == outcome);
-        // computed again it is booked to first order: the try before wrote over what relaxed in the step before
+        // The twin computes the relaxation again, to first order, since the try before has overwritten that of the last
+        // step.
         CHECK(state.scratch.findings.relaxed == Approx(forgetful.scratch.findings.relaxed).epsilon(0.02));
         longer += outcome == StepOutcome::again_with_longer_lists;
         crossing += outcome == StepOutcome::again_with_crossings;
@@ -89,7 +90,7 @@ TEST_CASE("a refused step leaves every column of state as it was", "[scene]") {
         CHECK(report.status == StepStatus::not_finite);
         CHECK(report.body == scene.ball);
         CHECK(scene.world.state_hash() == before);
-        // and the world goes on from there
+        // The world can continue after the refusal.
         scene.world.set_loads(scene.ball, std::vector<Vec3>(scene.world.positions(scene.ball).size(), Vec3::Zero()));
         CHECK(scene.world.advance(0.1).ok());
     }
@@ -125,7 +126,7 @@ TEST_CASE("between calls clusters are as stiff as their elements, so that no ref
 }
 
 TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
-    // A step that is too fast for a body is tried shorter until it can be taken.
+    // A step that deforms a body too fast is tried with shorter lengths until it can be taken.
     World world;
     const auto rubber = world.add_material({.young_modulus = 1e5});
     world.add_body(mesh::ball(0.05, 4), {.material = rubber});
@@ -147,16 +148,16 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     const StrainRate fastest = state.scratch.findings.verdict.fastest;
     CHECK(fastest.body == 0);
     CHECK(fastest.rate * plan.h > state.model.settings.max_strain_step);
-    // by a tenth slower than it deforms now, but not below a quarter of the step at once
+    // The next try is a tenth shorter than the present strain rate allows, but at least a quarter of the step.
     CHECK(tries.at_most() == Approx(std::max(0.9 * state.model.settings.max_strain_step / fastest.rate, plan.h / 4)));
     CHECK(tries.fastest == 0);
     CHECK(world.state_hash() == before);
 
-    velocity[0].x() *= 1600;  // also in a 1024th of the step
+    velocity[0].x() *= 1600;  // too fast even for a 1024th of the step
     world.set_velocities(body, velocity);
     tries = {};
     CHECK(try_step(state, {.h = plan.h / 128, .steps = 2, .stable = plan.h}, tries) == StepOutcome::again_shorter);
-    CHECK(tries.at_most() == Approx(plan.h / 512));  // not below a quarter at once
+    CHECK(tries.at_most() == Approx(plan.h / 512));  // at least a quarter of the step
     tries = {};
     CHECK(try_step(state, {.h = plan.h / 1024, .steps = 2, .stable = plan.h}, tries) == StepOutcome::refused);
     CHECK(state.scratch.findings.verdict.fault == StepFault::too_fast);
@@ -177,7 +178,7 @@ TEST_CASE("only what the transaction puts back is written before a step is known
     int behind_guard = 0;
     for (const StageDeclaration& stage : state.graph.stages()) {
         if (stage.guarded && touches(stage, &state.scratch.findings.crossings, false)) {
-            ++behind_guard;  // runs in a step that is good
+            ++behind_guard;  // it runs only in a valid step
             continue;
         }
         const auto note = [&](const std::string& table) {
@@ -191,7 +192,7 @@ TEST_CASE("only what the transaction puts back is written before a step is known
         state.cache.pairs.for_each_row_column(note("pairs"));
     }
     CHECK(behind_guard >= 4);
-    // The list of transaction.h; nodes.velocity_next is derived, and what drift_to writes is written by no stage.
+    // The list is that of transaction.h. nodes.velocity_next is derived, and no stage writes the columns of drift_to.
     CHECK(written == std::set<std::string>{"nodes.velocity", "bodies.max_speed", "elements.implicit_modulus",
                                            "pairs.key", "pairs.kind", "pairs.first", "pairs.second", "pairs.state"});
 }

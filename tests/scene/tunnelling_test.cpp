@@ -1,4 +1,4 @@
-// Shots at up to 100 m/s: nothing goes through anything.
+// Shots at up to 100 m/s must not pass through anything.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -11,20 +11,20 @@ using namespace skerry::test::shots;
 
 namespace {
 
-/// Checks that no shot went through. The bounds are those of all draws: at least `touching` shots hit the target, at
-/// least `stopped` crossings were stopped, and at most `crossed` features went through in a step that no attempt could
-/// stop, which is reported, and came back.
+/// Checks that no shot passed through. The bounds are those of all draws: at least `touching` shots hit the target, at
+/// least `stopped` crossings were stopped, and at most `crossed` features passed in a step that no attempt could stop.
+/// Such crossings are reported, and the features came back.
 void check_all_stopped(const Count& count, int touching, int stopped, std::uint64_t crossed = 0) {
     INFO("seed " << seed);
     CHECK(count.wrong == "");
     CHECK(count.crossed <= crossed);
     CHECK(static_cast<int>(count.touching) > draws(touching));
-    // A tenth of the draws scatters: half of its share is asked for.
+    // A tenth of the draws has a large scatter, so only half of its share is required.
     CHECK(static_cast<int>(count.stopped) >= (full_tests() ? stopped + 1 : stopped / 20));
 }
 
-/// A cylinder that turns by a tenth of a radian in a step and more is not always held off the rim of a bucket whose
-/// wall is a millimetre thick: it is pressed into it by a tenth of that (docs/methods/rigid_bodies.md 6.3).
+/// A cylinder that turns by a tenth of a radian or more in a step is not always kept off the rim of a bucket with a
+/// wall of a millimetre. It is pressed into the wall by a tenth of that (docs/methods/rigid_bodies.md 6.3).
 void check_few_pressed(const Count& count, std::uint64_t pressed, int touching) {
     INFO("seed " << seed << "\n" << count.wrong);
     CHECK(static_cast<std::uint64_t>(std::ranges::count(count.wrong, '\n')) == count.pressed);
@@ -49,7 +49,7 @@ TEST_CASE("of many shots at thin and sharp analytic colliders all are stopped", 
 
 TEST_CASE("of many analytic colliders at up to 100 m/s, whose velocity is set anew all the time, none goes through",
           "[scene][long]") {
-    // a ball of 84 kPa that meets a bead at 87 m/s, ten times as fast as its own waves
+    // The one crossing: a ball of 84 kPa meets a bead at 87 m/s, ten times its own wave speed.
     check_all_stopped(shoot(draws(1000), true, Flying::collider, Targets::shapes), 800, 300, 1);
 }
 

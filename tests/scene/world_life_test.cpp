@@ -1,4 +1,4 @@
-// Handles, and what is left of the last step, while bodies and colliders come and go and worlds are moved.
+// Handles and results of the last step, while bodies and colliders are added and removed and worlds are moved.
 #include <array>
 #include <catch2/catch.hpp>
 #include <utility>
@@ -11,7 +11,7 @@ namespace skerry::test::world_life_test {
 
 namespace {
 
-/// Three boxes lie on a plane, side by side.
+/// Three boxes side by side on a plane.
 struct ThreeBoxes {
     World world;
     MaterialHandle rubber;
@@ -108,7 +108,7 @@ TEST_CASE("a world is built and advanced between steps only, also by what it cal
                 .ok());
     CHECK(calls == static_cast<int>(world.report().steps - steps));
     CHECK(world.bodies().size() == 3);
-    world.remove(scene.box[0]);  // between calls again, also after one that ended by an exception
+    world.remove(scene.box[0]);  // allowed again between calls, also after a call that ended with an exception
     CHECK_THROWS_AS(world.advance(0.01, [](const StepReport&) -> bool { throw SceneError("mine"); }), SceneError);
     world.remove(scene.box[1]);
     CHECK(world.advance(0.01).ok());
@@ -132,7 +132,7 @@ TEST_CASE("advance ends between two steps when it is asked to, and goes on from 
         REQUIRE(whole.world.advance(100 * h).ok());
         CHECK(stopped.world.time() == Approx(whole.world.time()));
         const Vec3 apart = stopped.world.center_of_mass(stopped.block) - whole.world.center_of_mass(whole.block);
-        CHECK(apart.norm() < 1e-9);  // m; times of steps differ by rounding
+        CHECK(apart.norm() < 1e-9);  // [m]; step times differ by rounding
         const std::uint64_t before = stopped.world.state_hash();
         const StepReport none = stopped.world.advance(h, [](const StepReport&) { return false; });
         CHECK(none.steps == 0);
@@ -178,7 +178,7 @@ TEST_CASE("handles go with a world that is moved, and what is left refuses all u
 TEST_CASE("many changes in a row give the same bits as the same with a look at the world after each", "[scene]") {
     const auto built = [](auto look) {
         Settings settings;
-        settings.start_overlaps = StartOverlaps::ignore;  // some balls are added into others
+        settings.start_overlaps = StartOverlaps::ignore;  // some balls are added overlapping others
         settings.sleep_speed = 0.05;
         settings.sleep_time = 0.02;
         World world(settings);
@@ -222,7 +222,7 @@ TEST_CASE("many changes in a row give the same bits as the same with a look at t
 
 TEST_CASE("bodies of one mesh have the same bits whether what was found of the first is kept or found anew",
           "[scene]") {
-    // turned and at rest, linear and smoothed, of several materials: all that is kept tells them apart, or is turned
+    // Turned and unturned bodies, linear and smoothed elements, several materials: stored data are separate or rotated.
     const auto falls = [](bool look) {
         World world;
         const std::array<MaterialHandle, 3> material{
@@ -242,7 +242,7 @@ TEST_CASE("bodies of one mesh have the same bits whether what was found of the f
                                               .rotation = turn,
                                               .angular_velocity = {5, 0, 3},
                                               .element = i < 12 ? ElementKind::linear : ElementKind::smoothed}));
-            if (look) CHECK(world.positions(bodies.back()).size() == mesh[at % 3].nodes.size());  // settles the world
+            if (look) CHECK(world.positions(bodies.back()).size() == mesh[at % 3].nodes.size());  // completes set-up
         }
         const Real step = world.stable_step();
         REQUIRE(world.advance(0.01).ok());

@@ -1,4 +1,4 @@
-// A header of the user's own, by a name that Skerry uses inside.
+// A header of the user's own. Its name is the name of a header inside Skerry.
 #pragma once
 
 using Mine = int;

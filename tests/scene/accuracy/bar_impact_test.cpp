@@ -1,4 +1,4 @@
-// Bounces: a point with restitution, an elastic bar on a wall, two bars against each other (docs/methods/accuracy.md 9
+// Impacts of a point with restitution, an elastic bar on a wall, and two bars on each other (docs/methods/accuracy.md 9
 // to 11).
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -18,10 +18,10 @@ constexpr Real g = standard_gravity;
 constexpr Real length = 1, width = 0.1, density = 1000, modulus = 1e6;  // m, m, kg/m^3, Pa
 const Real c = std::sqrt(modulus / density);                            // m/s
 
-/// A point of 2 kg over a fixed triangle that lies in z = 0.
+/// A point of 2 kg above a fixed triangle in the plane z = 0.
 struct PointOverTriangle {
     ContactScene scene;
-    Real height, speed;  // m, m/s upwards
+    Real height, speed;  // speed is positive upwards [m, m/s]
     std::size_t contact;
 
     PointOverTriangle(Real h0, Real restitution, Real h) : height(h0), speed(0) {
@@ -32,7 +32,7 @@ struct PointOverTriangle {
         contact = scene.touch({{point, corner[0], corner[1], corner[2]}, {1, -0.2, -0.5, -0.3}}, Vec3::UnitZ(), 0);
         scene.restitution[contact] = restitution;
     }
-    /// One step. Returns the impulse, N s.
+    /// Makes one step. Returns the impulse [N s].
     Real step() {
         scene.velocity_before[0].z() = speed;
         scene.velocity[0].z() = speed - scene.gravity * scene.h;
@@ -61,7 +61,7 @@ Settings without_gravity() {
     return settings;
 }
 
-constexpr Real v0 = 0.1;  // m/s: strains of v0 / c = 0.3 %
+constexpr Real v0 = 0.1;  // gives strains of v0 / c = 0.3 % [m/s]
 
 const char* const front_note =
     "The energy lost falls with 1 / n, the missing speed with n^(-2/3): a front that has crossed n elements is n^(1/3) "
@@ -69,9 +69,9 @@ const char* const front_note =
     "(orders of 0.70, "
     "0.69 and 0.68 from n = 80 to 640).";
 
-/// What the sum of the contact forces along z was, step by step.
+/// Sum of the contact forces along z in each step.
 struct ForceHistory {
-    std::vector<Real> time, force;  // s, at the end of the step; N
+    std::vector<Real> time, force;  // at the end of the step [s]; [N]
 
     void note(const World& world, Real h, Real impulse) {
         if (impulse <= 0) return;
@@ -80,13 +80,13 @@ struct ForceHistory {
         force.push_back(impulse / h);
     }
     Real duration() const { return time.back(); }
-    /// s, until the force has fallen to half the plateau for good.
+    /// Time until the force has fallen to half the plateau for good [s]
     Real half_duration(Real plateau) const {
         std::size_t k = time.size();
         while (k > 0 && force[k - 1] < plateau / 2) --k;
         return time[k - 1];
     }
-    /// N, mean over the middle half.
+    /// Mean force over the middle half of the contact time [N]
     Real plateau() const {
         Real sum = 0;
         int count = 0;
@@ -108,11 +108,11 @@ Real pressing(const World& world) {
 
 struct Impact {
     ForceHistory history;
-    Real front, back;  // velocities over v0, down: of the bar that was hit (none for a wall) and of the one that hit it
-    Real energy_lost;  // over the energy before
+    Real front, back;  // downward speed over v0, of the bar that was hit (none for a wall) and the bar that hit it
+    Real energy_lost;  // share of the initial energy
 };
 
-/// A bar of n elements hits the wall z = 0, or an equal bar at rest that ends there.
+/// A bar of n elements hits the wall z = 0, or an equal bar at rest whose end is at z = 0.
 Impact collide(int n, bool wall) {
     World world(without_gravity());
     const auto material = world.add_material(bar_material());
@@ -163,7 +163,7 @@ TEST_CASE("a point bounces on a fixed triangle with its restitution", "[scene][a
 
     constexpr Real h = 1e-5;
     PointOverTriangle point(drop, kappa, h);
-    std::vector<Real> apex;  // m
+    std::vector<Real> apex;  // height of each bounce [m]
     Real time = 0, end = 0;
     for (Real before = 0; time < 5; time += h) {
         if (point.step() > 0 && point.speed > 0) end = time;
@@ -192,7 +192,7 @@ TEST_CASE("a point bounces on a fixed triangle with its restitution", "[scene][a
 
 TEST_CASE("an elastic bar rebounds from a wall as the wave does", "[scene][accuracy]") {
     const Real force = density * c * column_area(width) * v0;
-    std::vector<Real> missing;  // of the speed
+    std::vector<Real> missing;  // missing share of the rebound speed
     for (int n : {20, 40, 80}) {
         const Impact impact = collide(n, true);
         const std::string bar = "bar on a wall, n = " + std::to_string(n);

@@ -1,4 +1,4 @@
-// Bars at rest under their weight and in rotation, and their vibrations (docs/methods/accuracy.md 12, 13, 16, 20 and
+// Bars at rest under their weight and in rotation, and their vibrations (docs/methods/accuracy.md 12, 13, 16, 20, and
 // the orders in h of 31).
 #include <catch2/catch.hpp>
 #include <optional>
@@ -32,7 +32,7 @@ Settings weightless() {
     return settings;
 }
 
-/// rad/s, of a bar of n elements that starts to swing in the shape `shape(z)`, z from 0 to L; held at z = 0 or free.
+/// Frequency of a bar of n elements that starts to swing in `shape(z)`, 0 <= z <= L; held at z = 0 or free [rad/s].
 template <class Shape>
 Real swing(int n, bool held, Real expected, Shape shape) {
     Settings settings = weightless();
@@ -49,7 +49,7 @@ Real swing(int n, bool held, Real expected, Shape shape) {
         velocity.push_back(Vec3(0, 0, 1e-3 * part.back()));
     }
     world.set_velocities(bar, velocity);
-    // a whole number of steps of one length in each call
+    // The step is set so that each call makes one step and all steps have the same length.
     const Real h = 0.5 * world.stable_step();
     std::vector<Real> sample;
     while (world.time() < 3 * 2 * std::numbers::pi / expected) {
@@ -62,15 +62,15 @@ Real swing(int n, bool held, Real expected, Shape shape) {
     return angular_frequency(sample, h);
 }
 
-/// A column that hangs from its bottom layer in gravity that pulls it away from there, at rest. Even loads: the weights
-/// of the three corners of the free end, which the mesh makes uneven, are made equal.
+/// A column at rest that is held at its bottom layer, while gravity pulls it upwards. `even` makes the weights of the
+/// three corners of the free end equal, which the mesh makes uneven.
 struct HangingColumn {
     World world;
     Mesh mesh;
     BodyHandle bar;
 
     HangingColumn(int n, bool even) : world(settings()), mesh(column(width, length, n)) {
-        // 1/s, about critical for bending, which is the slowest
+        // damping [1/s], about critical for bending, the slowest mode
         const auto material = world.add_material(bar_material(6));
         bar = world.add_body(mesh, {.material = material, .element = ElementKind::linear});
         world.attach(bar, bottom);
@@ -86,7 +86,7 @@ struct HangingColumn {
     static Settings settings() {
         Settings s;
         s.gravity = {0, 0, g};
-        s.sleep = false;  // rest would leave a thousandth
+        s.sleep = false;  // sleep would leave an error of a thousandth
         return s;
     }
     Real displacement(std::size_t node) const { return world.positions(bar)[node].z() - mesh.nodes[node].z(); }
@@ -176,8 +176,8 @@ TEST_CASE("a hanging bar has its closed-form shape and stress", "[scene][accurac
 }
 
 TEST_CASE("displacements have order 2 in h and stresses order 1", "[scene][accuracy]") {
-    // Between its nodes an element is linear, its stress constant: the worst place of the displacement is the middle,
-    // of the stress an end.
+    // An element is linear between its nodes and has constant stress. The largest error of the displacement is
+    // therefore in the middle, that of the stress at an end.
     std::vector<Real> shape_error, stress_error;
     for (int n : {4, 8, 16}) {
         const HangingColumn bar(n, true);
@@ -210,10 +210,10 @@ TEST_CASE("displacements have order 2 in h and stresses order 1", "[scene][accur
 
 namespace {
 
-constexpr Real omega = 1;  // rad/s: a strain of rho omega^2 L^2 / 3 E = 0.03 %
+constexpr Real omega = 1;  // gives a strain of rho omega^2 L^2 / 3 E = 0.03 % [rad/s]
 
-/// m, by which each end of a bar of 2 L that turns at omega is further out after some seconds; steps of `h`, or as long
-/// as is stable.
+/// Stretch of each end of a bar of length 2 L that turns at omega, after `seconds` [m]. Without `h` the steps are as
+/// long as is stable.
 Real spun_stretch(MaterialModel model, Real damping, Real seconds, std::optional<Real> h = {}) {
     MaterialSettings material = bar_material(damping);
     material.model = model;
@@ -245,12 +245,12 @@ TEST_CASE("a spinning bar grows by rho omega^2 L^3 / 3 E", "[scene][accuracy]") 
 }
 
 TEST_CASE("damping takes nothing of the stretch of a spinning bar", "[scene]") {
-    // Beside places half a step younger than the velocities it would take damping h / 2 of it: 4 and 0.8 % here.
+    // Paired with positions half a step newer, the velocities would lose damping h / 2 of it: 4 and 0.8 % here.
     const Real h = 8e-4;
     for (const auto model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
         const Real strong = spun_stretch(model, 99, 2, h), weak = spun_stretch(model, 20, 2, h),
                    fine = spun_stretch(model, 99, 2, h / 2);
-        // slow bending of the mesh, which is not symmetric, has come further with one
+        // The mesh is not symmetric, and its slow bending has progressed further in one of the two runs.
         CHECK(std::abs(strong - weak) <= 5e-4 * weak);
         CHECK(std::abs(strong - fine) <= 2e-5 * strong);  // second order: (omega h)^2 is 6e-7
     }

@@ -1,5 +1,5 @@
-// Bending (docs/methods/accuracy.md 14 and 15). Linear tetrahedra are too stiff in bending, by an error of second order
-// in their size: three meshes and Richardson's extrapolation give the limit.
+// Bending (docs/methods/accuracy.md 14 and 15). Linear tetrahedra are too stiff in bending, with an error of second
+// order in their size. Three meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -15,8 +15,8 @@ namespace {
 constexpr Real length = 1, height = 0.1, density = 1000, modulus = 1e6, g = standard_gravity;
 const Real c = std::sqrt(modulus / density);  // m/s
 
-/// A cantilever along x, held at x = -L / 2, of m elements in its height and as long ones along x; one element wide,
-/// since without lateral strain the width does not matter.
+/// A cantilever along x, held at x = -L / 2, with m elements in its height and cubic cells. It is one element wide,
+/// since the width does not matter without lateral strain.
 struct Cantilever {
     World world;
     Mesh mesh;
@@ -48,7 +48,7 @@ struct Cantilever {
             if (std::abs(mesh.nodes[n].x() - x) < 1e-9) rows.push_back(static_cast<Index>(n));
         return rows;
     }
-    /// Mean downward displacement of the free end, m.
+    /// Mean downward displacement of the free end [m]
     Real deflection() const {
         const std::vector<Index> tip = nodes_at(length / 2);
         Real sum = 0;
@@ -58,10 +58,10 @@ struct Cantilever {
     }
 };
 
-// rad/s, of Euler and Bernoulli
+// First frequency of an Euler-Bernoulli beam [rad/s]
 const Real first_frequency = 1.8751 * 1.8751 * c * height / (std::sqrt(12.0) * length * length);
 
-constexpr Real inertia = height * height * height / 12, shear = modulus / 2;  // m^3, a metre of width; Pa
+constexpr Real inertia = height * height * height / 12, shear = modulus / 2;  // per metre of width [m^3]; [Pa]
 constexpr Real tip_deflection =
     length * length * length / (3 * modulus * inertia) + length / (5.0 / 6 * shear * height);  // m
 constexpr Real weight_deflection = density * g * height * length * length * length * length / (8 * modulus * inertia) +
@@ -77,14 +77,14 @@ Real tip_load(int m, ElementKind element) {
     Cantilever beam(m, element, 0, 2 * first_frequency);
     const std::vector<Index> tip = beam.nodes_at(length / 2);
     std::vector<Vec3> load(beam.mass.size(), Vec3::Zero());
-    // 1 N/m of width in all
+    // The total load is 1e-3 N per metre of width.
     for (Index n : tip) load[static_cast<std::size_t>(n)].z() = -1e-3 * beam.width / static_cast<Real>(tip.size());
     beam.world.set_loads(beam.beam, load);
     REQUIRE(beam.world.advance(12 / first_frequency).ok());
     return beam.deflection() / 1e-3;
 }
 
-/// rad/s
+/// First frequency [rad/s]
 Real frequency(int m, ElementKind element) {
     Cantilever beam(m, element, 0, 0);
     std::vector<Real> part;
@@ -93,7 +93,7 @@ Real frequency(int m, ElementKind element) {
     for (const Vec3& node : beam.mesh.nodes) {
         const Real s = k * (node.x() + length / 2);
         part.push_back(std::cosh(s) - std::cos(s) - mix * (std::sinh(s) - std::sin(s)));
-        // plane sections turn with the slope
+        // Plane sections turn with the slope.
         const Real slope = k * (std::sinh(s) + std::sin(s) - mix * (std::cosh(s) - std::cos(s)));
         velocity.push_back(1e-3 * Vec3(-node.z() * slope, 0, part.back()));
     }
@@ -110,8 +110,8 @@ Real frequency(int m, ElementKind element) {
     return angular_frequency(sample, h);
 }
 
-/// The limit of a series whose error falls with h^2, from the two finer of h, h/2 and h/4; and the order that the three
-/// show. Stiffnesses are such a series from coarse meshes on: K (1 + C h^2). Deflections are their inverse.
+/// Limit of a series whose error falls with h^2, from the two finer of h, h/2 and h/4, and the order that all three
+/// show. Stiffnesses follow such a series even on coarse meshes: K (1 + C h^2). Deflections are their inverse.
 struct Limit {
     Real value, order;
 };
@@ -171,7 +171,7 @@ TEST_CASE("a cantilever swings with its first frequency", "[scene][accuracy]") {
 TEST_CASE("four smoothed elements in the height bend as the beam does", "[scene][accuracy]") {
     struct Case {
         ElementKind element;
-        Real of_deflection, of_frequency;  // tolerances
+        Real of_deflection, of_frequency;  // tolerances of both
     };
     for (const auto& [element, of_deflection, of_frequency] :
          {Case{ElementKind::linear, 0.2, 0.15}, Case{ElementKind::smoothed, 0.01, 0.02}}) {

@@ -1,4 +1,4 @@
-// What must not change, step by step: momentum, angular momentum, energy (docs/methods/accuracy.md 2, 3 and 32).
+// Conservation of momentum, angular momentum and energy in every step (docs/methods/accuracy.md 2, 3 and 32).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -13,12 +13,12 @@ using accuracy::Tolerance;
 
 namespace {
 
-/// Two balls that meet off their centres, with friction, in a world without floor.
+/// Two balls with friction that hit each other off centre, in a world without a floor.
 struct TwoBalls {
     World world;
     Mesh ball = mesh::ball(0.05, 5);
     std::array<BodyHandle, 2> body;
-    std::vector<Real> mass;  // of the nodes of either
+    std::vector<Real> mass;  // nodal masses, equal for both balls
 
     explicit TwoBalls(const Settings& settings, Real damping = 0) : world(settings) {
         const auto rubber =
@@ -39,7 +39,7 @@ struct TwoBalls {
                 sum += mass[n] * world.positions(b)[n].cross(world.velocities(b)[n]);
         return sum;
     }
-    Real sum_of_momenta() const {  // of m |v|
+    Real sum_of_momenta() const {  // sum of m |v|
         Real sum = 0;
         for (BodyHandle b : body)
             for (std::size_t n = 0; n < mass.size(); ++n) sum += mass[n] * world.velocities(b)[n].norm();
@@ -118,7 +118,7 @@ TEST_CASE("a free spinning bar of smoothed elements keeps energy and angular mom
         const auto material =
             world.add_material(test::lossless({.young_modulus = 1e6, .poisson_ratio = 0.3, .model = model}));
         world.add_body(mesh::box({1, 0.1, 0.1}, {20, 2, 2}), {.material = material, .angular_velocity = {0.5, 3, 1}});
-        const Real h = 0.55 * world.stable_step();  // half of what the bar stands: the error is of second order
+        const Real h = 0.55 * world.stable_step();  // half of the stable step; the error is of second order
         const WorldReport start = world.report();
         const auto energy = [&] {
             const Energy now = world.energy();
@@ -168,10 +168,10 @@ TEST_CASE("friction across a gap turns a pair of bodies by the known torque and 
         for (std::size_t b : {0, 1})
             start[b].assign(scene.world.positions(scene.body[b]).begin(), scene.world.positions(scene.body[b]).end());
         const Real h = scene.world.advance(2.5e-4).step_size;
-        // the two points that a contact pulls at are a distance apart along the normal
+        // The two points where a contact pulls are `distance` apart along the normal.
         Vec3 torque = Vec3::Zero(), moved = Vec3::Zero();
         for (const Contact& c : scene.world.contacts()) torque += c.distance * c.normal.cross(c.impulse);
-        // what pushes overlapping shells apart moves positions only
+        // Pushing overlapping shells apart changes positions only.
         for (std::size_t b : {0, 1})
             for (std::size_t n = 0; n < scene.mass.size(); ++n) {
                 const Vec3 v = scene.world.velocities(scene.body[b])[n];
@@ -180,7 +180,7 @@ TEST_CASE("friction across a gap turns a pair of bodies by the known torque and 
         largest = std::max(largest, torque.norm() / scale);
         worst = std::max(worst, (scene.angular_momentum() - before - torque - moved).norm() / scale);
     }
-    REQUIRE(largest > 1e-6);  // the identity is not empty
+    REQUIRE(largest > 1e-6);  // the two sides are not both zero
     accuracy::check(
         {.item = 3,
          .name =
@@ -198,9 +198,9 @@ TEST_CASE("friction across a gap turns a pair of bodies by the known torque and 
 
 TEST_CASE("a bar that bounces without friction never gains discrete energy", "[scene][accuracy]") {
     // docs/methods/time_stepping.md 2.1: E_n = v_n+1 M v_n+1 / 2 + x_n K x_n+1 / 2 + weight at the middle of the step.
-    // The shell is thick enough to see every contact that closes in a step: what closes by an elastic force alone is
-    // noticed within a twentieth of it (contact_reach.h). Later it would be met inside the shell, where the theorem
-    // says nothing.
+    // The shell is thick enough to find every contact that closes in a step. A contact that closes by elastic forces
+    // alone is found within a twentieth of the shell (contact_reach.h). Found later it would be inside the shell, where
+    // the theorem does not apply.
     constexpr Real density = 1000, shell = 0.04;
     for (Real fraction : {0.5, 0.9, 1.0}) {
         Settings settings = in_short_steps({0, 0, -standard_gravity});
@@ -213,7 +213,7 @@ TEST_CASE("a bar that bounces without friction never gains discrete energy", "[s
         const Mesh mesh = mesh::box({0.1, 0.1, 1}, {1, 1, 10});
         const auto bar = world.add_body(
             mesh, {.material = material, .position = {0, 0, 0.55}, .velocity = {0, 0, -1}, .contact_distance = shell});
-        // a twin that tells the elastic forces K (x - rest) of the position before the step
+        // A second body computes the elastic forces K (x - rest) of the position before the step.
         ElasticBody twin({mesh.nodes, mesh.tetrahedra}, material_constants(MaterialModel::linear, 1e5, 0.3, density),
                          Mat3::Identity(), resolved(ElementKind::smoothed, 0.3));
         const auto executor = make_executor(Backend::serial, 1);
@@ -246,7 +246,7 @@ TEST_CASE("a bar that bounces without friction never gains discrete energy", "[s
         }
         REQUIRE(touching > 100);
         REQUIRE(flying > 100);
-        REQUIRE(lowest_gap > -1e-12);  // rounding of metres
+        REQUIRE(lowest_gap > -1e-12);  // rounding of positions of about a metre
         char name[100];
         std::snprintf(name, sizeof name,
                       "bouncing bar, largest gain of energy in a step over energy, %.0f %% of the stable step",

@@ -9,15 +9,15 @@ namespace skerry::test::cook_membrane_test {
 
 namespace {
 
-// m, m, Pa, Pa
+// [m, m, Pa, Pa]
 constexpr Real width = 0.48, thickness = 0.08, modulus = 1e6, shear_stress = 10;
 
-/// Displacement of the loaded side, mean by the load, over F / (E t), F the load and t the thickness.
+/// Load-weighted mean displacement of the loaded side, over F / (E t), with the load F and the thickness t.
 Real displacement(ElementKind kind, Real nu) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    // damping is about critical for swinging in the plane
+    // The damping is about critical for vibrations in the plane.
     const auto material = world.add_material(
         lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 80, .model = MaterialModel::linear}));
     const Mesh mesh = mapped_box({8, 8, 2}, [](const Vec3& s) {
@@ -42,11 +42,11 @@ Real displacement(ElementKind kind, Real nu) {
 }  // namespace
 
 TEST_CASE("a tapered panel bends under a shear load on its short side", "[scene][accuracy]") {
-    // Half of the thickness in quadratic tetrahedra, six to a cell, 8 x 8 x 2, 16 x 16 x 4, 24 x 24 x 6, 32 x 32 x 6
-    // cells graded towards the held side and its ends: 23.787, 23.872, 23.889, 23.895, and for a ratio of 0.49
-    // 23.551, 23.882, 23.939, 23.960 (Richardson, with the order that the meshes show). Smoothed elements go there:
-    // 23.482, 23.827, 23.887 with 8, 16, 32 cells, 22.889, 23.683, 23.891 for 0.49. Linear ones lose 15 and 34 % on
-    // this mesh, smoothed ones 2 and 5 %.
+    // Reference: half of the thickness in quadratic tetrahedra, six per cell, with 8 x 8 x 2, 16 x 16 x 4, 24 x 24 x 6,
+    // 32 x 32 x 6 cells graded towards the held side and its ends: 23.787, 23.872, 23.889, 23.895, and for nu = 0.49
+    // 23.551, 23.882, 23.939, 23.960 (Richardson, with the observed order). Smoothed elements converge to it: 23.482,
+    // 23.827, 23.887 with 8, 16, 32 cells, and 22.889, 23.683, 23.891 for nu = 0.49. On this mesh linear elements lose
+    // 15 and 34 %, smoothed ones 2 and 5 %.
     constexpr Real compressible = 23.90, nearly_incompressible = 23.98;
     struct Case {
         Real nu, expected;

@@ -1,4 +1,4 @@
-// Bodies that nothing touches: free fall, momentum, spin (docs/methods/accuracy.md 1 to 3 and 20).
+// Motion of bodies without contact: free fall, momentum, spin (docs/methods/accuracy.md 1 to 3 and 20).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -11,15 +11,15 @@ using accuracy::Tolerance;
 
 namespace {
 
-/// The worst node of a falling cube against x0 + v0 t - g t^2 / 2 + `lag` t and v0 + `early` - g t.
+/// Errors of the worst node of a falling cube against x0 + v0 t - g t^2 / 2 + `lag` t and v0 + `early` - g t.
 struct Fall {
     Real position_error = 0;  // m
-    Real velocity_error = 0;  // of the speed
+    Real velocity_error = 0;  // relative to the speed
 };
 
 constexpr Real fall_time = 0.5;  // s
 
-/// `early` is added to the start velocity, `lag` to the mean velocity of the law.
+/// Adds `early` to the start velocity and `lag` to the mean velocity of the law.
 Fall fall(MaterialModel model, Real h, const Vec3& early, const Vec3& lag) {
     Settings settings;
     settings.step_size = h;
@@ -49,11 +49,11 @@ TEST_CASE("free fall follows the discrete law to rounding, and the exact law in 
     const Vec3 g(0, 0, -standard_gravity);
     Fall discrete, leapfrog;
     for (const auto model : {MaterialModel::linear, MaterialModel::corotational, MaterialModel::stable_neo_hookean}) {
-        // x_n = x0 + n h v0 - g h^2 n (n + 1) / 2: the mean velocity is g h / 2 ahead
+        // x_n = x0 + n h v0 - g h^2 n (n + 1) / 2: the mean velocity is ahead by g h / 2.
         const Fall symplectic = fall(model, h, Vec3::Zero(), 0.5 * h * g);
         discrete.position_error = std::max(discrete.position_error, symplectic.position_error);
         discrete.velocity_error = std::max(discrete.velocity_error, symplectic.velocity_error);
-        // velocities that start half a kick early are those of the middle of each step
+        // Leapfrog: start velocities half a force interval (kick) early are those of the middle of each step.
         leapfrog.position_error =
             std::max(leapfrog.position_error, fall(model, h, -0.5 * h * g, Vec3::Zero()).position_error);
     }

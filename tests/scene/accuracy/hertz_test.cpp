@@ -1,5 +1,5 @@
 // Hertz contact, at rest and in an impact (docs/methods/accuracy.md 21). Linear tetrahedra are too stiff around a
-// contact, by an error of second order in their size: two meshes and Richardson's extrapolation give the limit.
+// contact, with an error of second order in their size. Two meshes and Richardson's extrapolation give the limit.
 #include <catch2/catch.hpp>
 
 #include "tests/support/accuracy.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr Real modulus = 1e5, nu = 0.3, density = 1000, reduced = modulus / (1 - nu * nu);  // Pa, -, kg/m^3, Pa
 const Real c = std::sqrt(modulus / density);                                                // m/s
-// m: contact radius, contact distance
+// contact radius and contact distance [m]
 constexpr Real a = 0.01, shell = a / 50;
 
 MaterialSettings hertz_material() {
@@ -31,7 +31,7 @@ Settings weightless() {
     return settings;
 }
 
-/// m^2, a third of each triangle around a node.
+/// Area of each surface node: a third of each triangle around it [m^2]
 std::vector<Real> node_areas(const World& world, BodyHandle body) {
     std::vector<Real> area(world.positions(body).size(), 0);
     for (const auto& t : world.surface(body)) {
@@ -42,25 +42,25 @@ std::vector<Real> node_areas(const World& world, BodyHandle body) {
 }
 
 struct Pressed {
-    Real force, radius, pressure;  // over Hertz's
+    Real force, radius, pressure;  // relative to Hertz's values
 };
 
-/// A rigid ball is pressed into the half space z < 0 until the contact radius is a, of `fine` elements. Force and
-/// radius are means while the edge of the contact goes from half an element before to half an element behind a: where
-/// the edge stands among the nodes moves them by some per cent.
+/// Presses a rigid ball into the half space z < 0 until the contact radius a has `fine` elements. Force and radius are
+/// means while the edge of the contact moves from half an element before a to half an element beyond. Without the mean,
+/// the position of the edge between nodes changes them by some per cent.
 Pressed press(int fine, ElementKind element) {
-    constexpr Real radius = 10 * a;  // m, of the ball
+    constexpr Real radius = 10 * a;  // of the ball [m]
     World world(weightless());
     const auto material = world.add_material(hertz_material());
     const HalfBallShape shape{.a = a, .fine = fine, .growth = 4, .radius = 20 * a};
     const Mesh mesh = graded_half_ball(shape);
     const auto ground = world.add_body(mesh, {.material = material, .contact_distance = shell, .element = element});
-    // The far end is held. What waves bring back from there comes later than the end of the run.
+    // The far end is held. Waves reflected there return after the end of the run.
     std::vector<Index> far;
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (mesh.nodes[n].norm() > 0.99 * shape.shell_radius(shape.shells())) far.push_back(static_cast<Index>(n));
     world.attach(ground, far);
-    // the node below the middle that is nearest to a depth of 7 a
+    // The anchor is the node on the axis nearest to a depth of 7 a.
     std::size_t anchor = 0;
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if ((mesh.nodes[n] + Vec3(0, 0, 7 * a)).norm() < (mesh.nodes[anchor] + Vec3(0, 0, 7 * a)).norm()) anchor = n;
@@ -86,7 +86,7 @@ Pressed press(int fine, ElementKind element) {
         Real force = 0, moment = 0, middle = 0;
         for (const Contact& contact : world.contacts()) {
             const Real push = contact.impulse.norm() / step;
-            Vec3 place = Vec3::Zero();  // on a node, an edge or a face
+            Vec3 place = Vec3::Zero();  // the contact point on a node, an edge or a face
             for (std::size_t part = 0; part < 4; ++part) {
                 if (contact.weight[part] == 0) continue;
                 const std::size_t n = static_cast<std::size_t>(contact.node[part]);
@@ -96,20 +96,20 @@ Pressed press(int fine, ElementKind element) {
             force += push;
             moment += push * place.squaredNorm();
         }
-        // The approach of a half space: what lies beyond the anchor gives way as under a force at a point (Boussinesq).
+        // Approach of a half space: the part beyond the anchor yields as under a point force (Boussinesq).
         const Real moved = world.positions(ground)[anchor].z() - mesh.nodes[anchor].z();
         const Real depth =
             sunk + moved + force * (1 + nu) * (3 - 2 * nu) / (2 * std::numbers::pi * modulus * -mesh.nodes[anchor].z());
         mean.force += force / (4.0 / 3 * reduced * std::sqrt(radius) * std::pow(depth, 1.5)) / samples;
-        // Hertz's pressure has a mean of r^2 of 2 a^2 / 5
+        // The mean of r^2 under Hertz's pressure is 2 a^2 / 5.
         mean.radius += std::sqrt(2.5 * moment / force / (radius * depth)) / samples;
         mean.pressure += middle / (2 * reduced * std::sqrt(depth / radius) / std::numbers::pi) / samples;
     }
     return mean;
 }
 
-/// An elastic ball of a given radius (m) hits a plane at the speed at which its contact grows to the radius a. Returns
-/// the time that they touch over Hertz's.
+/// Drops an elastic ball of a given radius [m] on a plane at the speed at which its contact grows to the radius a.
+/// Returns the duration of the contact over Hertz's.
 Real bounce(Real ball_radius, int fine, ElementKind element) {
     World world(weightless());
     const auto material = world.add_material(hertz_material());

@@ -1,4 +1,4 @@
-// A thick hollow sphere under pressure from inside with each kind of element (docs/methods/accuracy.md 37).
+// A thick hollow sphere under internal pressure with each kind of element (docs/methods/accuracy.md 37).
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -12,13 +12,13 @@ namespace {
 
 constexpr Real inner = 1, outer = 2, modulus = 1e6, pressure = 100;  // m, m, Pa, Pa
 constexpr Real a3 = inner * inner * inner, b3 = outer * outer * outer;
-constexpr Real mean_stress = pressure * a3 / (b3 - a3);  // Pa, everywhere
+constexpr Real mean_stress = pressure * a3 / (b3 - a3);  // the same everywhere [Pa]
 
-/// Six boxes of `across` x `across` x `layers` cells, one on each side of a cube, rounded and joined; the layers grow
-/// outwards as their radius. Even numbers: cells that mirror each other meet with the same diagonals.
+/// Six boxes of `across` x `across` x `layers` cells, one on each side of a cube, rounded and joined. The thickness of
+/// layers grows with their radius. The numbers are even, so that mirrored cells meet with the same diagonals.
 Mesh hollow_sphere(int across, int layers) {
     Mesh whole;
-    std::map<std::array<long, 3>, Index> known;  // by place
+    std::map<std::array<long, 3>, Index> known;  // node at each place
     for (int axis = 0; axis < 3; ++axis)
         for (const Real side : {-1.0, 1.0}) {
             Mat3 turn = Mat3::Zero();  // the outward direction is the third column
@@ -50,15 +50,15 @@ Mesh hollow_sphere(int across, int layers) {
 }
 
 struct Widened {
-    Real displacement;  // m, of the inner surface, outwards, mean
-    Real pressure;      // error of the mean stress of the nodes over the pressure, root of the mean square
+    Real displacement;  // mean outward displacement of the inner surface [m]
+    Real pressure;      // root mean square error of the mean stress at the nodes, over the pressure
 };
 
 Widened widen(ElementKind kind, Real nu) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    // damping is about critical for the slowest change of shape
+    // The damping is about critical for the slowest change of shape.
     const auto material = world.add_material(
         lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 40, .model = MaterialModel::linear}));
     const Mesh mesh = hollow_sphere(8, 4);
@@ -82,8 +82,8 @@ Widened widen(ElementKind kind, Real nu) {
 }  // namespace
 
 TEST_CASE("a thick hollow sphere widens under pressure from inside", "[scene][accuracy]") {
-    // Linear elements lose 5 % of the displacement, 30 % where volume hardly changes; there the error of the mean
-    // stress, which is a seventh of the pressure, is half of the pressure. Smoothed ones are within 0.3 and 0.03 %.
+    // Linear elements lose 5 % of the displacement, and 30 % in the nearly incompressible case. There the error of the
+    // mean stress is half of the pressure, and the stress itself a seventh. Smoothed ones are within 0.3 and 0.03 %.
     struct Case {
         Real nu;
         ElementKind kind;

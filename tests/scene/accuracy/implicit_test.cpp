@@ -15,7 +15,7 @@ namespace {
 
 constexpr Real g = standard_gravity;
 
-/// What a block of 0.5 kg on a tilted plane does in its second second.
+/// Change of velocity and distance, in its second second, of a block of 0.5 kg on a tilted plane.
 struct Slide {
     Real gained, moved;  // m/s, m
 };
@@ -38,7 +38,7 @@ Slide slide_of(Real modulus, Real mu, Real degrees, Real h) {
     return {world.report().momentum.x() / mass - before, (world.center_of_mass(body) - start).norm()};
 }
 
-/// J, kinetic and elastic.
+/// Kinetic plus elastic energy [J]
 Real mechanical(const World& world) {
     const Energy energy = world.report().energy;
     return energy.kinetic + energy.elastic;
@@ -73,7 +73,7 @@ TEST_CASE("an implicit block on an incline obeys Coulomb's law at any stiffness 
 
 TEST_CASE("a vibration of an implicit rod is damped as theta says", "[scene][accuracy]") {
     constexpr Real length = 1, modulus = 1e6, density = 1000;
-    constexpr int steps = 50;  // a period
+    constexpr int steps = 50;  // per period
     const Real period = 2 * length * std::sqrt(density / modulus), z = 2 * std::numbers::pi / steps;
     const Mesh rod = mesh::box({length, 0.05, 0.05}, {20, 1, 1});
     std::vector<Vec3> stretched;
@@ -110,7 +110,7 @@ TEST_CASE("no step of implicit bodies that hit each other gains energy", "[scene
         World world(settings);
         const auto material = world.add_material({.young_modulus = 1e7, .poisson_ratio = 0.3});
         const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
-        for (int k = 0; k < 5; ++k)  // a row, the first thrown at the others
+        for (int k = 0; k < 5; ++k)  // a row of cubes, the first thrown at the others
             world.add_body(cube, {.material = material,
                                   .position = {0.12 * k, 0.01 * k, 0.005 * k},
                                   .velocity = {k == 0 ? 3.0 : 0.0, 0, 0},

@@ -19,11 +19,11 @@ Settings on_incline(Real degrees, ContactRegions regions = ContactRegions::separ
     settings.contact_regions = regions;
     settings.tolerance = 1e-10;
     settings.max_iterations = 20000;
-    settings.sleep = false;  // friction is to hold the block, not rest
+    settings.sleep = false;  // friction must hold the block, not sleep
     return settings;
 }
 
-/// A block of height `height` that has come to rest and is then tilted slowly. Deformation decays at a rate that goes
+/// A block of height `height` that has come to rest and is then tilted slowly. The decay rate of its deformation scales
 /// with its frequencies.
 BlockOnPlane settled_block(const Settings& settings, Real height = 0.1) {
     BlockOnPlane scene(settings, {.young_modulus = 2e5, .poisson_ratio = 0.3, .friction = mu, .damping = 30 / height},
@@ -49,7 +49,7 @@ Real acceleration(BlockOnPlane& scene) {
 TEST_CASE("a block sticks a hundredth of a degree below the friction angle, without creep", "[scene][accuracy]") {
     for (ContactRegions regions : {ContactRegions::separate, ContactRegions::global}) {
         BlockOnPlane scene = settled_block(on_incline(critical_degrees - 0.01, regions));
-        // The last of the tilt makes the block slip at some mm/s, which g (sin a - mu cos a) = -0.0018 m/s^2 stops.
+        // The end of the tilt makes the block slip at some mm/s; g (sin a - mu cos a) = -0.0018 m/s^2 stops it.
         REQUIRE(scene.world.advance(3.0).ok());
         const Vec3 start = scene.world.center_of_mass(scene.block);
         REQUIRE(scene.world.advance(1.0).ok());

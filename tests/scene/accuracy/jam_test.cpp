@@ -1,5 +1,5 @@
-// What friction and weight hold together: stacks, wedges, belts, and Painleve's rod (docs/methods/accuracy.md 22, 23
-// and 27).
+// Systems held together by friction and weight: stacks, wedges, belts, and Painleve's rod (docs/methods/accuracy.md 22,
+// 23 and 27).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -15,9 +15,9 @@ namespace {
 
 constexpr Real g = standard_gravity;
 
-/// A wedge of half angle a, point down, between two walls; weight is turned on slowly.
+/// A wedge of half angle a, point down, between two walls. Its weight is turned on slowly.
 struct Wedge {
-    static constexpr Real mu = 0.3, height = 0.2, width = 0.2;  // m; width in the middle of the height
+    static constexpr Real mu = 0.3, height = 0.2, width = 0.2;  // [-, m, m]; the width is that at half the height
     World world;
     BodyHandle body;
     Real angle;  // rad
@@ -41,7 +41,7 @@ struct Wedge {
             REQUIRE(world.advance(seconds / turns).ok());
         }
     }
-    /// Force of the wall at x > 0 along its normal, N.
+    /// Normal force of the wall at x > 0 [N]
     Real pressing() {
         world.advance(1e-4);
         Real sum = 0;
@@ -55,7 +55,7 @@ struct Wedge {
 
 TEST_CASE("a stack of bricks carries its weight brick by brick", "[scene][accuracy]") {
     Settings settings = accurate({0, 0, -g});
-    // 86 contacts, most of them redundant: below 1e-7 of the region's energy sweeps gain nothing while it sways
+    // 86 contacts, most of them redundant: while the stack sways, sweeps stall at 1e-7 of the region's energy.
     settings.tolerance = 1e-6;
     World world(settings);
     const auto material =
@@ -73,7 +73,7 @@ TEST_CASE("a stack of bricks carries its weight brick by brick", "[scene][accura
     const Real weight = world.mass(brick[0]) * g;
     Real worst = 0, sideways = 0;
     for (std::size_t i = 0; i < brick.size(); ++i) {
-        // what acts between this brick and the one below it, or the floor
+        // Force between this brick and the one below it, or the floor
         Vec3 force = Vec3::Zero();
         for (const Contact& c : world.contacts()) {
             const bool floor = !world.alive(c.second);
@@ -115,7 +115,7 @@ TEST_CASE("a wedge is held by its walls, and stays if tan(a) <= mu", "[scene][ac
                          .found = wedge.pressing(),
                          .tolerance = 0.01});
         wedge.pull_down(pull, 0, 1);
-        REQUIRE(wedge.world.advance(0.5).ok());  // what was still sliding up sticks
+        REQUIRE(wedge.world.advance(0.5).ok());  // until parts that were still sliding up stick
         const Real before = wedge.world.center_of_mass(wedge.body).z();
         REQUIRE(wedge.world.advance(1).ok());
         const Real rise = wedge.world.center_of_mass(wedge.body).z() - before;
@@ -135,11 +135,11 @@ TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[sc
     constexpr int segments = 40;
     World world(accurate(Vec3::Zero()));
     ColliderSettings turning;
-    turning.motion.angular_velocity = {0, 0, -1};  // from the held end, at x < 0, over the top to the loaded one
+    turning.motion.angular_velocity = {0, 0, -1};  // from the held end, at x < 0, over the top to the loaded end
     world.add_collider(Cylinder{radius, 1}, turning);
     const auto material = world.add_material({.young_modulus = 1e6, .poisson_ratio = 0, .friction = mu, .damping = 20});
-    // both ends leave the drum along its tangent: a belt held where it touches would be levered by what touches next to
-    // the held nodes
+    // Both ends leave the drum along its tangent. If a belt were held where it touches, the contacts next to the held
+    // nodes would lever it.
     constexpr int straight = 4;
     constexpr Real half = std::numbers::pi / 2, end = half * (1 + 2.0 * straight / segments);
     Mesh mesh = mesh::box({2 * end, thick, wide}, {segments + 2 * straight, 1, 1});
@@ -158,7 +158,7 @@ TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[sc
     for (Index n : loaded) load[static_cast<std::size_t>(n)] = Vec3(0, -pull / static_cast<Real>(loaded.size()), 0);
     world.set_loads(belt, load);
     REQUIRE(world.advance(6).ok());
-    // both ends pull along -y: what the drum does not carry of the load, and more, is the tension of the held end
+    // Both ends pull along -y. The tension of the held end is the force on the drum minus the load.
     Real carried = 0;
     int touching = 0;
     constexpr int steps = 200;
@@ -180,8 +180,8 @@ TEST_CASE("a belt on a turning drum multiplies its tension by exp(mu phi)", "[sc
 }
 
 TEST_CASE("Painleve's rod gets an impulse", "[scene][accuracy]") {
-    // A rigid rod at tan(a) = 2 whose tip slides towards -x, with its middle ahead at +x, has no forces that solve
-    // Coulomb's law for mu > 4/3.
+    // A rigid rod at tan(a) = 2, whose tip slides towards -x while its middle is at +x of the tip, has no forces that
+    // satisfy Coulomb's law for mu > 4/3.
     constexpr Real length = 1, width = 0.05, mu = 1.6, speed = 2;
     Real refused = 0, gain = 0;
     for (Real direction : {-1.0, 1.0}) {

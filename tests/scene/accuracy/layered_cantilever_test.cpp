@@ -9,15 +9,15 @@ namespace skerry::test::layered_cantilever_test {
 
 namespace {
 
-// m, m, Pa of the lower layer, Pa of the upper one, Pa
+// [m, m, Pa, Pa, Pa]; soft: lower layer, stiff: upper layer
 constexpr Real length = 1, height = 0.1, soft = 1e4, stiff = 1e6, shear_stress = 0.01;
 
-/// Displacement of the loaded end, mean by the load, over F / (E h), E that of the soft layer, F the load.
+/// Load-weighted mean displacement of the loaded end, over F / (E h), with the load F and the E of the soft layer.
 Real displacement(ElementKind kind) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    // damping is about critical for the first mode
+    // The damping is about critical for the first mode.
     const auto of = [&](Real modulus) {
         return world.add_material(
             lossless({.young_modulus = modulus, .poisson_ratio = 0.3, .damping = 2.4, .model = MaterialModel::linear}));
@@ -46,9 +46,9 @@ Real displacement(ElementKind kind) {
 }  // namespace
 
 TEST_CASE("a beam of two layers bends as a fine mesh of quadratic elements does", "[scene][accuracy]") {
-    // Half of the width in quadratic tetrahedra, six to a cell, graded towards the held end: 282.48, 282.52, 282.54,
-    // 282.55 with 60 x 3 x 6, 4 x 8, 5 x 10, 6 x 12 cells, 282.53, 282.55 with 80 x 4 x 8, 5 x 10 (Richardson, with the
-    // order of 1.5 that the meshes show). Smoothed elements come from both sides: 234, 287.9, 288.4 with 2, 4 and 6
+    // Reference: half of the width in quadratic tetrahedra, six per cell, graded towards the held end: 282.48, 282.52,
+    // 282.54, 282.55 with 60 x 3 x 6, 4 x 8, 5 x 10, 6 x 12 cells, 282.53, 282.55 with 80 x 4 x 8, 5 x 10 (Richardson,
+    // with the observed order of 1.5). Smoothed elements approach from both sides: 234, 287.9, 288.4 with 2, 4 and 6
     // cells in the height.
     constexpr Real expected = 282.6;
     for (const auto& [kind, tolerance] : {std::pair{ElementKind::linear, 0.5}, {ElementKind::smoothed, 0.03}})

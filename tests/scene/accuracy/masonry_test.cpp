@@ -1,4 +1,4 @@
-// Rigid bodies that lean on each other stand as long as a line of thrust fits into them (docs/methods/accuracy.md 50
+// Rigid bodies that lean on each other stand as long as a line of thrust fits inside them (docs/methods/accuracy.md 50
 // and 51).
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Real pi = std::numbers::pi;
 
-/// A semicircle of `stones` (even) equal stones with flat faces, of middle radius 1 m, on the floor.
+/// A semicircular arch of `stones` (even) equal stones with flat faces, with a mean radius of 1 m, on the floor.
 struct Arch {
     int stones;
     Real thickness;  // m
@@ -24,9 +24,9 @@ struct Arch {
     Real inner() const { return 1 - thickness / 2; }
     Real outer() const { return 1 + thickness / 2; }
 
-    /// By how much, in units of weight times length, the best line of thrust is clear of the faces of half the arch;
-    /// negative where none fits. From the crown down, with the thrust H at the height y there and, above a joint at the
-    /// angle phi, the weight W with the moment M: its resultant meets the joint at the radius (M + H y) / (H cos phi +
+    /// Clearance between the best line of thrust and the faces of half the arch, in units of weight times length;
+    /// negative if no line fits. The line starts at the crown with the thrust H at the height y. Above a joint at the
+    /// angle phi the weight is W and its moment M. The resultant meets the joint at the radius (M + H y) / (H cos phi +
     /// W sin phi).
     Real room() const {
         const Real turn = pi / stones, a = inner(), b = outer(), weight = (b * b - a * a) / 2 * std::sin(turn);
@@ -42,7 +42,7 @@ struct Arch {
             }
             return highest - lowest;
         };
-        Real low = 0, high = 10 * weight * stones;  // the room is concave in the thrust
+        Real low = 0, high = 10 * weight * stones;  // upper bound; the clearance is concave in the thrust
         for (int k = 0; k < 200; ++k) {
             const Real third = (high - low) / 3;
             if (room_at(low + third) < room_at(high - third))
@@ -54,7 +54,7 @@ struct Arch {
     }
 };
 
-/// m, that of the thinnest arch with a line of thrust.
+/// Thickness of the thinnest arch with a line of thrust [m]
 Real thinnest(int stones) {
     Real low = 0.01, high = 0.5;
     for (int k = 0; k < 60; ++k) {
@@ -64,7 +64,7 @@ Real thinnest(int stones) {
     return high;
 }
 
-/// m, by which the crown has come down after a second, or as soon as that is more than a millimetre.
+/// Descent of the crown after a second, or as soon as it exceeds a millimetre [m]
 Real sunk(const Arch& arch) {
     Settings settings = accurate({0, 0, -standard_gravity}, 1e-8);
     settings.step_size = 1.0 / 240;
@@ -92,13 +92,13 @@ Real sunk(const Arch& arch) {
     return down;
 }
 
-/// Two cards of 0.2 m that lean on each other, their inner faces at an angle of the tangent `slope` from upright.
+/// Two cards of 0.2 m that lean on each other. Their inner faces deviate from the vertical by the tangent `slope`.
 struct CardHouse {
     static constexpr Real length = 0.2, thickness = 0.01, shell = 1e-3;  // m
 
     Real slope, friction;
 
-    /// m, by which their middles have come down after two seconds.
+    /// Descent of the middles of the cards after two seconds [m]
     Real sunk() const {
         Settings settings = accurate({0, 0, -standard_gravity}, 1e-10);
         settings.step_size = 1e-3;
@@ -109,7 +109,7 @@ struct CardHouse {
         const Real angle = std::atan(slope), sine = std::sin(angle), cosine = std::cos(angle);
         std::vector<BodyHandle> cards;
         for (const Real side : {-1.0, 1.0}) {
-            // the inner face from its foot, half a shell above the floor, to its top, half a shell beside the other's
+            // The inner face goes from its foot, half a shell above the floor, to its top, half a shell from the other.
             const Real x = shell / 2 + length / 2 * sine + thickness / 2 * cosine;
             const Real z = shell / 2 + length / 2 * cosine + thickness / 2 * sine;
             cards.push_back(world.add_body(mesh, {.material = paper,
@@ -127,7 +127,7 @@ struct CardHouse {
 }  // namespace
 
 TEST_CASE("an arch of rigid stones stands while a line of thrust fits into it", "[scene][accuracy]") {
-    CHECK(thinnest(400) == Approx(0.1075).margin(2e-4));  // that of many stones
+    CHECK(thinnest(400) == Approx(0.1075).margin(2e-4));  // the known limit for many stones
     struct Case {
         int stones;
         Real share;

@@ -1,4 +1,4 @@
-// How errors fall with the step, and with the tolerance of the solver (docs/methods/accuracy.md 31).
+// Convergence of errors with the step and with the tolerance of the solver (docs/methods/accuracy.md 31).
 #include <catch2/catch.hpp>
 
 #include "skerry/problem.h"
@@ -13,14 +13,15 @@ namespace {
 
 using Positions = std::vector<Vec3>;
 
-/// Root of the mean squared distance, m.
+/// Root mean square distance [m]
 Real distance(const Positions& a, const Positions& b) {
     Real sum = 0;
     for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]).squaredNorm();
     return std::sqrt(sum / static_cast<Real>(a.size()));
 }
 
-/// A block that hangs by its top and is let go; early: velocities start half a kick early (leapfrog).
+/// A block that hangs by its top and is let go. `early`: velocities start half a force interval (kick) early
+/// (leapfrog).
 Positions hang(Real h, bool early) {
     Settings settings;
     settings.step_size = h;
@@ -33,7 +34,7 @@ Positions hang(Real h, bool early) {
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
         const bool held = mesh.nodes[n].z() > 0.1 - 1e-9;
         if (held) top.push_back(static_cast<Index>(n));
-        // without stress the first kick is that of the weight
+        // The block has no stress, so the first kick is that of gravity alone.
         velocity.push_back(early && !held ? Vec3(0, 0, 0.5 * h * standard_gravity) : Vec3::Zero());
     }
     world.attach(body, top);
@@ -61,7 +62,7 @@ Positions bounce(Real h) {
     return {world.positions(body).begin(), world.positions(body).end()};
 }
 
-/// A block that lands flat, is pressed together and leaves again: by leapfrog.
+/// A block that lands flat, is compressed and leaves again, by leapfrog.
 Positions land_flat(Real h, Real friction = 0, const Vec3& velocity = {0, 0, -0.7}) {
     Settings settings = accurate({0, 0, -standard_gravity}, 1e-10);
     settings.integrator = Integrator::leapfrog;
@@ -79,7 +80,7 @@ Positions land_flat(Real h, Real friction = 0, const Vec3& velocity = {0, 0, -0.
     return {world.positions(body).begin(), world.positions(body).end()};
 }
 
-/// The same, sliding fast enough that no node turns back.
+/// A block that lands flat and slides so fast that no node reverses.
 Positions land_slide(Real h) {
     return land_flat(h, 0.3, {3, 1, -0.7});
 }
@@ -159,15 +160,15 @@ TEST_CASE("the Coulomb gap of every step is within the tolerance of the solver",
     int problems = 0;
     world.watch_contact_problems([&](const StepProblem& step) {
         const ContactProblem& p = step.problem;
-        Real scale = 0;  // J, twice the energy that the contacts have to stop
+        Real scale = 0;  // twice the energy that the contacts have to stop [J]
         for (Index i = 0; i < p.contacts(); ++i) {
             const std::size_t row = static_cast<std::size_t>(i);
             for (Index k = p.row_offset[row]; k < p.row_offset[row + 1]; ++k)
                 if (p.column[static_cast<std::size_t>(k)] == i)
                     scale += p.q[row].squaredNorm() / (p.block[static_cast<std::size_t>(k)].trace() / 3);
         }
-        // what the floor of the error measure is for, regions at rest, is left out: the gap is relative to the energy
-        // itself
+        // Contacts without energy to stop are skipped: here the gap is relative to that energy itself, without the
+        // floor that the error measure has for regions at rest.
         if (scale > 0) worst = std::max(worst, std::abs(problem_error(p, step.impulse).energy_gap) / scale);
         ++problems;
     });

@@ -10,23 +10,23 @@ namespace skerry::test::punch_test {
 
 namespace {
 
-// m, m, m, Pa, m, s
+// [m, m, m, Pa, m, s]
 constexpr Real width = 1, height = 0.5, punch = 0.5, modulus = 1e6, depth = 1e-3, lowering = 0.2;
 constexpr std::array<int, 3> cells{8, 8, 4};
 
 struct Pressed {
-    Real stiffness;  // force of the punch over E, its width and its way
-    // Pressure of the nodes inside against the mean of their six neighbours, root of the mean square, over the pressure
-    // of the punch.
+    Real stiffness;  // force of the punch over E, its width and its displacement
+    // Root mean square difference of the pressure of inner nodes from the mean of their six neighbours, over the
+    // pressure of the punch.
     Real roughness;
 };
 
-/// A punch that sticks to the middle of the top goes down; the bottom is held.
+/// Lowers a punch that sticks to the middle of the top. The bottom is held.
 Pressed press(ElementKind kind, Real nu) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    // damping is about critical for shear through the height
+    // The damping is about critical for shear through the height.
     const auto material = world.add_material(
         lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 100, .model = MaterialModel::linear}));
     const Mesh mesh = mesh::box({width, width, height}, cells);
@@ -81,11 +81,11 @@ Pressed press(ElementKind kind, Real nu) {
 }  // namespace
 
 TEST_CASE("a rigid flat punch is pressed into a block", "[scene][accuracy]") {
-    // Quadratic tetrahedra, a quarter of the block in n x n x n cells, graded towards the edge of the punch: 2.1715,
-    // 2.1017, 2.0877, 2.0826 for n = 4, 8, 12, 16 and a ratio of 0.3; 2.8032, 2.6602, 2.6278, 2.6151 for 0.49
-    // (Richardson, with the order that the meshes show). Smoothed elements go there: 2.333, 2.184, 2.126 and 3.040,
-    // 2.750, 2.662 with 8, 16, 32 cells to the width. On this mesh linear ones are too stiff by 31 and 135 %, smoothed
-    // ones by 12 and 17 %; the pressure is smoother for the ratio of 0.49 only.
+    // Reference: quadratic tetrahedra, a quarter of the block in n x n x n cells, graded towards the edge of the punch:
+    // 2.1715, 2.1017, 2.0877, 2.0826 for n = 4, 8, 12, 16 and nu = 0.3; 2.8032, 2.6602, 2.6278, 2.6151 for nu = 0.49
+    // (Richardson, with the observed order). Smoothed elements converge to it: 2.333, 2.184, 2.126 and 3.040, 2.750,
+    // 2.662 with 8, 16, 32 cells in the width. On this mesh linear elements are too stiff by 31 and 135 %, smoothed
+    // ones by 12 and 17 %. Their pressure is smoother for nu = 0.49 only.
     constexpr Real compressible = 2.075, nearly_incompressible = 2.594;
     struct Case {
         Real nu, expected;

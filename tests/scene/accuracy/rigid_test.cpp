@@ -26,12 +26,12 @@ BodySettings rigid(MaterialHandle material, const Vec3& position, const Vec3& ro
             .dynamics = BodyDynamics::rigid};
 }
 
-/// Turn about y of a body, rad.
+/// Rotation of a body about y [rad]
 Real tilt(const World& world, BodyHandle body) {
     return world.pose(body).rotation.y();
 }
 
-/// A block that stands on one of its edges, turned by `angle` about it.
+/// A block that stands on one of its edges and is turned by `angle` about it.
 struct RockingBlock {
     World world;
     Real half_width, half_height, diagonal, alpha;
@@ -49,11 +49,11 @@ struct RockingBlock {
           alpha(std::atan(half_width / half_height)) {
         const auto material = world.add_material({.friction = 2});
         world.add_collider(Plane{});
-        // its edge at x = half_width, z = 0 stays where it is
+        // The edge at x = half_width, z = 0 does not move.
         const Vec3 center(half_width - diagonal * std::sin(alpha - angle), 0, diagonal * std::cos(alpha - angle));
         body = world.add_body(mesh::box({width, 0.1, height}, {1, 1, 1}), rigid(material, center, {0, angle, 0}));
     }
-    /// rad/s, about y.
+    /// Angular velocity about y [rad/s]
     Real spin() const {
         const auto position = world.positions(body);
         const auto velocity = world.velocities(body);
@@ -181,7 +181,7 @@ TEST_CASE("rigid bricks overhang as far as the harmonic series lets them", "[sce
         std::vector<BodyHandle> stack;
         Real x = 0;
         for (int k = 0; k < bricks; ++k) {
-            // the lowest is shifted least: L/(2 n), L/(2 (n - 1)), ... L/4, L/2 are those of the ones above
+            // The lowest brick is shifted least: by L/(2 n). The ones above are shifted by L/(2 (n - 1)), ... L/4, L/2.
             stack.push_back(world.add_body(mesh::box({length, 0.1, height}, {4, 2, 1}),
                                            rigid(material, {x, 0, (k + 0.5) * height})));
             x += share * length / (2 * (bricks - 1 - k));

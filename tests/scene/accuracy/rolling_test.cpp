@@ -18,8 +18,8 @@ namespace {
 
 constexpr Real g = standard_gravity, pi = std::numbers::pi;
 
-/// A wheel of radius 0.1 m with its axis along y and a node for each of the angles of its rim (rad, ascending, from
-/// straight down).
+/// A wheel of radius 0.1 m with its axis along y and a node at each of the given rim angles (ascending, from straight
+/// down) [rad].
 Mesh wheel(const std::vector<Real>& angles) {
     constexpr Real radius = 0.1, half = 0.02;
     const Index rim = static_cast<Index>(angles.size());
@@ -30,7 +30,7 @@ Mesh wheel(const std::vector<Real>& angles) {
     }
     const Index other = rim + 1;
     for (Index k = 0; k < rim; ++k) {
-        // a wedge between two radii, cut into three
+        // A wedge between two radii, cut into three tetrahedra.
         const Index a = rim, b = k, c = (k + 1) % rim;
         for (std::array<Index, 4> t : {std::array<Index, 4>{a, b, c, a + other},
                                        {b, c, a + other, b + other},
@@ -45,14 +45,14 @@ Mesh wheel(const std::vector<Real>& angles) {
     return mesh;
 }
 
-/// Of the wheel, let go on a slope: means over a tenth of a second, m/s^2 and rad/s^2.
+/// Mean accelerations of a body released on a slope [m/s^2, rad/s^2]
 struct Rolled {
     Real acceleration, spin;
 };
 
 Rolled roll(Real degrees, Real mu, Real h) {
     constexpr Real radius = 0.1, seconds = 0.1;  // m, s
-    // rad: fine where it comes to touch, from `back` on
+    // Rim angles: fine where the wheel will touch, from `back` on [rad].
     constexpr Real back = -0.02, part = 0.14, fine = 2e-4, coarse = 0.025;
     std::vector<Real> angles;
     for (int k = 0; k * fine < part; ++k) angles.push_back(back + k * fine);
@@ -75,7 +75,7 @@ Rolled roll(Real degrees, Real mu, Real h) {
 
 enum class Slope { plane, mesh };
 
-/// The same of a sphere, over a whole second.
+/// Releases a rigid sphere on a slope. The means are over a second.
 Rolled roll_sphere(Real degrees, Real mu, Slope slope) {
     constexpr Real radius = 0.1, seconds = 1, kept = 1e-3;  // m, s, m
     Settings settings = accurate(tilted_gravity(degrees), 1e-10);
@@ -169,7 +169,7 @@ TEST_CASE("a rigid plate rocks on a round back without slip", "[scene][accuracy]
     World world(settings);
     const auto material = world.add_material({.friction = 1});
     world.add_collider(Cylinder{radius, 2}, {.rotation = {pi / 2, 0, 0}});
-    // rolled by `tilt`: what touches is that far beside the middle of the plate
+    // The plate is rolled by `tilt`: the contact point is radius * tilt away from the middle of the plate.
     const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), along(std::cos(tilt), 0, -std::sin(tilt));
     const auto plate = world.add_body(mesh::box({length, 0.1, thickness}, {2, 1, 1}),
                                       {.material = material,
@@ -177,7 +177,7 @@ TEST_CASE("a rigid plate rocks on a round back without slip", "[scene][accuracy]
                                        .rotation = {0, tilt, 0},
                                        .contact_distance = 0,
                                        .dynamics = BodyDynamics::rigid});
-    std::vector<Real> passages;  // s, through the level
+    std::vector<Real> passages;  // times at which the plate is level [s]
     Real before = tilt, most = 0;
     while (passages.size() < 5 && world.time() < 5) {
         REQUIRE(world.advance(h).ok());
@@ -205,12 +205,12 @@ TEST_CASE("a rigid plate rocks on a round back without slip", "[scene][accuracy]
 TEST_CASE("a rigid rod of Painleve's jams with a finite impulse", "[scene][accuracy]") {
     constexpr Real length = 1, width = 0.02, mu = 1.6, speed = 2, h = 1e-3;  // m, m, -, m/s, s
     const Real angle = std::atan(2.0), sine = std::sin(angle), cosine = std::cos(angle);
-    // It stands on a corner: with two on the floor one may jam and the other one lift.
+    // The rod stands on one corner, since with two on the floor one may jam and the other lift.
     Mesh mesh = mesh::box({length, width, width}, {10, 1, 1});
     const Mat3 quarter = Eigen::AngleAxis<Real>(pi / 4, Vec3::UnitX()).toRotationMatrix();
     for (Vec3& x : mesh.nodes) x = quarter * x;
     const Real half = width / std::numbers::sqrt2;
-    const Vec3 arm(-length / 2 * cosine + half * sine, 0, -length / 2 * sine - half * cosine);  // m, to the corner
+    const Vec3 arm(-length / 2 * cosine + half * sine, 0, -length / 2 * sine - half * cosine);  // to the corner [m]
     Real gain = 0, refused = 0;
     for (const Real direction : {-1.0, 1.0}) {
         Settings settings = accurate({0, 0, -g}, 1e-10);
@@ -228,7 +228,7 @@ TEST_CASE("a rigid rod of Painleve's jams with a finite impulse", "[scene][accur
         const Real start = energy(), mass = world.mass(rod);
         Real before = start;
         Vec3 first = Vec3::Zero();
-        for (int step = 0; step < 300; ++step) {  // it has not come down flat by then
+        for (int step = 0; step < 300; ++step) {  // ends before the rod falls flat
             const StepReport report = world.advance(h);
             refused += !report.ok() || report.unconverged > 0;
             gain = std::max(gain, (energy() - before) / start);
@@ -238,7 +238,7 @@ TEST_CASE("a rigid rod of Painleve's jams with a finite impulse", "[scene][accur
         }
         if (direction > 0) continue;
         REQUIRE(1 + 3 * cosine * (cosine - mu * sine) < 0);
-        const Real squared = (length * length + width * width) / 12;  // of the radius of gyration
+        const Real squared = (length * length + width * width) / 12;  // squared radius of gyration
         Eigen::Matrix2d w;
         w << 1 + arm.z() * arm.z() / squared, -arm.x() * arm.z() / squared, -arm.x() * arm.z() / squared,
             1 + arm.x() * arm.x() / squared;

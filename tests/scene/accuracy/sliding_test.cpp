@@ -1,4 +1,4 @@
-// A plate that slides to a stop, that is pulled by a spring, and that slides under each friction law
+// A plate that slides to a stop, that a spring pulls, and that slides under each friction law
 // (docs/methods/accuracy.md 7, 8 and 28).
 #include <catch2/catch.hpp>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr Real mu = 0.3;
 constexpr Real g = standard_gravity;
 
-/// A flat plate at rest: shear, which lets the faces of a body stop at different times, goes with the square of the
+/// A flat plate at rest. Shear makes the faces of a body stop at different times and scales with the square of its
 /// height.
 BlockOnPlane resting_plate(Friction friction = Friction::cone) {
     Settings settings;
@@ -45,7 +45,7 @@ Stop slide(BlockOnPlane& scene, const Vec3& velocity) {
     Real stopped = 0;
     while (scene.world.time() - begin < 2) {
         REQUIRE(scene.world.advance(h).ok());
-        // the speed falls by mu g h in a step; what is left after the stop is shear that rings
+        // Friction reduces the speed by mu g h per step. After the stop only a shear vibration is left.
         if (stopped == 0 && scene.velocity().norm() < mu * g * h) stopped = scene.world.time() - begin;
         if (stopped > 0 && scene.world.time() - begin > stopped + 0.05) break;
     }
@@ -80,7 +80,7 @@ TEST_CASE("a plate pulled by a spring breaks away, slips one period and sticks a
     const Real start = scene.world.center_of_mass(scene.block).x(), begin = scene.world.time(),
                h = scene.world.stable_step();
     std::vector<Vec3> load(scene.mass.size());
-    std::vector<Real> crossing;  // s, of half the speed of the pull
+    std::vector<Real> crossing;  // times at which the plate has half the speed of the pull [s]
     Real last = 0, peak = 0, moved = 0;
     while (scene.world.time() - begin < mu * g / (omega * omega * pull) + 1.5 * 2 * std::numbers::pi / omega) {
         const Real force =
@@ -185,7 +185,7 @@ TEST_CASE("a plate slows down alike in 16 directions under the cone", "[scene][a
         BlockOnPlane scene = resting_plate();
         const Real phi = k * std::numbers::pi / 8;
         push(scene, {std::cos(phi), std::sin(phi), 0});
-        REQUIRE(scene.world.advance(0.1).ok());  // the shear of friction sets in
+        REQUIRE(scene.world.advance(0.1).ok());  // until the shear due to friction has developed
         const Vec3 before = scene.velocity();
         REQUIRE(scene.world.advance(0.1).ok());
         worst = std::max(worst, std::abs((before - scene.velocity()).norm() / 0.1 / (mu * g) - 1));

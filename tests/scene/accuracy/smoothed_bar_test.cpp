@@ -1,4 +1,4 @@
-// The same coarse mesh with each kind of element (docs/methods/accuracy.md 34).
+// One coarse mesh with each kind of element (docs/methods/accuracy.md 34).
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr Real modulus = 1e6, length = 1, height = 0.1;  // Pa, m, m
 
-/// Nodes moved by up to `share` of a cell in each direction, but for those of the surface, which stay in it.
+/// Moves nodes by up to `share` of a cell in each direction. Nodes of the surface stay in it.
 Mesh moved(Mesh mesh, Real cell, Real share) {
     std::mt19937_64 random(1);
     for (Vec3& x : mesh.nodes) {
@@ -27,7 +27,7 @@ Mesh moved(Mesh mesh, Real cell, Real share) {
     return mesh;
 }
 
-/// s: first period of a bar held at one end.
+/// First period of a bar held at one end [s]
 Real first_period(const Mesh& mesh, ElementKind kind, Real nu) {
     Settings settings;
     settings.gravity = Vec3::Zero();
@@ -42,13 +42,13 @@ Real first_period(const Mesh& mesh, ElementKind kind, Real nu) {
         const Vec3& x = mesh.nodes[n];
         const Real s = x.x() / length + 0.5;
         if (s < 1e-9) held.push_back(static_cast<Index>(n));
-        velocity[n].z() = 1e-3 * s * s * (6 - 4 * s + s * s) / 3;  // the shape under its own weight: close to the mode
+        velocity[n].z() = 1e-3 * s * s * (6 - 4 * s + s * s) / 3;  // the shape under its own weight, close to the mode
         const auto from_middle = [](const Vec3& place) { return (place - Vec3(length / 2, 0, 0)).norm(); };
         if (from_middle(x) < from_middle(mesh.nodes[tip])) tip = n;
     }
     world.attach(bar, held);
     world.set_velocities(bar, velocity);
-    // back through its place after half a period, and again
+    // The tip passes its rest position after half a period, and again after a whole one.
     std::vector<Real> crossed;
     constexpr Real look = 1e-3;
     Real before = 0;
@@ -65,7 +65,7 @@ Real first_period(const Mesh& mesh, ElementKind kind, Real nu) {
 
 TEST_CASE("a coarse clamped bar swings as a fine one does with smoothed elements, and much too fast with linear ones",
           "[scene][accuracy]") {
-    // s, of a mesh of quadratic elements that is fine enough for four digits (0.6207 s at 1e7 Pa)
+    // Period of a mesh of quadratic elements that is fine enough for four digits (0.6207 s at 1e7 Pa) [s]
     const Real expected = 0.6207 * std::sqrt(1e7 / modulus);
     const Mesh mesh = mesh::box({length, height, height}, {20, 2, 2});
     for (const auto& [kind, nu, tolerance] : {std::tuple{ElementKind::linear, 0.3, 0.3},
@@ -90,9 +90,9 @@ TEST_CASE("a coarse clamped bar swings as a fine one does with smoothed elements
 }
 
 TEST_CASE("a finer clamped bar swings as it should where no cell has the shape of another", "[scene][accuracy]") {
-    // Half of the width in quadratic tetrahedra, six to a cell, graded towards the held end, with consistent masses:
-    // 0.62102, 0.62107, 0.62110, 0.62111 s at 1e7 Pa with 60 x 3 x 6, 60 x 4 x 8, 80 x 5 x 10, 60 x 6 x 12 cells, all
-    // from below
+    // Reference: half of the width in quadratic tetrahedra, six per cell, graded towards the held end, with consistent
+    // masses: 0.62102, 0.62107, 0.62110, 0.62111 s at 1e7 Pa with 60 x 3 x 6, 60 x 4 x 8, 80 x 5 x 10, 60 x 6 x 12
+    // cells, all from below
     const Real expected = 0.6212 * std::sqrt(1e7 / modulus);
     const Mesh mesh = moved(mesh::box({length, height, height}, {40, 4, 4}), height / 4, 0.15);
     for (const auto& [kind, tolerance] : {std::pair{ElementKind::linear, 0.12}, {ElementKind::smoothed, 0.005}})

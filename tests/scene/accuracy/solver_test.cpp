@@ -1,4 +1,5 @@
-// How the solver cuts up and shares out its work changes nothing (docs/methods/accuracy.md 29 and 30).
+// The way in which the solver divides and distributes its work does not change results (docs/methods/accuracy.md 29 and
+// 30).
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -12,7 +13,7 @@ using accuracy::Tolerance;
 
 namespace {
 
-/// Balls that fall onto a block and each other; large enough not to run inline.
+/// Balls that fall onto a block and onto each other. The scene is large enough not to run inline.
 World pile(Settings settings) {
     World world(settings);
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 4});
@@ -39,7 +40,7 @@ Real differing_numbers(const World& one, const World& other) {
     return count + (one.state_hash() != other.state_hash());
 }
 
-/// m, root mean square over the nodes of two worlds with the same bodies.
+/// Root mean square distance of the nodes of two worlds with the same bodies [m]
 Real distance(const World& one, const World& other) {
     Real sum = 0, count = 0;
     for (std::size_t b = 0; b < one.bodies().size(); ++b) {
@@ -57,7 +58,7 @@ TEST_CASE("separate and global regions are bitwise equal with plain sweeps", "[s
         Settings settings;
         settings.gravity = tilted_gravity(20);
         settings.contact_regions = regions;
-        settings.method = SolverMethod::pgs;  // acceleration looks at the whole region
+        settings.method = SolverMethod::pgs;  // acceleration would couple the whole region
         settings.fixed_iterations = true;
         settings.max_iterations = 10;
         worlds.push_back(pile(settings));
@@ -75,7 +76,7 @@ TEST_CASE("separate and global regions are bitwise equal with plain sweeps", "[s
 }
 
 TEST_CASE("separate and global regions agree to the tolerance with acceleration", "[scene][accuracy]") {
-    // One solve: over many steps a difference of rounding size would grow as any other does.
+    // Only one solve: over many steps a difference of rounding size would grow like any other.
     constexpr Real tolerance = 1e-8;
     ContactScene scene;
     for (int sheet = 0; sheet < 12; ++sheet) add_sheets(scene, 3 + sheet % 5, 0.5, static_cast<unsigned>(sheet));
@@ -137,7 +138,7 @@ TEST_CASE("what the solver leaves over in each step does not add up as steps get
                                                                         .contact_distance = shell});
             REQUIRE(world.advance(0.1).ok());
         }
-        // 5e-5 and 2e-3 where the error is measured against all that moves, the sliding and gaps within reach, too
+        // With errors relative to all motion, including sliding and gaps within reach, it would be 5e-5 and 2e-3.
         CHECK(distance(worlds[0], worlds[1]) < 1e-5 * length);
     }
 }

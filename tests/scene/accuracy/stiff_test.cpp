@@ -1,4 +1,4 @@
-// Stiff implicit bodies at rest, in contact and against rigid ones (docs/methods/accuracy.md 58 to 63).
+// Stiff implicit bodies at rest, in contact, and against rigid bodies (docs/methods/accuracy.md 58 to 63).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,7 +26,7 @@ World with_step(const Vec3& gravity, Real tolerance, Real h, Real theta = 1) {
     return World(settings);
 }
 
-/// s, mean of ten half periods of the first mode of a free rod, `steps` of which are 2 pi / z.
+/// Mean of ten half periods of the first mode of a free rod, with a phase of z per step [s]
 Real period_of_rod(Real theta, Real z) {
     constexpr Real length = 1, modulus = 1e6, density = 1000;
     const Real period = 2 * length * std::sqrt(density / modulus), h = z * period / (2 * pi);
@@ -48,7 +48,7 @@ Real period_of_rod(Real theta, Real z) {
     return (passages[10] - passages[0]) / 5;
 }
 
-/// Of a cube that falls on a corner, as it leaves: its velocity and, times its size, its spin (m/s).
+/// Velocity, and spin times size, of a cube that fell on a corner, as it leaves the floor [m/s]
 Eigen::Matrix<Real, 6, 1> after_impact(Real modulus, BodyDynamics dynamics) {
     World world = with_step({0, 0, -g}, 1e-13, 1e-3);
     const auto material = world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.3});
@@ -69,8 +69,8 @@ Eigen::Matrix<Real, 6, 1> after_impact(Real modulus, BodyDynamics dynamics) {
     return motion;
 }
 
-/// Over Hertz's: the force and the radius of the contact of an implicit ball of 0.1 m that is pressed on a plane until
-/// the radius should be a tenth of that, of `fine` elements.
+/// Contact force and radius over Hertz's, for an implicit ball of 0.1 m that is pressed on a plane until the contact
+/// radius should be a tenth of that, with `fine` elements in it.
 struct Flattened {
     Real force, radius;
 };
@@ -92,14 +92,14 @@ Flattened flatten(int fine, Real h, int steps) {
         sum += contact.impulse.z() / h;
         moment += contact.impulse.z() / h * contact.point.head<2>().squaredNorm();
     }
-    return {sum / force, std::sqrt(2.5 * moment / sum) / a};  // Hertz's pressure has a mean of r^2 of 2 a^2 / 5
+    return {sum / force, std::sqrt(2.5 * moment / sum) / a};  // the mean of r^2 under Hertz's pressure is 2 a^2 / 5
 }
 
 }  // namespace
 
 TEST_CASE("the period of an implicit rod is longer as theta says", "[scene][accuracy]") {
     constexpr Real z = 0.1;
-    // over its own: a step turns the mode by this angle
+    // Ratio to the period of the mesh: a step turns the mode by atan2(z, 1 - theta (1 - theta) z^2).
     const auto longer = [](Real theta) { return z / std::atan2(z, 1 - theta * (1 - theta) * z * z); };
     const Real own = period_of_rod(0.5, z) / longer(0.5);
     for (const Real theta : {1.0, 0.75, 0.55})
@@ -114,7 +114,7 @@ TEST_CASE("the period of an implicit rod is longer as theta says", "[scene][accu
 
 TEST_CASE("an implicit cube becomes the rigid one as it stiffens", "[scene][accuracy]") {
     const auto rigid = after_impact(1e9, BodyDynamics::rigid);
-    REQUIRE(rigid[2] > -1);  // without the floor it fell at 1.4 m/s
+    REQUIRE(rigid[2] > -1);  // without the floor the cube would fall at 1.4 m/s
     const auto apart = [&](Real modulus) {
         return (after_impact(modulus, BodyDynamics::implicit_elastic) - rigid).norm();
     };
@@ -211,7 +211,7 @@ TEST_CASE("three implicit balls in a row pass the first one's speed on", "[scene
 
 TEST_CASE("explicit, implicit and rigid bodies exchange momentum to rounding", "[scene][accuracy]") {
     World world = with_step(Vec3::Zero(), 1e-8, 1e-3);
-    // kg/m^3: masses of 1, 7 and 40 kg
+    // Densities [kg/m^3]; the masses are 1, 7 and 40 kg.
     const auto soft = world.add_material({.young_modulus = 1e5}),
                stiff = world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3, .density = 7000}),
                hard = world.add_material({.density = 40000});
@@ -221,7 +221,7 @@ TEST_CASE("explicit, implicit and rigid bodies exchange momentum to rounding", "
     };
     const Kind explicit_one{BodyDynamics::explicit_elastic, soft}, implicit{BodyDynamics::implicit_elastic, stiff},
         rigid{BodyDynamics::rigid, hard};
-    Real scale = 0;  // kg m/s, of those that are thrown
+    Real scale = 0;  // of the thrown bodies [kg m/s]
     int k = 0;
     for (const Kind& kind : {implicit, explicit_one, rigid, implicit, rigid, explicit_one}) {
         const Real speed = k == 0 ? 2 : k == 5 ? -2 : 0;

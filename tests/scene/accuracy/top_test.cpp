@@ -15,7 +15,7 @@ using accuracy::Tolerance;
 
 namespace {
 
-const Vec3 edges(0.3, 0.2, 0.1);  // m, of the free top: its moments ascend with x, y, z
+const Vec3 edges(0.3, 0.2, 0.1);  // of the free top; its principal moments ascend with x, y, z [m]
 
 Mat3 attitude(const World& world, BodyHandle body) {
     const Vec3 turn = world.pose(body).rotation;
@@ -23,7 +23,7 @@ Mat3 attitude(const World& world, BodyHandle body) {
     return angle > 0 ? Eigen::AngleAxis<Real>(angle, turn / angle).toRotationMatrix() : Mat3::Identity();
 }
 
-/// A box that turns freely, of 6 kg.
+/// A freely rotating box of 6 kg.
 struct FreeTop {
     World world;
     BodyHandle body;
@@ -43,8 +43,8 @@ struct FreeTop {
     }
 };
 
-/// rad, the largest tilt within five seconds of a cube of 0.1 m that spins about its axis above a ball joint 0.1 m
-/// below its centre, tilted by 1e-3.
+/// Largest tilt within five seconds of a cube of 0.1 m that spins about its axis above a ball joint 0.1 m below its
+/// centre. The initial tilt is 1e-3 [rad].
 Real largest_tilt(Real share) {
     constexpr Real side = 0.1, reach = 0.1, tilt = 1e-3;  // m, m, rad
     Settings settings = accurate({0, 0, -standard_gravity}, 1e-12);
@@ -96,7 +96,7 @@ TEST_CASE("a rigid wing nut turns over in the time of elliptic functions, over a
     const Real p = std::sqrt((j[2] - j[1]) * (squared - twice * j[0]) / j.prod());
     const Real k = std::sqrt((j[1] - j[0]) * (twice * j[2] - squared) / ((j[2] - j[1]) * (squared - twice * j[0])));
     const Real period = 4 * std::comp_ellint_1(k) / p;
-    std::vector<Real> passages;  // s, of the momentum through the plane across the middle axis
+    std::vector<Real> passages;  // times at which the momentum passes the plane normal to the middle axis [s]
     Real before = start.y(), energy = 0, momentum = 0;
     while (top.world.time() < 3 * period) {
         REQUIRE(top.world.advance(h).ok());

@@ -14,8 +14,8 @@ namespace {
 constexpr Real g = standard_gravity;
 constexpr Real degree = std::numbers::pi / 180;
 
-/// A block of width b and height h on an incline. Returns what it has done a second after the tilt: leant over, slid
-/// away, or neither.
+/// Behaviour of a block of width b and height h on an incline, a second after the tilt: it has toppled, slid away, or
+/// neither.
 enum class Fate { rests, slides, topples };
 
 Fate fate(Real degrees, Real mu) {
@@ -36,7 +36,7 @@ Fate fate(Real degrees, Real mu) {
 
 TEST_CASE("a block topples where tan(a) > b / h, if friction holds it", "[scene][accuracy]") {
     const Real critical = std::atan(0.5) / degree;
-    // The largest angle at which it stands and the smallest at which it topples, halved down to a hundredth of a degree
+    // Bisects to 0.01 degree between the largest angle at which it stands and the smallest at which it topples.
     Real stands = critical - 1, topples = critical + 1;
     REQUIRE(fate(stands, 0.8) == Fate::rests);
     REQUIRE(fate(topples, 0.8) == Fate::topples);
@@ -102,7 +102,7 @@ TEST_CASE("a spinning disc comes to rest after 3 omega R / (4 mu g)", "[scene][a
                      .expected = 2.0 / 3 * mu * weight * radius,
                      .found = torque,
                      .tolerance = 0.02});
-    // the last hundredth of the spin at the rate so far
+    // Extrapolates the last hundredth of the spin at the rate so far.
     const Real stop = (world.time() - begin) * omega / (omega - spin());
     INFO("spin left at 80 %: " << left);
     accuracy::check({.item = 25,

@@ -9,15 +9,15 @@ namespace skerry::test::twisted_bar_test {
 
 namespace {
 
-// m, m, Pa, s
+// [m, m, Pa, s]
 constexpr Real length = 1, width = 0.2, modulus = 1e5, turning = 2;
 
-/// J, elastic energy of a bar of 20 x 4 x 4 cells, at rest after its end has turned.
+/// Elastic energy of a bar of 20 x 4 x 4 cells at rest after its end has turned [J]
 Real energy(ElementKind kind, Real nu) {
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    // damping is about critical for bending
+    // The damping is about critical for bending.
     const auto material = world.add_material(lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 30}));
     const Mesh mesh = mesh::box({length, width, width}, {20, 4, 4});
     const auto bar = world.add_body(mesh, {.material = material, .element = kind});
@@ -31,7 +31,7 @@ Real energy(ElementKind kind, Real nu) {
     REQUIRE(world.advance(turning).ok());
     settle(world, 0.2);
     const WorldReport report = world.report();
-    REQUIRE(report.inversions == 0);  // in no step
+    REQUIRE(report.inversions == 0);  // no inversion in any step
     REQUIRE(report.folded == 0);
     return world.energy().elastic;
 }
@@ -39,10 +39,10 @@ Real energy(ElementKind kind, Real nu) {
 }  // namespace
 
 TEST_CASE("a bar is twisted by half a turn", "[scene][accuracy]") {
-    // J, of quadratic tetrahedra, six to a cell, by Newton's method: 40.767, 39.290, 39.110 with 10, 20, 30 cells along
-    // the bar, 39.227, 39.074 with 16 and 24 graded towards the ends (Richardson, with the order that the meshes show).
-    // Smoothed elements go there: 41.285, 39.238, 39.051 with 20, 40, 60 cells, linear ones more
-    // slowly: 53.564, 42.894, 40.795, 37 % too much on this mesh.
+    // Reference [J]: quadratic tetrahedra, six per cell, by Newton's method: 40.767, 39.290, 39.110 with 10, 20, 30
+    // cells along the bar, 39.227, 39.074 with 16 and 24 graded towards the ends (Richardson, with the observed order).
+    // Smoothed elements converge to it: 41.285, 39.238, 39.051 with 20, 40, 60 cells. Linear elements converge more
+    // slowly: 53.564, 42.894, 40.795. They are 37 % too high on this mesh.
     constexpr Real expected = 39.0;
     for (const auto& [kind, tolerance] : {std::pair{ElementKind::linear, 0.38}, {ElementKind::smoothed, 0.06}})
         accuracy::check({.item = 36,

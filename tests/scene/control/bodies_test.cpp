@@ -1,4 +1,4 @@
-// Positions of bodies that are set, and what many set_loads cost.
+// Setting positions of bodies, and the cost of many set_loads.
 #include <catch2/catch.hpp>
 
 #include "engine/world/world_state.h"
@@ -83,8 +83,8 @@ TEST_CASE("a body that is put into another is moved apart or refused as at a sta
     world.set_positions(scene.first, moved(scene.mesh.nodes, Mat3::Identity(), {0.12, 0, 0}));
     world.settle_start();
     REQUIRE(world.report().start_overlaps.size() == 1);
-    CHECK(world.center_of_mass(scene.first).x() < 0.11);                        // it gives way
-    CHECK(world.center_of_mass(scene.second).x() == Approx(0.2).margin(1e-9));  // has made steps
+    CHECK(world.center_of_mass(scene.first).x() < 0.11);                        // the first ball is moved away
+    CHECK(world.center_of_mass(scene.second).x() == Approx(0.2).margin(1e-9));  // the second has made steps and stays
     REQUIRE(world.advance(0.01).ok());
     world.set_positions(scene.first, moved(scene.mesh.nodes, Mat3::Identity(), {0.2, 0, 0}));
     CHECK_THROWS_WITH(world.advance(0.01), Catch::Contains("coincide"));

@@ -1,4 +1,4 @@
-// Groups, masks and pairs that are switched off.
+// Collision groups, masks, and pairs that are switched off.
 #include <catch2/catch.hpp>
 
 #include <fstream>
@@ -11,7 +11,7 @@ namespace skerry::test::collisions_test {
 
 namespace {
 
-/// A ball falls onto a floor, and another onto it.
+/// A ball that falls onto a floor, and another that falls onto the first.
 struct Stack {
     World world;
     BodyHandle lower, upper;
@@ -39,7 +39,7 @@ TEST_CASE("what is in no group that the mask of the other has falls through it",
         CHECK_FALSE(stack.world.may_collide(stack.lower, stack.upper));
         REQUIRE(stack.world.advance(1).ok());
         CHECK(stack.height(stack.lower) > 0.03);
-        CHECK(stack.height(stack.upper) < 0.06);  // through the lower one, onto the floor
+        CHECK(stack.height(stack.upper) < 0.06);  // it has fallen through the lower ball onto the floor
         stack.world.set_collision_groups(stack.floor, 1, 2);
         CHECK_FALSE(stack.world.may_collide(stack.upper, stack.floor));
         REQUIRE(stack.world.advance(0.3).ok());

@@ -1,4 +1,4 @@
-// Bodies that go on as another kind (World::set_dynamics).
+// Changes of the dynamics of a body during the run (World::set_dynamics).
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
@@ -16,7 +16,7 @@ constexpr BodyDynamics deformable = BodyDynamics::explicit_elastic, implicit = B
                        rigid = BodyDynamics::rigid;
 constexpr Real density = 1000;  // kg/m^3
 
-/// A bar of one or two materials that spins and swings in free space, and a ball beside it that it never meets.
+/// A bar of one or two materials that spins and vibrates in free space, and a distant ball that it never meets.
 struct Bar {
     World world;
     Mesh mesh = mesh::box({0.3, 0.1, 0.1}, {6, 2, 2});
@@ -47,7 +47,7 @@ struct Bar {
         mass = node_masses(world, body, mesh, density);
     }
 
-    /// Angular momentum of its nodes about the origin, kg m^2/s; of a rigid or implicit one what it carries itself.
+    /// Angular momentum about the origin, from the nodes, or from the frame of a rigid or implicit body [kg m^2/s]
     Vec3 angular_momentum() const {
         const Model& model = WorldAccess::state_of(world).model;
         const auto row = static_cast<std::size_t>(model.row(body, "test"));
@@ -59,7 +59,7 @@ struct Bar {
     }
 };
 
-/// A block on a block on a floor.
+/// Two stacked blocks on a floor.
 struct Stack {
     World world;
     std::array<BodyHandle, 2> block;
@@ -113,7 +113,7 @@ TEST_CASE("deformable and implicit bodies take each other's shape, and velocitie
         REQUIRE(elastic > 0);
         bar.world.set_dynamics(bar.body, next);
         const auto now = bar.world.positions(bar.body), moving = bar.world.velocities(bar.body);
-        // nodes as points and the solid have moments of inertia that differ: so do spins of one angular momentum
+        // Point masses and the solid have different moments of inertia: equal angular momenta give unequal spins.
         const Vec3 center = bar.world.center_of_mass(bar.body);
         Vec3 change = Vec3::Zero();
         Mat3 arms = Mat3::Zero();
@@ -132,7 +132,7 @@ TEST_CASE("deformable and implicit bodies take each other's shape, and velocitie
 
 TEST_CASE("an implicit body that deforms brings its elastic energy along, with losses, too", "[scene]") {
     Bar bar(Bar::one_material, {.young_modulus = 1e6, .poisson_ratio = 0.3, .density = density});
-    REQUIRE(bar.world.advance(0.02).ok());  // it spins, and stretches by that
+    REQUIRE(bar.world.advance(0.02).ok());  // it spins, and is stretched by the spin
     bar.world.set_dynamics(bar.body, implicit);
     const Real elastic = bar.world.energy().elastic;
     REQUIRE(elastic > 5e-5);  // J
@@ -178,7 +178,7 @@ TEST_CASE("a body goes on under its handle with all that was set of it", "[scene
     const Vec3 gain = mean_velocity(world, bar.body, bar.mass) - before;
     CHECK(gain.z() == Approx(0.01 * static_cast<Real>(bar.mesh.nodes.size()) / mass).epsilon(1e-9));
 
-    // its elements are those of one that was added so: each material has the kind that its Poisson's ratio asks for
+    // Its elements equal those of a body added in this way: the Poisson's ratio of each material decides their kind.
     Bar other;
     CHECK(other.world.stable_step() == Approx(world.stable_step()).epsilon(0.02));
 }

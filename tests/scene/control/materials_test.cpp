@@ -1,4 +1,4 @@
-// Materials and surfaces that change while the world runs.
+// Changes of materials and surface properties during the run.
 #include <catch2/catch.hpp>
 
 #include "engine/world/world_state.h"
@@ -8,7 +8,7 @@ namespace skerry::test::control_materials_test {
 
 namespace {
 
-/// Two layers of two materials, one of which changes.
+/// A bar of two layers of different materials, one of which changes.
 struct LayeredBar {
     World world;
     Mesh mesh;
@@ -87,7 +87,7 @@ TEST_CASE("what of a material cannot change is refused by name and changes nothi
     const std::uint64_t before = world.state_hash();
     CHECK_THROWS_WITH(world.set_material(rubber, {.young_modulus = -1}), Contains("young_modulus"));
     CHECK_THROWS_WITH(world.set_material(rubber, {.model = MaterialModel::linear}), Contains("model"));
-    // waves slower than light, and yet no step
+    // The waves are slower than light, and still no stable step exists.
     CHECK_THROWS_WITH(world.set_material(rubber, {.young_modulus = 1e-290, .density = 1e-306}), Contains("step"));
     CHECK(world.state_hash() == before);
     world.set_material(rubber, {.friction = 0.1, .damping = 3});
@@ -98,7 +98,7 @@ TEST_CASE("what of a material cannot change is refused by name and changes nothi
 TEST_CASE("a change of material decides anew which elements are implicit", "[scene]") {
     Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {4, 4, 4});
     for (Vec3& x : mesh.nodes)
-        if ((x - Vec3(0.025, 0, 0)).norm() < 1e-9) x.x() = 0.0015;  // a few thin elements
+        if ((x - Vec3(0.025, 0, 0)).norm() < 1e-9) x.x() = 0.0015;  // makes a few thin elements
     World world({.gravity = {0, 0, 0}});
     const auto rubber = world.add_material({});
     world.add_body(mesh, {.material = rubber});
@@ -129,7 +129,7 @@ TEST_CASE("friction of a material, a body and a collider can change while a bloc
               world.set_surface_properties(block, {.friction = 0.1});
               world.set_surface_properties(world.colliders()[0], {.friction = 0.1});
           }) == slides(0.1));
-    // by the geometric mean; the collider's own is left to the body
+    // Friction of a pair is the geometric mean. A collider without its own value uses the body's.
     CHECK(acceleration([](World& world, BodyHandle block) {
               world.set_surface_properties(block, {.friction = 0.2});
           }) == slides(0.2));
@@ -139,8 +139,8 @@ TEST_CASE("friction of a material, a body and a collider can change while a bloc
           }) == slides(0.2));
 }
 
-// Kernels leave both buffers alone, and every step swaps them: a loaded world, whose buffers are alike, had another
-// state_hash in every other step.
+// Regression: with losses off, kernels leave both buffers of the viscous strain alone, and every step swaps them. A
+// loaded world, whose buffers are equal, then had another state_hash in every other step.
 TEST_CASE("what elements have forgotten stays as it is once losses are off", "[scene]") {
     MaterialSettings rubber{.young_modulus = 1e5};
     World world({.gravity = Vec3::Zero()});

@@ -1,4 +1,4 @@
-// Colliders and attachments whose motion is set while the world runs.
+// Setting the motion of colliders and attachments during the run.
 #include <catch2/catch.hpp>
 
 #include <numbers>
@@ -151,13 +151,13 @@ TEST_CASE("a teleport touches nothing on the way, and what it lands in is treate
         World& world = scene.world;
         REQUIRE(world.advance(0.05).ok());
         const Vec3 before = world.center_of_mass(scene.ball);
-        world.set_pose(scene.box, {{0, 0, 0.3}, {0, 0, 0}});  // through the ball
+        world.set_pose(scene.box, {{0, 0, 0.3}, {0, 0, 0}});  // the box passes through the ball
         REQUIRE(world.advance(0.05).ok());
         CHECK((world.center_of_mass(scene.ball) - before).norm() < 1e-9);
         world.set_velocity(scene.box, {0, 0, -1});
         REQUIRE(world.advance(0.25).ok());
         CHECK(world.center_of_mass(scene.ball).z() < before.z() - 0.01);
-        // into it: it has made steps and stays where it is
+        // Moves the box into the ball, which has made steps and stays where it is.
         world.set_pose(scene.box, {world.center_of_mass(scene.ball) + Vec3(0, 0, 0.06), {0, 0, 0}});
         CHECK_THROWS_WITH(world.advance(1e-3), Catch::Contains("ball") && Catch::Contains("box"));
     }

@@ -1,4 +1,4 @@
-// Rays and nearest points in worlds whose bodies deform.
+// Ray casts and nearest points in worlds with deforming bodies.
 #include <catch2/catch.hpp>
 
 #include <limits>
@@ -28,7 +28,7 @@ struct Pressed {
             balls.push_back(world.add_body(mesh::ball(0.05, 4), {.material = rubber, .position = {0.15 * i, 0, 0.06}}));
     }
 
-    /// Triangles of a body, one by one.
+    /// Distance from a point to the surface of a body, by testing all triangles.
     Real nearest_of_all(BodyHandle body, const Vec3& point) const {
         Real squared = far;
         const auto x = world.positions(body);
@@ -61,7 +61,7 @@ TEST_CASE("queries answer by the shapes of now, step after step, and change no b
             REQUIRE(any);
             CHECK(any->distance <= found->distance);
             CHECK((any->point - point).norm() == Approx(any->distance).margin(1e-12));
-            // the ray to the nearest point meets it, or nothing before
+            // A ray to the nearest point hits at the distance of that point, and nothing before.
             const auto met = scene.world.cast_ray(point, any->point - point, far);
             REQUIRE(met);
             CHECK(met->distance == Approx(any->distance).margin(1e-9));

@@ -1,4 +1,4 @@
-// What is called after every step.
+// The callback that runs after every step.
 #include <catch2/catch.hpp>
 
 #include <stdexcept>

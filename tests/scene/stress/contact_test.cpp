@@ -16,8 +16,8 @@ SurfaceView view(const World& world, BodyHandle body) {
     return {world.positions(body), world.surface(body)};
 }
 
-/// How often a ray from `point` leaves through the surface less how often it enters. Of a layer whose rim goes around
-/// the ray: not 0 behind it.
+/// Number of times that a ray from `point` leaves through the surface minus the number of times that it enters. For a
+/// layer whose rim surrounds the ray it is not 0 behind the layer.
 int winding_along(const SurfaceView& surface, const Vec3& point, const Vec3& direction, Real length) {
     const Vec3 end = point + length * direction;
     int sum = 0;
@@ -55,7 +55,7 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
         const auto ball = world.add_body(
             mesh::ball(0.04, 4),
             {.material = rubber, .position = {0.007, 0.011, 0.1}, .velocity = {0, 0, -100}, .name = "ball"});
-        // The top of the sheet: what is behind it has gone through.
+        // Top face of the sheet: nodes behind it have gone through.
         std::vector<std::array<Index, 3>> top;
         for (const auto& t : world.surface(sheet)) {
             Real lowest = 1;
@@ -72,7 +72,7 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
             most_crossings = std::max(most_crossings, crossings(view(world, sheet), view(world, ball)));
         }
         int behind = 0;
-        std::vector<Index> skin;  // inner nodes know no contact: a ball this fast is pressed flat
+        std::vector<Index> skin;  // inner nodes have no contacts, and a ball this fast is pressed flat
         for (const auto& triangle : world.surface(ball)) skin.insert(skin.end(), triangle.begin(), triangle.end());
         std::sort(skin.begin(), skin.end());
         skin.erase(std::unique(skin.begin(), skin.end()), skin.end());
@@ -89,12 +89,11 @@ TEST_CASE("a ball at 100 m/s does not go through a sheet of one layer", "[scene]
 }
 
 TEST_CASE("what begins deep inside is pushed out gently", "[scene][stress]") {
-    // The push moves the nodes that are inside, at push_speed at most, and the body follows by its elasticity. A bar
-    // whose end is moved at v gets a wave that brings it to v and comes back from the far end at 2 v: so a rigid body
-    // would leave at no more than v without any energy, but a deformable one leaves at up to 2 v, with the energy of
-    // that.
+    // The push moves the nodes that are inside, with push_speed at most, and elasticity moves the rest. A bar whose end
+    // is moved at v gets a wave that brings it to v and returns from the far end with 2 v. A rigid body would leave at
+    // v at most and without energy; a deformable one leaves at up to 2 v, with the energy of that speed.
     constexpr Real radius = 0.05;
-    const Real push_speed = 0.01 * Settings{}.recovery_speed;  // without weight
+    const Real push_speed = 0.01 * Settings{}.recovery_speed;  // speed without gravity
     struct Case {
         const char* name;
         bool body;
@@ -147,7 +146,7 @@ TEST_CASE("a block on a slope of 50 degrees sticks with a friction of a thousand
     settings.gravity = tilted_gravity(50);
     BlockOnPlane scene(settings, {.young_modulus = 1e6, .friction = 1e3, .damping = 20});
     scene.settle(0.1);
-    // The nodes that touch stay where they are.
+    // The contact nodes must not move.
     const std::vector<Vec3> before(scene.world.positions(scene.block).begin(),
                                    scene.world.positions(scene.block).end());
     const Course course = follow(scene.world, 0.5, 10);
@@ -172,7 +171,7 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
         const auto cloth = world.add_material({.young_modulus = 1e5, .density = 1000, .friction = 0.8, .damping = 20});
         const Mesh mesh = mesh::box({0.1, 0.1, thickness}, {8, 8, 1});
         const auto sheet = world.add_body(mesh, {.material = cloth, .contact_distance = shell, .name = "sheet"});
-        // Two jaws come from both sides and press it to four fifths of its thickness; below them nothing.
+        // Two jaws come from both sides and press the sheet to four fifths of its thickness. There is no floor.
         const Real jaw = 0.02;
         std::vector<BodyHandle> jaws;
         for (const Real side : {-1.0, 1.0}) {
@@ -196,7 +195,7 @@ TEST_CASE("a sheet pinched between two plates holds still and flat", "[scene][st
                 if (side * block.nodes[n].z() > jaw / 2 - 1e-9) back.push_back(static_cast<Index>(n));
             world.attach(jaws.back(), back, motion);
         }
-        world.set_gravity({-9.81, 0, 0});  // along the sheet: friction holds it
+        world.set_gravity({-9.81, 0, 0});  // gravity along the sheet, which friction holds
         const Course closing = follow(world, 0.5, 50);
         const Vec3 start = world.center_of_mass(sheet);
         const Course holding = follow(world, 0.4, 40);

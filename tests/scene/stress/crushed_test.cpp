@@ -1,5 +1,5 @@
-// Stress suite: bodies deformed as far as users do it, which have to come back, and cost little more than without
-// (items 29 to 31 of docs/stress.md).
+// Stress suite: bodies deformed as strongly as users do it have to recover, at little more than the usual cost (items
+// 29 to 31 of docs/stress.md).
 #include <Eigen/SVD>
 #include <catch2/catch.hpp>
 
@@ -12,7 +12,7 @@ using namespace skerry::test::stress;
 
 namespace {
 
-/// A world without gravity, in which one body of rubber comes to rest when nothing touches it.
+/// A world without gravity with one rubber body, which comes to rest when nothing touches it.
 struct OneBody {
     World world;
     MaterialHandle rubber;
@@ -23,7 +23,7 @@ struct OneBody {
         : world([] {
               Settings weightless;
               weightless.gravity = Vec3::Zero();
-              weightless.sleep = false;  // what lies still would cost nothing
+              weightless.sleep = false;  // a sleeping body would cost nothing
               return weightless;
           }()),
           rubber(world.add_material(
@@ -40,13 +40,13 @@ struct OneBody {
         return sum / static_cast<Real>(rest.size());
     }
 
-    /// Without the spin that it flies off with, which draws it out.
+    /// Removes the spin that the body flies off with, since spin stretches it. Then waits for half a second.
     void stop() {
         world.set_velocities(body, std::vector<Vec3>(rest.size(), Vec3::Zero()));
         REQUIRE(world.advance(0.5).ok());
     }
 
-    /// m, the furthest that a node is from where it is at rest, by the rotation and place that fit best.
+    /// Largest distance of a node from its rest position, after the best rigid alignment [m]
     Real out_of_shape() const {
         const auto x = world.positions(body);
         Vec3 rest_middle = Vec3::Zero();
@@ -63,12 +63,12 @@ struct OneBody {
     }
 };
 
-/// Steps, and tries of them that were given up.
+/// Number of steps plus abandoned tries of steps.
 int tries(const Course& course) {
     return course.steps + course.shortened + course.retried;
 }
 
-/// What has to hold of a body after what was done to it, and of what it took beside the same without.
+/// Checks that the body has recovered after a disturbance, and compares the cost with an undisturbed run.
 void judge_return(int item, const std::string& scene, OneBody& of, const Course& course, const Course& undisturbed,
                   Real edge, Real times) {
     judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
@@ -82,7 +82,7 @@ void judge_return(int item, const std::string& scene, OneBody& of, const Course&
     at_most(item, scene, "out of shape at the end / edge", of.out_of_shape() / edge, 0.01);
 }
 
-/// A plate with a round hole and a round rim: part of a torus would do, a whole one does.
+/// A torus: a plate with a round hole and a round rim. Only part of it is needed.
 SurfaceMesh ring(Real hole, Real tube, Index around, Index across) {
     SurfaceMesh mesh;
     const Real turn = 2 * std::numbers::pi;

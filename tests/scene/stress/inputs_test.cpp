@@ -1,4 +1,4 @@
-// Stress suite: input that is no number or out of range at every public call (item 18 of docs/stress.md).
+// Stress suite: NaN, infinite and out-of-range input at every public call (item 18 of docs/stress.md).
 #include <catch2/catch.hpp>
 #include <functional>
 #include <limits>
@@ -16,13 +16,13 @@ namespace {
 
 constexpr Real no_number = std::numeric_limits<Real>::quiet_NaN(), inf = std::numeric_limits<Real>::infinity();
 
-/// A call that must be refused, with a message that names these parts.
+/// A call that must be refused with a message that names `object` and `field`.
 struct Refusal {
     std::string object, field;
     std::function<void()> call;
 };
 
-/// Returns what is wrong with the refusal, or nothing.
+/// Describes the fault of the refusal, or returns an empty string.
 std::string wrong_with(const Refusal& refusal) {
     const std::string who = refusal.object + "." + refusal.field;
     try {
@@ -46,7 +46,7 @@ void judge_refusals(const std::string& what, const std::vector<Refusal>& refusal
            wrong.empty() ? "all" : wrong, wrong.empty()});
 }
 
-/// Every way in which a member that must be finite can be wrong.
+/// Appends a refusal for each way in which a member that must be finite can be wrong.
 template <class Record, class Make>
 void add_bad(std::vector<Refusal>& list, const std::string& object, const std::string& field, const Record& good,
              Make make, const std::vector<std::function<void(Record&)>>& spoil) {
@@ -240,7 +240,7 @@ TEST_CASE("colliders that are no numbers or out of range are refused by name", "
 
 TEST_CASE("values that are numbers but beyond what can be calculated with change nothing and name their body",
           "[scene][stress]") {
-    // Two bodies apart: what overflows in one must not be seen in the other.
+    // Two separate bodies: an overflow in one must not affect the other.
     struct Case {
         const char* name;
         std::function<void(World&, MaterialHandle, const Mesh&)> add;

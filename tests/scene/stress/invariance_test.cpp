@@ -1,5 +1,5 @@
-// Stress suite, what users report of other engines: results that depend on the order of nodes and elements, or on the
-// units.
+// Stress suite, problems that users report of other engines: results that depend on the order of nodes and elements or
+// on the units.
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
@@ -15,10 +15,10 @@ namespace {
 
 struct Shuffled {
     Mesh mesh;
-    std::vector<std::size_t> place;  // of each node of the original
+    std::vector<std::size_t> place;  // new index of each node of the original
 };
 
-/// The same mesh in another order: nodes, elements, and the corners of each element by an even permutation.
+/// Reorders a mesh: nodes, elements, and the corners of each element by an even permutation.
 Shuffled shuffled(const Mesh& mesh, unsigned seed) {
     std::mt19937 random(seed);
     Shuffled out;
@@ -30,20 +30,20 @@ Shuffled shuffled(const Mesh& mesh, unsigned seed) {
     for (auto t : mesh.tetrahedra) {
         for (Index& n : t) n = static_cast<Index>(out.place[static_cast<std::size_t>(n)]);
         const int turns = static_cast<int>(random() % 3);
-        std::rotate(t.begin() + 1, t.begin() + 1 + turns, t.end());  // three in a circle: even
+        std::rotate(t.begin() + 1, t.begin() + 1 + turns, t.end());  // cyclic permutation of three, which is even
         out.mesh.tetrahedra.push_back(t);
     }
     std::shuffle(out.mesh.tetrahedra.begin(), out.mesh.tetrahedra.end(), random);
     return out;
 }
 
-/// A unit of length, mass and time in metres, kilograms and seconds.
+/// Units of length, mass and time in metres, kilograms and seconds.
 struct Units {
     const char* name;
     Real length, mass, time;
 };
 
-/// Two boxes dropped on a slope, the positions of the upper one's nodes in metres.
+/// Drops two boxes on a slope. Returns the positions of the upper one's nodes [m].
 std::vector<Vec3> drop_in(const Units& u, Real seconds) {
     const Real modulus = u.mass / (u.length * u.time * u.time), acceleration = u.length / (u.time * u.time);
     Settings settings;
@@ -76,8 +76,8 @@ std::vector<Vec3> drop_in(const Units& u, Real seconds) {
 }  // namespace
 
 TEST_CASE("the order of nodes and elements does not matter", "[scene][stress]") {
-    // With friction and faces that are parallel to the last bit, Coulomb's law has more than one solution, and the
-    // order picks one: there the upper box is turned a little.
+    // With friction and exactly parallel faces Coulomb's law has several solutions, and the order selects one. In that
+    // case the upper box is turned a little.
     struct Case {
         const char* name;
         Real degrees, friction;
@@ -114,7 +114,7 @@ TEST_CASE("the order of nodes and elements does not matter", "[scene][stress]") 
         Real apart = 0;
         for (const auto& other : upper)
             for (std::size_t n = 0; n < other.size(); ++n) apart = std::max(apart, (other[n] - upper[0][n]).norm());
-        // What rounding leaves of a solve to 1e-10, after some hundred steps of impacts.
+        // Rounding in solves to 1e-10, grown over some hundred steps of impacts.
         at_most(0, "node and element order: two " + std::string(c.name) + ", 0.3 s, three shuffles",
                 "positions apart / edge", apart / edge, 1e-5);
     }

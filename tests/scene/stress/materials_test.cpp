@@ -1,5 +1,5 @@
-// Stress suite: far apart masses and moduli, nearly incompressible bodies, slivers, high stacks (items 1 to 4 and 19 of
-// docs/stress.md).
+// Stress suite: large ratios of mass and modulus, nearly incompressible bodies, slivers, high stacks (items 1 to 4 and
+// 19 of docs/stress.md).
 #include <catch2/catch.hpp>
 
 #include "tests/support/elastic_body.h"
@@ -13,7 +13,7 @@ using namespace skerry::test::stress;
 
 namespace {
 
-/// Turns gravity on slowly: what a sudden weight would leave swinging is no matter of these tests.
+/// Turns gravity on slowly. The vibration after a sudden load is not a subject of these tests.
 Course load_slowly(World& world, Real seconds) {
     Course course;
     const Vec3 full = world.settings().gravity;
@@ -41,8 +41,8 @@ Real volume_of_body(const World& world, BodyHandle body) {
     return sum;
 }
 
-/// Stable step over the exact limit at rest, where all laws have the stiffness of the linear one: its differences do
-/// not suffer from slivers.
+/// Stable step over the exact limit at rest. The limit comes from the linear law, which has the same stiffness there
+/// and whose finite differences do not suffer from slivers.
 Real share_of_limit(const TetMesh& mesh, MaterialModel model, Real nu) {
     ElasticBody linear(mesh, material_constants(MaterialModel::linear, 1e5, nu, 1000));
     return stable_step_of(ElasticBody(mesh, material_constants(model, 1e5, nu, 1000))) / exact_limit(linear);
@@ -67,8 +67,8 @@ TEST_CASE("a block rests on one a millionth of its mass", "[scene][stress]") {
            loading.ok && resting.ok && loading.finite && resting.finite});
     Real speed = 0;
     for (const Vec3& v : world.velocities(upper)) speed = std::max(speed, v.norm());
-    // Loaded within three periods of the mass on its spring (0.06 s): what is left swings by a few per cent of a sag of
-    // a millimetre.
+    // The load is applied within three periods of the mass on its spring (0.06 s). The remaining vibration is a few per
+    // cent of a sag of a millimetre.
     at_most(1, scene, "speed of the heavy block at the end, m/s", speed, 0.02);
     at_most(1, scene, "penetration / edge", std::max(loading.max_penetration, resting.max_penetration) / 0.1, 1e-3);
     at_most(1, scene + ", " + text(world.report().mean_iterations) + " sweeps a region on average",
@@ -82,7 +82,7 @@ TEST_CASE("bodies with moduli from 1e3 to 1e9 Pa share a scene", "[scene][stress
     for (int k = 3; k <= 9; ++k) {
         const auto material =
             world.add_material({.young_modulus = std::pow(10.0, k), .poisson_ratio = 0.3, .damping = 5});
-        // A row on the floor, and a second row across it: every body bears on softer and on stiffer ones.
+        // A row on the floor, and a second row across it, so that every body rests on softer and on stiffer ones.
         for (int row = 0; row < 2; ++row)
             world.add_body(mesh::box({edge, edge, edge}, {2, 2, 2}),
                            {.material = material,
@@ -132,7 +132,7 @@ TEST_CASE("nearly incompressible bodies keep their volume and their step", "[sce
 
 TEST_CASE("a sliver does not shorten the step below half of what it stands", "[scene][stress]") {
     TetMesh mesh = jittered_box({3, 3, 3}, 0.1, 0, 1);
-    // An inner node goes towards the middle of the face across: altitude over edge 1e-4.
+    // Moves an inner node close to the middle of the opposite face: altitude over edge 1e-4.
     const Index inner = (1 * 4 + 1) * 4 + 1;
     const auto sliver = *std::find_if(mesh.tetrahedra.begin(), mesh.tetrahedra.end(),
                                       [&](const auto& t) { return std::find(t.begin(), t.end(), inner) != t.end(); });
@@ -153,8 +153,8 @@ TEST_CASE("a sliver does not shorten the step below half of what it stands", "[s
 }
 
 TEST_CASE("a stack of twenty soft or stiff slabs stands", "[scene][stress][slow]") {
-    // A column of its own weight buckles above (7.84 E I / (rho g A))^(1/3) (Greenhill): 1.4 m for the soft one, which
-    // is 1 m high.
+    // A column buckles under its own weight above (7.84 E I / (rho g A))^(1/3) (Greenhill). That is 1.4 m for the soft
+    // one, whose height is 1 m.
     for (const Real modulus : {5e5, 5e7}) {
         World world;
         world.add_collider(Plane{});

@@ -1,4 +1,4 @@
-// Stress suite: worlds with nearly nothing in them (item 24 of docs/stress.md).
+// Stress suite: worlds with almost no content (item 24 of docs/stress.md).
 #include <catch2/catch.hpp>
 
 #include "tests/support/stress.h"

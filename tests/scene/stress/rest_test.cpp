@@ -1,4 +1,4 @@
-// Stress suite: rest for long, restitution in stacks, bodies that come and go (items 14, 20 and 28 of docs/stress.md).
+// Stress suite: long rest, restitution in stacks, bodies that come and go (items 14, 20 and 28 of docs/stress.md).
 #include <catch2/catch.hpp>
 
 #include "tests/support/stress.h"
@@ -23,12 +23,12 @@ Real largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return largest;
 }
 
-/// Lets a settled world rest for `chunks` times `steps` steps: how far nodes drift, and by how much the energy ever
-/// rises.
+/// Lets a settled world rest for `chunks` times `steps` steps. Records the drift of nodes and the largest rise of the
+/// energy.
 struct Rest {
     Course course;
-    Real drift = 0;  // m, of any node, from where it was at the start
-    Real rise = 0;   // J, from one look to a later one
+    Real drift = 0;  // largest distance of a node from its start [m]
+    Real rise = 0;   // largest rise above an earlier minimum, sampled after each chunk [J]
     Rest(World& world, int chunks, int steps) {
         const std::vector<Vec3> start = all_positions(world);
         Real lowest = mechanical_energy(world);
@@ -56,7 +56,7 @@ void judge_rest(int item, const std::string& scene, const Rest& rest, int steps,
     at_most(item, scene, "rise of the energy / (weight times edge)", rest.rise / weight_energy, most_rise);
 }
 
-/// Three boxes of one cell, the third astride the other two.
+/// Three boxes of one cell; the third lies across the other two.
 World small_heap(Real tolerance, Real modulus, Real damping, Real sleep_speed = 0) {
     Settings settings;
     settings.tolerance = tolerance;
@@ -95,8 +95,7 @@ TEST_CASE("a heap at rest stays for a million steps", "[scene][stress][slow]") {
 }
 
 TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "[scene][stress]") {
-    // Wide faces on wide faces, with edges inside of them that bend this way and that: what the contacts do to them
-    // must not shake the tower.
+    // Wide faces on wide faces, whose inner edges bend to and fro: the contact forces must not shake the tower.
     Settings settings;
     settings.tolerance = 1e-6;
     settings.max_iterations = 2000;
@@ -112,7 +111,7 @@ TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "
         weight += world.mass(block) * standard_gravity;
     }
     REQUIRE(world.advance(4).ok());
-    const auto swing = [&world] {  // over a second
+    const auto swing = [&world] {  // largest motion within a second
         Real most = 0;
         for (int look = 0; look < 20; ++look) {
             REQUIRE(world.advance(0.05).ok());
@@ -121,7 +120,7 @@ TEST_CASE("a tower of soft blocks only loses energy while its sway dies away", "
         return most;
     };
     const Real early = swing(), weight_energy = weight * 0.1;
-    // energy as of a symplectic step swings by a thousandth of the kinetic, which is 2e-4 of this scale
+    // The energy of a symplectic method oscillates by a thousandth of the kinetic energy, which is 2e-4 of this scale.
     const Rest rest(world, 200, 20);
     const std::string scene = "tower of 3 soft blocks";
     at_most(20, scene + ", 4000 steps", "rise of the energy / (weight times height)", rest.rise / weight_energy, 1e-6);
@@ -136,7 +135,7 @@ TEST_CASE("a heap solved to the default tolerance creeps no faster than that all
     const std::string scene = "heap of 3 soft boxes, default tolerance 1e-3, 1e4 steps of " + text(1000 * h) + " ms";
     judge({20, scene, "every step taken, finite", rest.course.ok ? "all steps" : rest.course.message,
            rest.course.ok && rest.course.finite});
-    // A contact has to stop g h in each step, and is solved to the tolerance of that.
+    // A contact has to stop a velocity of g h in each step, and is solved to the tolerance relative to that.
     at_most(20, scene, "speed of creep / (tolerance g h)",
             rest.drift / seconds / (Settings{}.tolerance * standard_gravity * h), 1);
 }
@@ -166,8 +165,8 @@ TEST_CASE("balls in a bucket rest for a hundred thousand steps", "[scene][stress
     Real weight = 0;
     for (const BodyHandle body : world.bodies()) weight += world.mass(body) * standard_gravity;
     const Rest rest(world, 10, 10000);
-    // They can roll, up as well as down: a contact has to stop g h in each step, and is solved to the tolerance of
-    // that.
+    // The balls can roll up as well as down. A contact has to stop a velocity of g h in each step, and is solved to the
+    // tolerance relative to that.
     const Real h = world.stable_step(), creep = settings.tolerance * standard_gravity * h * 100000 * h;  // m
     judge_rest(0, "resting for long: 4 balls in a bucket, tolerance 1e-8, 1e5 steps", rest, 100000,
                world.mean_edge(world.bodies()[0]), weight * 0.05, creep / 0.05);
@@ -175,7 +174,7 @@ TEST_CASE("balls in a bucket rest for a hundred thousand steps", "[scene][stress
 
 namespace {
 
-/// Five boxes above each other, each a bit aside.
+/// Five boxes above each other, each shifted a little.
 World stack_of_five(Real restitution, Real apart) {
     World world;
     world.add_collider(Plane{});
@@ -206,8 +205,8 @@ TEST_CASE("boxes that fall onto each other gain no energy and end quiet, whateve
         const std::string scene = "5 boxes fall onto each other, restitution " + text(restitution) + ", 3 s";
         judge({14, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
                course.ok && course.finite});
-        // Kinetic and elastic energy are half a step apart (docs/methods/time_stepping.md 2.2): their sum wavers by a
-        // small part of what swings.
+        // Kinetic and elastic energy are half a step apart (docs/methods/time_stepping.md 2.2). Their sum therefore
+        // oscillates by a small part of the vibration energy.
         at_most(14, scene, "energy gained / in play", course.gain(), 1e-2);
         at_most(14, scene, "penetration / edge", course.max_penetration / 0.1, 1e-2);
         Real speed = 0;
@@ -215,7 +214,7 @@ TEST_CASE("boxes that fall onto each other gain no energy and end quiet, whateve
             REQUIRE(world.advance(world.stable_step() * (1 - 1e-12)).ok());
             speed = std::max(speed, largest_speed(world));
         }
-        // The stack still sways; nodes that bounce for ever were at 0.08 m/s.
+        // The stack still sways. Nodes that bounce for ever had a speed of 0.08 m/s.
         at_most(14, scene + ", then 100 steps", "largest speed, m/s", speed, 0.05);
     }
 }
@@ -225,7 +224,7 @@ TEST_CASE("a stack at rest does not notice its restitution", "[scene][stress]") 
     for (const Real restitution : {0.0, 0.5, 1.0}) {
         World world = stack_of_five(restitution, 0);
         const Vec3 gravity = world.settings().gravity;
-        for (int i = 1; i <= 100; ++i) {  // turned on slowly
+        for (int i = 1; i <= 100; ++i) {  // gravity is turned on slowly
             world.set_gravity(gravity * (i / 100.0));
             REQUIRE(world.advance(0.005).ok());
         }
@@ -241,7 +240,7 @@ TEST_CASE("a stack at rest does not notice its restitution", "[scene][stress]") 
 TEST_CASE("bodies that come and go do not touch a bit of what they have no contact with", "[scene][stress]") {
     const auto run = [](bool change) {
         Settings settings;
-        settings.step_size = 1e-4;  // the same for both, whatever bodies there are
+        settings.step_size = 1e-4;  // equal steps in both runs, whatever bodies there are
         World world(settings);
         world.add_collider(Plane{});
         const auto material = world.add_material({.young_modulus = 5e4, .friction = 0.4, .damping = 10});
@@ -253,7 +252,7 @@ TEST_CASE("bodies that come and go do not touch a bit of what they have no conta
         const auto other = add({1, 0, 0.06}), above = add({1.01, 0.01, 0.17});
         REQUIRE(world.stable_step() > 1e-4);
         REQUIRE(world.advance(0.25).ok());
-        if (change) world.remove(lower);  // the first rows: all others move
+        if (change) world.remove(lower);  // its rows are the first, so all others move
         REQUIRE(world.advance(0.1).ok());
         if (change) add({-0.2, 0, 0.2});
         REQUIRE(world.advance(0.25).ok());

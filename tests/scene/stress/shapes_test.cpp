@@ -1,5 +1,5 @@
-// Stress suite: bodies inside out, collapsed, crushed, and surfaces with triangles of no area (items 5, 6, 11 and 25 of
-// docs/stress.md).
+// Stress suite: bodies that are inverted, collapsed or crushed, and surfaces with triangles of zero area (items 5, 6,
+// 11 and 25 of docs/stress.md).
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -13,12 +13,12 @@ using namespace skerry::test::stress;
 
 namespace {
 
-/// A free box, deformed as asked, then let go.
+/// A free box that is deformed as asked and then released.
 struct LetGo {
     World world;
     BodyHandle body;
-    Real energy = 0;    // J, elastic, when let go
-    Real inverted = 0;  // share of tetrahedra, when let go
+    Real energy = 0;    // elastic energy at release [J]
+    Real inverted = 0;  // share of inverted tetrahedra at release
 
     template <class Place>
     LetGo(MaterialModel model, Place place)
@@ -38,7 +38,7 @@ struct LetGo {
         inverted = inverted_share(world, body);
     }
 
-    /// Lets go. Where it may stay as it is, only finite, the table says what it does.
+    /// Releases the box. If it need not recover, it must only stay finite, and the table records the outcome.
     void judge_recovery(int item, const std::string& scene, bool must_recover) {
         const Course course = follow(world, 2, 40);
         judge({item, scene, "every step taken, finite", course.ok ? "all steps" : course.message,
@@ -73,10 +73,10 @@ TEST_CASE("a box collapsed to a point, a line or a plane recovers or stays finit
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean})
         for (const Case& c : {Case{"a point", {0, 0, 0}}, Case{"a line", {0, 0, 1}}, Case{"a plane", {1, 1, 0}}}) {
             LetGo box(model, [&](const Vec3& x) { return Vec3(c.scale.cwiseProduct(x)); });
-            // A smooth law that knows no direction has no force at F = 0, and none across an exact line: there is no
-            // saying which way to open. It is no minimum: the next test has what is nearly there. The corotational law
-            // has a force there, but which elements end up twisted against each other, if it begins with a point, is a
-            // matter of rounding (of nine lengths of step two end so).
+            // A smooth law without a preferred direction has no force at F = 0, and none across an exact line: the
+            // direction of opening is undetermined. This is not a minimum, and the next test starts close to it. The
+            // corotational law has a force there. If it starts from a point, however, rounding decides which elements
+            // end up twisted against each other (they do for two of nine step lengths).
             const bool must_recover = c.scale.sum() == 2 || (model == MaterialModel::corotational && c.scale.sum() > 0);
             box.judge_recovery(6, "box of 384 collapsed to " + std::string(c.name) + ", " + std::string(name_of(model)),
                                must_recover);
@@ -90,11 +90,10 @@ TEST_CASE("a box pressed together to hundredths of its size recovers", "[scene][
         Real noise;  // m
         bool must_recover;
     };
-    // The short form of the stable neo-Hookean law, without the logarithm, draws together below a fifth for this
-    // Poisson ratio.
+    // The short form of the stable neo-Hookean law (no logarithm) contracts below a fifth at this Poisson's ratio.
     for (const MaterialModel model : {MaterialModel::corotational, MaterialModel::stable_neo_hookean})
-        // The last two open this way here and that way there: the tetrahedra end the right way round, but wound about
-        // an edge or twisted.
+        // The last two cases open in different directions in different places: tetrahedra end up not inverted, but
+        // wound about an edge or twisted.
         for (const Case& c :
              {Case{"to a tenth on all sides", {0.1, 0.1, 0.1}, 0, true},
               Case{"to a hundredth on all sides", {0.01, 0.01, 0.01}, 0, true},
@@ -119,12 +118,12 @@ TEST_CASE("triangles without area and edges without length do no harm to a colli
             const auto count = static_cast<Index>(slab.nodes.size());
             slab.nodes.push_back(a);                                      // on a corner
             slab.nodes.push_back({0.01, 0.02, 0.05});                     // inside the top, where the ball comes down
-            slab.nodes.push_back({0.01, 0.02, 0.05});                     // there, too
-            slab.nodes.push_back({0.02, 0.04, 0.05});                     // on a line with it
+            slab.nodes.push_back({0.01, 0.02, 0.05});                     // at the same place
+            slab.nodes.push_back({0.02, 0.04, 0.05});                     // collinear with it
             slab.triangles.push_back({first[0], count, first[1]});        // an edge without length
-            slab.triangles.push_back({count + 1, count + 2, count + 3});  // likewise
+            slab.triangles.push_back({count + 1, count + 2, count + 3});  // again an edge without length
             slab.nodes.push_back({0.03, 0.06, 0.05});
-            slab.triangles.push_back({count + 1, count + 3, count + 4});  // three on a line
+            slab.triangles.push_back({count + 1, count + 3, count + 4});  // three collinear points
         }
         world.add_collider(slab, {.position = {0, 0, -0.05}});
         world.add_body(mesh::ball(0.05, 6), {.material = material, .position = {0.01, 0.02, 0.06}});
@@ -166,7 +165,7 @@ TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
         judge({25, scene, "every step taken, finite", crushing.ok ? "all steps" : crushing.message,
                crushing.ok && crushing.finite});
         Real top = 0, bottom = 1;
-        for (const auto& triangle : world.surface(body))  // inner nodes know no floor
+        for (const auto& triangle : world.surface(body))  // inner nodes have no contact with the floor
             for (const Index n : triangle) {
                 const Real z = world.positions(body)[static_cast<std::size_t>(n)].z();
                 top = std::max(top, z);
@@ -178,7 +177,7 @@ TEST_CASE("a plate crushes a box to a tenth of its height", "[scene][stress]") {
         judge({25, scene + ", then let go", "every step taken, finite", after.ok ? "all steps" : after.message,
                after.ok && after.finite});
         follow(undisturbed, 1, 10);
-        // 0.93 under its weight; friction keeps the foot a little wider than it was
+        // The ratio is 0.93 under the body's weight; friction keeps its foot a little wider than before.
         const Real volume_ratio = world.report().worst_volume_ratio;
         const bool recovered =
             inverted_share(world, body) == 0 && std::abs(volume_ratio - undisturbed.report().worst_volume_ratio) < 0.05;

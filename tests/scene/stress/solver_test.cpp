@@ -1,4 +1,4 @@
-// Stress suite: contact problems on their own (items 10, 12, 13, 16, 17, 22 and 23 of docs/stress.md).
+// Stress suite: contact problems without a world (items 10, 12, 13, 16, 17, 22 and 23 of docs/stress.md).
 #include <catch2/catch.hpp>
 #include <numbers>
 
@@ -62,7 +62,7 @@ TEST_CASE("a hundred copies of every contact of two sheets do what one does", "[
     const SolvedScene single = once.solve(tight()), copied = often.solve(tight());
     const std::string scene = "32 contacts, each a hundred times";
     at_most(10, scene, "regions not converged", unconverged(single) + unconverged(copied), 0);
-    // 1e-10 of an impact of 1 m/s, on contacts that condition the sum a hundred times worse
+    // 1e-10 of an impact of 1 m/s; the copies make the condition number of the sum a hundred times worse.
     at_most(10, scene, "velocities apart from those of one copy, m/s",
             largest_difference(single.velocity, copied.velocity), 1e-7);
     std::vector<Vec3> sum(count, Vec3::Zero());
@@ -135,7 +135,7 @@ TEST_CASE("a hundred thousand regions of one contact are solved in closed form",
     at_least(17, "100000 masses on a floor", "regions solved in closed form", static_cast<Real>(closed), 1e5);
     Real wrong = 0;
     for (std::size_t i = 0; i < scene.stencil.size(); ++i) {
-        // docs/methods/friction.md 2.1: friction takes up to mu times the normal speed
+        // docs/methods/friction.md 2.1: friction removes up to mu times the normal speed.
         const Vec3& v = scene.velocity[i];
         const Real slide = std::max(0.0, 1 - 0.5 * -v.z() / v.head<2>().norm());
         wrong = std::max(wrong, (solved.velocity[i] - Vec3(slide * v.x(), slide * v.y(), 0)).norm());
@@ -167,7 +167,7 @@ TEST_CASE("a jam of normals at random with a friction of three is solved or flag
             const bool flag = solved.regions.status[r] == RegionStatus::iteration_limit;
             flagged += flag;
             silent += !converged && !flag;
-            worse += solved.regions.error[r] > 1.2;  // no impulse at all has about 1
+            worse += solved.regions.error[r] > 1.2;  // zero impulses have an error of about 1
         }
         worse += scene.kinetic_energy(solved.velocity) > scene.kinetic_energy(scene.velocity);
     }

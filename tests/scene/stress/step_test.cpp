@@ -1,5 +1,5 @@
-// Stress suite: steps that are too long, bodies that are too far, numbers that are too small (items 7, 26 and 27 of
-// docs/stress.md).
+// Stress suite: steps that are too long, bodies that are too far away, numbers that are too small (items 7, 26 and 27
+// of docs/stress.md).
 #include <catch2/catch.hpp>
 #include <cfenv>
 #include <cmath>
@@ -68,7 +68,7 @@ TEST_CASE(
     Real apart = 0;
     const auto at = near.positions(near.bodies()[0]), there = far.positions(far.bodies()[0]);
     for (std::size_t n = 0; n < at.size(); ++n) apart = std::max(apart, (there[n] - there[0] - (at[n] - at[0])).norm());
-    // Positions at 1e6 m are 1.2e-10 m apart; the plane does not hold it better than that.
+    // Neighbouring numbers at 1e6 m are 1.2e-10 m apart, so the plane cannot hold the body better than that.
     at_most(26, scene, "shape apart from that at the origin, m", apart, 1e-8);
     at_most(26, scene, "penetration, m", course.max_penetration, 1e-6);
 
@@ -78,7 +78,7 @@ TEST_CASE(
            !report.ok() && report.status == StepStatus::too_far && report.steps == 0 &&
                report.message().find("'far'") != std::string::npos &&
                report.message().find("local frame") != std::string::npos});
-    // One that gets there is stopped on its way.
+    // A body that flies there is stopped on its way.
     Settings settings;
     settings.gravity = Vec3::Zero();
     World flight(settings);
@@ -97,12 +97,12 @@ TEST_CASE("velocities that decay to nothing end at zero, not in denormal numbers
         settings.threads = backend == Backend::serial ? 0 : 2;
         World world(settings);
         const auto material = world.add_material({.young_modulus = 1e5, .damping = 10});
-        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {6, 6, 6});  // 1296 tetrahedra: enough for the workers
+        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {6, 6, 6});  // 1296 tetrahedra, enough to use the workers
         const auto body = world.add_body(mesh, {.material = material});
         std::vector<Vec3> tiny;
         for (const Vec3& x : mesh.nodes) tiny.push_back(1e-309 * x.normalized() + Vec3::Constant(3e-310));
         world.set_velocities(body, tiny);
-        std::fesetround(FE_UPWARD);  // stands for whatever the host has set
+        std::fesetround(FE_UPWARD);  // any rounding mode that the host may have set
         REQUIRE(world.advance(world.stable_step()).ok());
         volatile Real one = 1, little = 0x1p-60;
         const bool host_rounds_up = one + little > 1;
