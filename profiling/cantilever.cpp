@@ -17,11 +17,11 @@ namespace {
 struct Case {
     ElementKind element;
     BodyDynamics dynamics;
-    Real modulus, theta, step;  // Pa, -, s
+    Real modulus, theta, step;  // [Pa], [-], [s]
 };
 
 struct Swing {
-    Real period = 0, peak = 0;  // s, m
+    Real period = 0, peak = 0;  // [s], [m]
     Real left = 0;              // peak-to-peak amplitude of the fifth period over the first peak
     double cpu = 0;             // s, of a simulated second
 };

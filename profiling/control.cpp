@@ -18,11 +18,11 @@ using namespace skerry::profiling;
 
 namespace {
 
-constexpr Real dt = 1e-3;           // s
+constexpr Real dt = 1e-3;           // [s]
 constexpr Real radius = 0.05;       // m, of the ball
 constexpr Real half = 0.01;         // m, of a finger's thickness
 constexpr Real open = 0.0655;       // m, of the middle of a finger from that of the ball
-constexpr Real wanted = 4;          // N
+constexpr Real wanted = 4;          // [N]
 constexpr int first_counted = 200;  // ms: by then the fingers have closed
 
 struct Options {

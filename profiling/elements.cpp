@@ -115,7 +115,7 @@ double flop_rate(void (*work)(Real8&, const Real8&, const Real8&), int repeats) 
 }
 
 struct Machine {
-    double triad_cached, triad_large;  // B/s
+    double triad_cached, triad_large;  // [B/s]
     double flops, flops_fused;         // 1/s, all workers
 };
 

@@ -18,7 +18,7 @@ using namespace skerry;
 
 namespace {
 
-constexpr Real gravity = 9.81;                                 // m/s^2
+constexpr Real gravity = 9.81;                                 // [m/s^2]
 constexpr int samples_a_second = 100;                          // at which the motion is looked at
 constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // degrees from the critical angle
 
@@ -59,7 +59,7 @@ struct Motion {
     std::vector<Real> sole;    // m, mean of its nodes down the slope
     Real hop = 0;              // m, highest place of the centre of mass above where it starts
     Real energy_share = 0;     // by which energy does not add up
-    double cpu = 0;            // s
+    double cpu = 0;            // [s]
 
     void add(const Subject& subject, std::span<const Vec3> position, const Vec3& at) {
         center.push_back(at);

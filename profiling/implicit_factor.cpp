@@ -15,7 +15,7 @@ using namespace skerry;
 
 namespace {
 
-constexpr Real h = 1e-2;  // s
+constexpr Real h = 1e-2;  // [s]
 
 StiffBody stiff_cube(const Mesh& mesh) {
     const MaterialConstants material = material_constants(MaterialModel::corotational, 1e8, 0.3, 1000);
@@ -45,7 +45,7 @@ struct Steps {
 
 /// Of a cube of smoothed elements that lies on a floor, in short steps, so that explicit ones stand them, too.
 Steps time_steps(int cells, BodyDynamics dynamics) {
-    constexpr Real step = 1e-5;  // s
+    constexpr Real step = 1e-5;  // [s]
     constexpr int steps = 20;
     Settings settings;
     settings.step_size = step;
@@ -77,7 +77,7 @@ struct LargeSteps {
 
 /// Of a cube of smoothed elements that is so soft that it sinks in by a third of its height, while it does.
 LargeSteps time_large_steps(int cells, BodyDynamics dynamics) {
-    const Real step = dynamics == BodyDynamics::implicit_elastic ? 1.0 / 240 : 1e-4;  // s
+    const Real step = dynamics == BodyDynamics::implicit_elastic ? 1.0 / 240 : 1e-4;  // [s]
     Settings settings;
     settings.step_size = step;
     settings.backend = Backend::serial;

@@ -22,7 +22,7 @@ namespace {
 
 struct Fall {
     Real size = 0.3;     // m, longest extent of a mesh
-    Real modulus = 1e6;  // Pa
+    Real modulus = 1e6;  // [Pa]
     Real velocity = 5;   // m/s, down
     Real seconds = 1;    // simulated
     bool linear = false, clusters = true;

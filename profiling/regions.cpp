@@ -69,7 +69,7 @@ struct Problem {
 };
 
 struct Times {
-    std::vector<double> sweep, solve, push, order, load;  // s
+    std::vector<double> sweep, solve, push, order, load;  // [s]
     Index sweeps = 0;                                     // of the solve
 };
 

@@ -156,7 +156,7 @@ std::vector<StepProblem> profile_scenes(const SeparationOptions& options) {
     csv << "scene,bodies,handling,mode,time,contacts,regions,largest_region,seconds_separate,seconds_solve\n";
     const std::vector<int> counts = options.quick ? std::vector<int>{1, 2, 6, 16}
                                                   : std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16, 18, 20, 24, 32, 48, 64};
-    const Real settle = options.quick ? 0.15 : 0.3;  // s
+    const Real settle = options.quick ? 0.15 : 0.3;  // [s]
     std::vector<StepProblem> steps;
     for (const int balls : counts) {
         const auto build = [&](const Settings& settings) { return balls_in_bucket(settings, balls); };

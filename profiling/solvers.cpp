@@ -39,7 +39,7 @@ struct Options {
     std::string csv = "out/profiling/solvers/solvers.csv", associated;
     std::vector<Real> tolerances{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
     std::vector<std::string> methods;
-    Real cap = 2;  // s
+    Real cap = 2;  // [s]
     int rounds = 3;
     Index most_contacts = 1 << 30;
     bool quick = false, no_siconos = false, no_generated = false, no_scenes = false;

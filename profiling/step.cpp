@@ -19,7 +19,7 @@ using namespace skerry::profiling;
 namespace {
 
 struct Run {
-    double wall = 0;  // s
+    double wall = 0;  // [s]
     double cpu = 0;   // s, of all threads
     WorldReport report;
 };

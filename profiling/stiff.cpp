@@ -24,7 +24,7 @@ constexpr Real g = 9.81;
 
 struct Case {
     std::string scene;
-    Real modulus;  // Pa
+    Real modulus;  // [Pa]
     BodyDynamics dynamics;
     Real step;       // s, at most
     Real tolerance;  // of regions
