@@ -33,10 +33,10 @@ struct GravityKey {
 
 struct PrecisionScene {
     std::string name;
-    int level = 1;  // level of the mesh: proportional to the number of elements along an edge
+    int level = 1;                              // mesh level: the number of elements along an edge grows in proportion
     ElementKind element = ElementKind::linear;  // like the elements of the peers
     MaterialSettings material{};
-    Real stiffness_damping = 0;    // damping of Bullet and MuJoCo; ours is in the material [1/s] [s]
+    Real stiffness_damping = 0;    // damping of Bullet and MuJoCo; ours is a rate in the material [s]
     Real contact_distance = 1e-3;  // between a surface and the object that it touches [m]
     std::vector<GravityKey> gravity{{}};
     std::vector<PrecisionBody> bodies;
