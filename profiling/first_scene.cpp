@@ -20,7 +20,7 @@ namespace {
 
 constexpr Real gravity = 9.81;                                 // [m/s^2]
 constexpr int samples_a_second = 100;                          // rate at which the motion is sampled [1/s]
-constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // from the critical angle [degrees]
+constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // offsets from the critical angle [degrees]
 
 struct Subject {
     Mesh mesh;  // its lowest point is at z = 0 [m]

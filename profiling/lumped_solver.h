@@ -12,7 +12,7 @@
 
 namespace skerry::profiling {
 
-/// Runs on one thread, and from r = 0 after reset().
+/// Solves on one thread, and from r = 0 after reset().
 class LumpedSolver {
 public:
     explicit LumpedSolver(const LumpedContacts& contacts);

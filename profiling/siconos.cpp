@@ -34,8 +34,8 @@ struct Choice {
     double relaxation = 0;  // relaxation factor of Gauss-Seidel (PSOR)
     int freezing = 0;       // sweeps for which contacts at rest are left out
     int hybrid = -1;        // hybrid strategy of the nonsmooth Newton method
-    int balancing = -1;     // of the augmented Lagrangian
-    int symmetry = -1;      // of the augmented Lagrangian
+    int balancing = -1;     // penalty strategy of ADMM (augmented Lagrangian)
+    int symmetry = -1;      // symmetry option of ADMM (augmented Lagrangian)
     Index most_contacts = 1 << 30;
     Index first_iterations = 20;
 };

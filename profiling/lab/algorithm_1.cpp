@@ -26,8 +26,7 @@ bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass)
 Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                            std::span<Index> contact_region) {
     std::fill(contact_region.begin(), contact_region.end(), no_index);
-    std::vector<std::size_t> in_area(inverse_mass.size(),
-                                     0);  // by node: 1 + the contact i for which it was last marked
+    std::vector<std::size_t> in_area(inverse_mass.size(), 0);  // by node: 1 + the i that last marked it
     Index area_count = 0;
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         if (!has_moving_node(stencil[i], inverse_mass)) continue;

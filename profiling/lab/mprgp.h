@@ -154,8 +154,7 @@ private:
 /// this. Leaves the last impulse if it converged or the iteration count is fixed, else the best one.
 template <ContactOperator Op>
 SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
-    constexpr Index refresh_interval =
-        64;  // steps; the gradient is updated incrementally and accumulates rounding errors
+    constexpr Index refresh_interval = 64;  // steps; the updated gradient accumulates rounding errors
     ErrorTest<Op> test(op, limits);
     ProportionedGradients<Op> gradients(op);
     gradients.start();

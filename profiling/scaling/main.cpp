@@ -17,9 +17,9 @@ namespace {
 
 struct ProgramOptions {
     std::vector<std::string> scenes;
-    int pile = 0;        // balls an edge
+    int pile = 0;        // number of balls along an edge; 0: no pile
     double seconds = 0;  // simulated time, 0: as set in the scene [s]
-    int memory = 0;      // balls an edge
+    int memory = 0;      // number of balls along an edge; 0: memory is not measured
     std::string ball = "scenes/meshes/drop_ball.msh";
     std::string out = "out/profiling/scaling";
     std::string record;

@@ -20,7 +20,7 @@ public:
         : demand_(traffic.bytes_per_second), bandwidth_(machine.bandwidth) {
         const int chiplets = (cores + machine.cores_per_chiplet - 1) / machine.cores_per_chiplet;
         in_caches_ = traffic.working_set <= chiplets * machine.cache_per_chiplet;
-        // Data from elsewhere are assumed to be written by every core equally often.
+        // Every core is assumed to have written an equal part of the data that a block reads.
         const double elsewhere = 1 - 1.0 / cores, far = 1 - 1.0 / chiplets;
         moved_ = demand_ * ((elsewhere - far) / machine.near_rate + far / machine.far_rate);
         moved_of_own_ = machine.own_from_elsewhere * moved_;
@@ -163,7 +163,7 @@ double Cores::run(std::span<const StageRun> part) {
     return now_;
 }
 
-/// Adds the time of waiting cores up to `time` to the costs.
+/// Adds the time of waiting and joining cores up to `time` to the costs.
 void Cores::pass(double time) {
     const double seconds = time - passed_;
     passed_ = time;

@@ -36,8 +36,8 @@ struct SceneStudy {
     std::vector<std::string> stage_name;
     Recording recording;  // all windows, without disturbances (quiet.h)
     Traffic traffic;
-    std::map<int, double> predicted;              // s, by cores
-    std::map<int, std::vector<StageCost>> costs;  // s, by cores
+    std::map<int, double> predicted;              // by number of cores [s]
+    std::map<int, std::vector<StageCost>> costs;  // by number of cores [s]
     std::map<int, double> measured;               // by number of threads, without disturbances (quiet.h) [s]
     double others = 0;  // mean number of cores that other programs used in the runs that count
 };

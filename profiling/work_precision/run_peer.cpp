@@ -70,7 +70,7 @@ Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int re
     std::filesystem::remove(result_file);
     char numbers[128];
     std::snprintf(numbers, sizeof numbers, " --step %.17g --repeat %d --cap %g", step, repeat, cap);
-    // Messages of a peer about its errors, on its outputs or in files, are not reported. A run without a result is.
+    // Messages of a peer, on its outputs or in files, are discarded. Only the lack of a result is reported.
     const std::string command = "exec " + peer.command + " " + in_quotes(scene_file) + " " + in_quotes(result_file) +
                                 numbers + " >/dev/null 2>&1";
     Record record;

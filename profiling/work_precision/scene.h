@@ -65,13 +65,14 @@ int usual_level(std::string_view name);
 /// Makes a block on a floor. Gravity pulls it along the floor with `fraction` of the force that friction can hold. The
 /// block settles for creep_settling before its creep is measured.
 PrecisionScene make_creep_scene(Real fraction);
-inline constexpr Real creep_settling = 2.0;  // the transient of the pull decays to only 1e-9 m in one second [s]
+inline constexpr Real creep_settling =
+    2.0;  // settling time: after one second, 1e-9 m of the transient of the pull remain [s]
 inline constexpr Real creep_measured = 1.0;  // [s]
 
 /// Gives a quarter of the mass of each tetrahedron to each of its nodes.
 void set_masses(PrecisionScene& scene);
 
-/// Moves every body by a random vector of up to `amplitude` per component, never downwards [m]. Equal seeds give equal
+/// Moves every body by a random vector, never downwards, of up to `amplitude` per component [m]. Equal seeds give equal
 /// vectors.
 void perturb(PrecisionScene& scene, std::uint32_t seed, Real amplitude);
 

@@ -57,7 +57,7 @@ PrecisionScene slide(int level) {
 /// fro.
 PrecisionScene twist(int level) {
     constexpr Real length = 0.3, edge = 0.05,
-                   turning = 40;  // [m], [m], at the free end [rad/s]: about 0.9 rad of twist
+                   turning = 40;  // [m], [m], [rad/s] at the free end: about 0.9 rad of twist
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
     PrecisionBody bar =

@@ -13,7 +13,7 @@ namespace skerry::profiling {
 struct StudyOptions {
     std::vector<std::string> scenes;  // empty: all
     std::filesystem::path out = "out/profiling/work_precision";
-    std::string python = "python3";  // interpreter that may have MuJoCo
+    std::string python = "python3";  // Python that may have MuJoCo
     bool quick = false;
     bool no_peers = false;
     double cap = 6;  // CPU time of the longest run that is compared [s]

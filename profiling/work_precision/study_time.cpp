@@ -12,7 +12,7 @@ namespace {
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
 /// The reference of Skerry may take `reference_share` times as long as the longest run of a peer that is compared. Runs
-/// of Skerry are compared up to a step 2^reference_halvings times longer than that of the reference.
+/// of Skerry are compared down to a step 2^reference_halvings times longer than that of the reference.
 constexpr double reference_share = 10;
 constexpr int reference_halvings = 3;
 
@@ -73,8 +73,7 @@ void write_peers(Study& study, const PrecisionScene& scene, const Record& refere
 void study_scene(Study& study, const std::string& name) {
     PrecisionScene scene = make_scene(name, usual_level(name));
     const std::vector<SkerryVariant> variants = time_variants();
-    const Real longest =
-        0.95 * stable_step_of(scene);  // a deformed body may have a shorter stable step than one at rest
+    const Real longest = 0.95 * stable_step_of(scene);  // the stable step of a deformed body may be shorter
     cut_at_divergence(study, scene, variants.back(), longest / 8);
     const auto samples = static_cast<std::size_t>(scene.samples);
     const double first = run_skerry(scene, variants.back(), longest).seconds;
