@@ -15,8 +15,7 @@ int main() {
     auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.8, .damping = 20});
     auto ball = world.add_body(mesh::ball(0.05, 6), {.material = rubber, .position = {0, 0, 0.052}});
     world.add_collider(Plane{});
-    const Real open = 0.07,
-               half = 0.01;  // distance of a finger's centre from the ball's; half a finger's thickness [m]
+    const Real open = 0.07, half = 0.01;  // distance of the centres of finger and ball; half a finger's thickness [m]
     std::array<ColliderHandle, 2> finger;
     for (int i = 0; i < 2; ++i)
         finger[i] = world.add_collider(Box{{2 * half, 0.04, 0.04}}, {.position = {i ? open : -open, 0, 0.05}});

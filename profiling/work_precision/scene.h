@@ -65,9 +65,9 @@ int usual_level(std::string_view name);
 /// Makes a block on a floor. Gravity pulls it along the floor with `fraction` of the force that friction can hold. The
 /// block settles for creep_settling before its creep is measured.
 PrecisionScene make_creep_scene(Real fraction);
-inline constexpr Real creep_settling =
-    2.0;  // settling time: after one second, 1e-9 m of the transient of the pull remain [s]
-inline constexpr Real creep_measured = 1.0;  // [s]
+// Settling time [s]. After one second, 1e-9 m of the transient of the pull would still remain.
+inline constexpr Real creep_settling = 2.0;
+inline constexpr Real creep_measured = 1.0;  // time over which creep is measured [s]
 
 /// Gives a quarter of the mass of each tetrahedron to each of its nodes.
 void set_masses(PrecisionScene& scene);

@@ -56,8 +56,7 @@ PrecisionScene slide(int level) {
 /// A bar is held at one end and let go with a rotation about its axis that grows towards the free end. It twists to and
 /// fro.
 PrecisionScene twist(int level) {
-    constexpr Real length = 0.3, edge = 0.05,
-                   turning = 40;  // [m], [m], [rad/s] at the free end: about 0.9 rad of twist
+    constexpr Real length = 0.3, edge = 0.05, turning = 40;  // [m], [m], [rad/s] at the free end: ~0.9 rad of twist
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
     PrecisionBody bar =
