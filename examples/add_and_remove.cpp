@@ -1,5 +1,5 @@
-// Bodies come and go while the world runs; a handle names its body for as long as it lives, and is known to be stale
-// afterwards.
+// Bodies are added and removed while the world runs. A handle names its body as long as the body lives, and is known to
+// be stale afterwards.
 #include <skerry/world.h>
 
 #include <iostream>
@@ -13,11 +13,11 @@ int main() {
     world.add_collider(skerry::Bucket{.radius = 0.3, .height = 1});
     const skerry::Mesh ball = skerry::mesh::ball(0.1, 4);
 
-    // A ball every quarter of a second; there are never more than three, the oldest goes first.
+    // A ball is added every quarter of a second. There are never more than three: the oldest is removed first.
     std::vector<skerry::BodyHandle> balls;
     std::vector<skerry::BodyHandle> removed;
     for (int i = 0; i < 6; ++i) {
-        const skerry::Real side = i % 2 == 0 ? 0.05 : -0.05;  // m, so that they do not stack up in a line
+        const skerry::Real side = i % 2 == 0 ? 0.05 : -0.05;  // offset that keeps the balls from stacking in a line [m]
         balls.push_back(world.add_body(
             ball, {.material = rubber, .position = {side, 0, 0.7}, .name = "ball " + std::to_string(i)}));
         if (balls.size() > 3) {
@@ -35,7 +35,7 @@ int main() {
     bool as_expected = world.bodies() == balls && world.name(balls.front()) == "ball 3" && removed.size() == 3;
     for (const skerry::BodyHandle handle : balls) {
         const skerry::Vec3 center = world.center_of_mass(handle);
-        // In the bucket, and not through its floor.
+        // The ball is in the bucket and has not passed through its floor.
         as_expected = as_expected && world.alive(handle) && center.z() > 0.05 && center.head<2>().norm() < 0.25;
     }
     // A new body may use the memory of a removed one, but never its name.

@@ -1,4 +1,4 @@
-// What a scale reads: the contacts of a block that stands on a slope carry its weight, and friction holds it.
+// Contact forces: the contacts of a block on a slope carry its weight, and friction holds it.
 #include <skerry/world.h>
 
 #include <cmath>
@@ -6,18 +6,18 @@
 #include <stdexcept>
 
 int main() {
-    const skerry::Real slope = 0.3;  // rad, below the friction angle atan(0.5) = 0.46
+    const skerry::Real slope = 0.3;  // below the friction angle atan(0.5) = 0.46 [rad]
     skerry::World world;
     auto rubber = world.add_material({.young_modulus = 2e5, .density = 1000, .friction = 0.5, .damping = 50});
     auto block =
         world.add_body(skerry::mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {.material = rubber, .position = {0, 0, 0.0505}});
     world.add_collider(skerry::Plane{.normal = {0, 0, 1}});
-    // the floor is the slope, seen by who stands on it
+    // The floor is the slope: gravity is tilted instead of the plane.
     world.set_gravity({9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)});
 
-    // Let it settle, then add up what the contacts do in each single step of half a second.
+    // Let the block settle. Then sum up the contact impulses of every single step for half a second.
     skerry::StepReport report = world.advance(1.5);
-    skerry::Vec3 impulse = skerry::Vec3::Zero();  // N s, on the block
+    skerry::Vec3 impulse = skerry::Vec3::Zero();  // on the block [N s]
     const skerry::Real start = world.time();
     int sticking = 0, sliding = 0;
     while (report.ok() && world.time() < start + 0.5) {
@@ -30,13 +30,13 @@ int main() {
     }
     if (!report.ok()) throw std::runtime_error(report.message());
 
-    const skerry::Vec3 force = impulse / (world.time() - start);               // N, mean
-    const skerry::Vec3 weight = world.mass(block) * world.settings().gravity;  // N
+    const skerry::Vec3 force = impulse / (world.time() - start);               // mean [N]
+    const skerry::Vec3 weight = world.mass(block) * world.settings().gravity;  // [N]
     std::cout << "The block weighs " << weight.norm() << " N; the floor pushes with " << force.z()
               << " N and holds with " << -force.x() << " N of friction.\n"
               << sticking << " contacts stuck and " << sliding << " slid.\n";
 
-    // At rest the contacts carry the weight; what is left of the swinging in half a second is below a percent.
+    // At rest the contacts carry the weight. The oscillation that remains in half a second is below one percent.
     const bool as_expected = (force + weight).norm() < 0.01 * weight.norm() && sticking > 0;
     return as_expected ? 0 : 1;
 }

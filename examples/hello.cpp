@@ -11,9 +11,9 @@ int main() {
     auto ball = world.add_body(skerry::mesh::ball(0.1, 8), {.material = rubber, .position = {0, 0, 1}});
     world.add_collider(skerry::Plane{.normal = {0, 0, 1}});
 
-    skerry::Real highest = 0, lowest = 1;  // m, of any node
+    skerry::Real highest = 0, lowest = 1;  // of any node [m]
     while (world.time() < 2.0) {
-        const skerry::StepReport report = world.advance(1.0 / 60.0);  // as many stable steps as it takes
+        const skerry::StepReport report = world.advance(1.0 / 60.0);  // takes as many stable steps as needed
         if (!report.ok()) throw std::runtime_error(report.message());
 
         const std::span<const skerry::Vec3> where = world.positions(ball);  // no copy
@@ -28,7 +28,7 @@ int main() {
               << world.center_of_mass(ball).z() << " m above the floor; it touched the floor with up to "
               << report.max_contacts << " nodes.\n";
 
-    // It reached the floor, did not sink into it, and did not jump higher than it was dropped from.
+    // The ball reached the floor, did not sink into it, and did not jump higher than it was dropped from.
     const bool as_expected = lowest < 0.01 && lowest > -0.001 && highest < 1.1 && report.max_contacts > 0;
     return as_expected ? 0 : 1;
 }

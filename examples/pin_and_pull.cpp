@@ -9,8 +9,8 @@
 
 namespace {
 
-constexpr skerry::Real length = 0.5, width = 0.1;  // m
-constexpr skerry::Real young_modulus = 1e5;        // Pa
+constexpr skerry::Real length = 0.5, width = 0.1;  // [m]
+constexpr skerry::Real young_modulus = 1e5;        // [Pa]
 
 /// Local numbers of the nodes of a body in the plane x = where.
 std::vector<skerry::Index> nodes_at(const skerry::World& world, skerry::BodyHandle body, skerry::Real where) {
@@ -38,9 +38,9 @@ int main() {
     const std::vector<skerry::Index> left = nodes_at(world, bar, -length / 2), right = nodes_at(world, bar, length / 2);
     world.attach(bar, left);
 
-    // A force of 10 N along x, spread evenly over the end: a third of what each triangle bears to each of its nodes.
-    // Strain F / (E A) = 1 %.
-    const skerry::Real pull = 10;  // N
+    // A force of 10 N along x, spread evenly over the end: each triangle gives a third of its load to each of its
+    // nodes. The strain is F / (E A) = 1 %.
+    const skerry::Real pull = 10;  // [N]
     std::vector<skerry::Vec3> load(world.positions(bar).size(), skerry::Vec3::Zero());
     for (const auto& triangle : world.surface(bar)) {
         const auto at = [&](std::size_t k) -> const skerry::Vec3& {
@@ -53,7 +53,7 @@ int main() {
     }
     world.set_loads(bar, load);
     advance(world, 1.0);
-    skerry::Real end = 0;  // m, mean
+    skerry::Real end = 0;  // mean [m]
     for (const skerry::Index node : right)
         end += world.positions(bar)[static_cast<std::size_t>(node)].x() / static_cast<skerry::Real>(right.size());
     const skerry::Real strain = (end - length / 2) / length;
@@ -74,7 +74,7 @@ int main() {
     const skerry::Real back = world.positions(bar)[static_cast<std::size_t>(right.front())].x() - length / 2;
     std::cout << "Without it the end came back to " << 1000 * back << " mm.\n";
 
-    // 1 %: Hooke's law is that of small strains.
+    // The tolerance is 1 %, since Hooke's law holds for small strains.
     const bool as_expected =
         std::abs(strain - 0.01) < 0.01 * 0.01 && std::abs(stretched - 0.01) < 1e-4 && std::abs(back) < 1e-4;
     return as_expected ? 0 : 1;

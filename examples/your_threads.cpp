@@ -1,5 +1,5 @@
-// The host owns the threads: a world runs in the task arena that calls it and never outside of it, and the number of
-// threads does not change a bit of what it computes.
+// The host owns the threads. A world runs in the task arena that calls it and never outside of it. The number of
+// threads does not change a bit of the result.
 #include <skerry/world.h>
 #include <tbb/task_arena.h>
 
@@ -24,11 +24,11 @@ std::uint64_t fall(const skerry::Settings& settings) {
 }  // namespace
 
 int main() {
-    // By default a world takes the arena that its caller is in: here one of two threads of the host's.
+    // A world uses the arena of its caller by default: here an arena of the host with two threads.
     tbb::task_arena arena(2);
     const std::uint64_t in_your_arena = arena.execute([] { return fall({}); });
 
-    // Or it is given an arena of its own size.
+    // Alternatively, a world gets an arena of its own with a given number of threads.
     const std::uint64_t on_one_thread = fall({.threads = 1});
     const std::uint64_t on_four_threads = fall({.threads = 4});
 

@@ -22,7 +22,7 @@ const NamedMethod methods[] = {
     {"apgd", [](lab::AssociatedOperator& op, const SolveLimits& limits) { return lab::solve_apgd(op, limits); }},
 };
 
-/// Iterations that take about `cap` seconds.
+/// Number of iterations that take about `cap` seconds.
 Index iterations_within(const ContactProblem& problem, const NamedMethod& method, Real cap) {
     constexpr Index first = 20;
     const ProblemSolution start =

@@ -1,4 +1,4 @@
-// The associated law of friction beside Coulomb's, for profile_solvers.
+// Table of profile_solvers for the associated law of friction, in comparison with Coulomb's law.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,11 @@
 
 namespace skerry::profiling {
 
-/// A table (CSV) of solutions under the associated law by several methods, each with its error by Coulomb's law.
+/// CSV table of solutions under the associated law by several methods. Each row also has the error of the solution by
+/// Coulomb's law.
 class AssociatedTable {
 public:
-    /// `tolerances` from large to small, `cap`: seconds that a solve may take, about.
+    /// `tolerances` are sorted from large to small. `cap` is the approximate time limit of one solve [s].
     AssociatedTable(const std::filesystem::path& file, std::vector<Real> tolerances, Real cap);
 
     void add(const ContactProblem& problem);

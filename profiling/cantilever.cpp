@@ -1,5 +1,5 @@
-// profile_cantilever: the period of a stiff cantilever that is let go under gravity, what implicit steps leave of its
-// amplitude, and what they cost, for several theta and lengths of the step.
+// profile_cantilever: the period of a stiff cantilever that is let go under gravity, the amplitude that remains with
+// implicit steps, and their cost, for several theta and step sizes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,17 +17,17 @@ namespace {
 struct Case {
     ElementKind element;
     BodyDynamics dynamics;
-    Real modulus, theta, step;  // Pa, -, s
+    Real modulus, theta, step;  // [Pa], [-], [s]
 };
 
 struct Swing {
-    Real period = 0, peak = 0;  // s, m
+    Real period = 0, peak = 0;  // [s], [m]
     Real left = 0;              // peak-to-peak amplitude of the fifth period over the first peak
-    double cpu = 0;             // s, of a simulated second
+    double cpu = 0;             // CPU time per simulated second [s]
 };
 
-/// Steps from one time that half of the peak is passed downwards to the next, the mean of four; `about` where what is
-/// left is too little to tell.
+/// Mean of four periods, in steps, between downward passages of half the peak. Returns `about` if the remaining
+/// amplitude is too small to measure.
 Real period_of(const std::vector<Real>& sag, Real peak, Real about) {
     std::vector<Real> passed;
     bool high = false;
@@ -57,9 +57,9 @@ Swing measure(const Case& one) {
         if ((mesh.nodes[n] - Vec3(0.5, 0, 0)).norm() < 1e-9) tip = n;
     }
     world.attach(body, held);
-    world.advance(one.step);  // its factor, once
+    world.advance(one.step);  // computes its factor, once
     std::vector<Real> sag{0, -world.positions(body)[tip].z()};
-    const Real beam = 0.619 * std::sqrt(1e7 / one.modulus);  // s, the period by the theory of beams
+    const Real beam = 0.619 * std::sqrt(1e7 / one.modulus);  // period by the theory of beams [s]
     const auto steps = static_cast<std::size_t>(5.2 * beam / one.step);
     const double start = cpu_seconds();
     while (sag.size() < steps) {

@@ -1,6 +1,6 @@
-// profile_control: a loop of a kilohertz with a gripper. Every millisecond two fingers are told where to be, the world
-// goes on by a millisecond, and the force on them is read from the contacts of its steps. How long do these calls take,
-// and how many take no longer than what they simulate?
+// profile_control: a control loop at 1 kHz with a gripper. Every millisecond two fingers get new target positions, the
+// world advances by a millisecond, and the force on the fingers is read from the contacts of its steps. The program
+// measures how long these calls take, and how many take no longer than the time that they simulate.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -18,16 +18,16 @@ using namespace skerry::profiling;
 
 namespace {
 
-constexpr Real dt = 1e-3;           // s
-constexpr Real radius = 0.05;       // m, of the ball
-constexpr Real half = 0.01;         // m, of a finger's thickness
-constexpr Real open = 0.0655;       // m, of the middle of a finger from that of the ball
-constexpr Real wanted = 4;          // N
-constexpr int first_counted = 200;  // ms: by then the fingers have closed
+constexpr Real dt = 1e-3;           // [s]
+constexpr Real radius = 0.05;       // of the ball [m]
+constexpr Real half = 0.01;         // half the thickness of a finger [m]
+constexpr Real open = 0.0655;       // distance of a finger's centre from that of the ball at the start [m]
+constexpr Real wanted = 4;          // [N]
+constexpr int first_counted = 200;  // the fingers have closed by then [ms]
 
 struct Options {
     std::vector<int> tetrahedra{1000, 3000, 10000};
-    bool pads = false;  // deformable ones, that attachments lead; else colliders
+    bool pads = false;  // true: deformable fingers, moved by attachments; false: colliders
     Real young_modulus = 5e4;
     ElementKind element = ElementKind::smoothed;
     bool losses = true;
@@ -35,7 +35,7 @@ struct Options {
     int calls = 2000;
 };
 
-/// Both fingers, whatever they are.
+/// Both fingers, either as deformable pads or as colliders.
 class Gripper {
 public:
     Gripper(World& world, MaterialHandle rubber, const Options& options) : world_(world), pads_(options.pads) {
@@ -63,7 +63,7 @@ public:
                 world_.move_to(collider_[i], pose, dt);
         }
     }
-    /// N s, on the right finger, along x, by the contacts of the last step.
+    /// Impulse on the right finger along x, from the contacts of the last step [N s].
     Real impulse() const {
         Real sum = 0;
         for (const Contact& contact : world_.contacts()) {
@@ -83,10 +83,10 @@ private:
 
 struct Outcome {
     std::size_t tetrahedra = 0;
-    std::vector<double> seconds;  // of the calls that count
-    double steps = 0;             // a call
-    double contacts = 0;          // a step
-    Real force = 0, height = 0;   // N, m, at the end
+    std::vector<double> seconds;  // times of the calls that count [s]
+    double steps = 0;             // per call
+    double contacts = 0;          // per step
+    Real force = 0, height = 0;   // at the end [N], [m]
 };
 
 double at_fraction(const std::vector<double>& sorted, double fraction) {
@@ -98,7 +98,7 @@ Outcome run(int tetrahedra, const Options& options) {
     MaterialSettings material{.young_modulus = options.young_modulus, .density = 500, .friction = 0.8, .damping = 20};
     if (!options.losses) material.loss_factor = material.bulk_viscosity = 0;
     const MaterialHandle rubber = world.add_material(material);
-    constexpr Real of_resolution = 2.5;  // tetrahedra of a ball of resolution n, which is even: 2.5 n^3
+    constexpr Real of_resolution = 2.5;  // a ball of even resolution n has 2.5 n^3 tetrahedra
     int resolution = 2;
     while (of_resolution * std::pow(resolution + 1, 3) < tetrahedra) resolution += 2;
     const BodyHandle ball = world.add_body(

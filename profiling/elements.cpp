@@ -1,5 +1,5 @@
-// profile_elements: nanoseconds per tetrahedron of the elastic kernels, in cache and from memory, beside what the
-// machine could do.
+// profile_elements: nanoseconds per tetrahedron of the elastic kernels, in cache and from memory, beside a bound given
+// by the machine.
 //
 // The bound is the larger of bytes / bandwidth and flops / flop rate, both measured in the same run on as many workers.
 // Bandwidth is that of a triad a = b + s c over a working set of the same size as the mesh, counting the line that a
@@ -24,16 +24,16 @@ namespace {
 
 using namespace skerry;
 
-/// Elements, their nodes, and slots of the patches, a tetrahedron.
+/// Numbers of elements, of their nodes, and of slots of the patches, per tetrahedron.
 struct Density {
     double elements, nodes, slots;
 };
 
-/// What one tetrahedron costs, counted in the source. Bytes: of a node of an element its gradient (but for the first)
-/// 24 and slot 4; of a slot its node 4, position and force 32 each stored and 32 fetched before; of an element volume
-/// 8, material 0.5, with a frame 32 + 32 + 32 for the quaternions; positions 4 (0.18 nodes a tetrahedron). Flops: of a
-/// node but the first edge 3, F 18, force 15, of all the sum 3; of an element 9, and the law; a frame 172 in each of
-/// two passes (division and root count as one) and 24.
+/// Cost of one tetrahedron, counted in the source. Bytes per node of an element: gradient (except for the first node)
+/// 24, slot 4. Bytes per slot: node 4, position and force 32 each for the store and 32 each for the fetch before it.
+/// Bytes per element: volume 8, material 0.5, and with a frame 32 + 32 + 32 for the quaternions. Positions: 4 bytes
+/// (0.18 nodes per tetrahedron). Flops per node except the first: edge 3, F 18, force 15; per node: sum 3; per element:
+/// 9, and the law. A frame takes 172 flops in each of two passes (division and root count as one) and 24 more.
 struct Cost {
     double bytes, flops;
 };
@@ -47,8 +47,8 @@ Cost element_cost(MaterialModel model, const Density& of) {
         return {shared.bytes, shared.flops + law.stress_flops * of.elements};
     });
 }
-/// The gather with its kick: of a slot its force 32 and number 4 bytes, 3 additions; 0.18 nodes of 92 bytes and 15
-/// flops.
+/// Cost of the gather with its kick (velocity update). Per slot: force 32 and number 4 bytes, 3 additions. Per
+/// tetrahedron: 0.18 nodes of 92 bytes and 15 flops.
 Cost gather_cost(const Density& of) {
     return {36 * of.slots + 17, 3 * of.slots + 3};
 }
@@ -66,7 +66,7 @@ double median_seconds(int repeats, Work&& work) {
     return seconds[static_cast<std::size_t>(repeats / 2)];
 }
 
-/// Bytes a second of a triad whose three arrays fill `bytes`.
+/// Bandwidth of a triad whose three arrays fill `bytes` [bytes/s].
 double triad_bandwidth(Executor& executor, std::size_t bytes, int repeats) {
     const std::size_t count = bytes / (3 * sizeof(Real));
     Column<Real> a, b, c;
@@ -100,13 +100,13 @@ constexpr int rounds = 20000;
 [[gnu::noinline]] void multiply_and_add(Real8& x, const Real8& a, const Real8& b) {
     SKERRY_ROUNDS;
 }
-/// The same source, contracted: the only place in the project that allows it.
+/// Contracted version of multiply_and_add: the only place in the project that allows contraction.
 [[gnu::noinline, gnu::optimize("fp-contract=fast")]] void fused_multiply_add(Real8& x, const Real8& a, const Real8& b) {
     SKERRY_ROUNDS;
 }
 #undef SKERRY_ROUNDS
 
-/// Flops a second of independent multiplications and additions on one worker.
+/// Rate of independent multiplications and additions on one worker [flops/s].
 double flop_rate(void (*work)(Real8&, const Real8&, const Real8&), int repeats) {
     Real8 x = Real8{} + 1.0;
     const Real8 a = Real8{} + (1 - 1e-9), b = Real8{} + 1e-9;
@@ -115,16 +115,16 @@ double flop_rate(void (*work)(Real8&, const Real8&, const Real8&), int repeats) 
 }
 
 struct Machine {
-    double triad_cached, triad_large;  // B/s
-    double flops, flops_fused;         // 1/s, all workers
+    double triad_cached, triad_large;  // [B/s]
+    double flops, flops_fused;         // of all workers [1/s]
 };
 
 struct Row {
     std::string mesh, element, model, pass;
-    double nanoseconds, bound;  // a tetrahedron
+    double nanoseconds, bound;  // per tetrahedron [ns]
 };
 
-/// Gathers forces and kicks with them.
+/// Gathers forces and updates the velocities with them (kick).
 void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_next) {
     std::vector<Index> begin, end;
     const auto count = static_cast<Index>(body.position.size());
@@ -139,7 +139,7 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
         body.velocity, 1e-6, body.force, velocity_next);
 }
 
-/// Linear elements with every law, smoothed ones with the default law.
+/// Measures linear elements with every law, and smoothed ones with the default law.
 void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops,
              int repeats, std::vector<Row>& rows) {
     const double count = static_cast<double>(mesh.tetrahedra.size());
@@ -153,8 +153,8 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
                 density.nodes += v > 0 ? body.elements.count[b] / count : 0;
             }
         density.slots = static_cast<double>(body.patches.node.size()) / count;
-        // Two shapes in turn, deformed by a tenth and 1e-4 rad apart, as a quick step would have it: two passes of the
-        // frame.
+        // Two shapes alternate. They are deformed by a tenth and rotated by 1e-4 rad against each other, like in a fast
+        // step. The frame then needs two passes.
         std::vector<Vec3> shape[2] = {body.position, body.position};
         const Eigen::AngleAxis<Real> turn(1e-4, Vec3(1, 2, 3).normalized());
         for (std::size_t n = 0; n < shape[0].size(); ++n) {
@@ -229,7 +229,7 @@ int main(int argc, char** argv) {
     const auto executor = make_executor(backend, threads);
     const auto mesh_of = [](Index n) { return test::jittered_box({n, n, n}, 1.0 / n, 0.1, 1); };
     const test::TetMesh cached = mesh_of(cached_cells), large = mesh_of(large_cells);
-    // The small mesh with its forces takes some 200 bytes a tetrahedron: the triad in cache covers as much.
+    // The small mesh with its forces takes about 200 bytes per tetrahedron. The triad in cache covers the same size.
     const Machine machine{.triad_cached = triad_bandwidth(*executor, 200 * cached.tetrahedra.size(), 20 * repeats),
                           .triad_large = triad_bandwidth(*executor, std::size_t{256} << 20, repeats),
                           .flops = threads * flop_rate(multiply_and_add, repeats),

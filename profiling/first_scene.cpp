@@ -1,5 +1,5 @@
-// profile_first_scene: what a newcomer builds first, a body on a slope, with default settings: does it hold below the
-// critical angle, and slide above it as Coulomb says? Prints docs/first_scene.md.
+// profile_first_scene: the first scene of a newcomer, a body on a slope with default settings. Does it hold below the
+// critical angle, and slide above it by Coulomb's law? Prints docs/first_scene.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -18,14 +18,14 @@ using namespace skerry;
 
 namespace {
 
-constexpr Real gravity = 9.81;                                 // m/s^2
-constexpr int samples_a_second = 100;                          // at which the motion is looked at
-constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // degrees from the critical angle
+constexpr Real gravity = 9.81;                                 // [m/s^2]
+constexpr int samples_a_second = 100;                          // rate at which the motion is sampled [1/s]
+constexpr Real offsets[] = {-2, -0.5, -0.1, 0.1, 0.5, 2, 10};  // offsets from the critical angle [degrees]
 
 struct Subject {
-    Mesh mesh;  // m, its lowest point at z = 0
+    Mesh mesh;  // its lowest point is at z = 0 [m]
     Real friction = 0.3;
-    bool rolls = false;         // a ball: at no angle here does its contact slip
+    bool rolls = false;         // true for a ball: its contact slips at none of these angles
     std::vector<Index> sole{};  // nodes that it stands on
 };
 
@@ -49,17 +49,17 @@ Subject block(int cells = 1) {
 struct Case {
     Subject subject;
     MaterialSettings material{.young_modulus = 1e5, .poisson_ratio = 0.3};
-    Real above = 0;  // m, the lowest point above the plane
+    Real above = 0;  // initial height of the lowest point above the plane [m]
     Real step_safety = 1;
 };
 
-/// Where a body is, sample by sample.
+/// Motion of a body, sample by sample.
 struct Motion {
-    std::vector<Vec3> center;  // m, of mass
-    std::vector<Real> sole;    // m, mean of its nodes down the slope
-    Real hop = 0;              // m, highest place of the centre of mass above where it starts
-    Real energy_share = 0;     // by which energy does not add up
-    double cpu = 0;            // s
+    std::vector<Vec3> center;  // centre of mass [m]
+    std::vector<Real> sole;    // mean of the sole nodes, down the slope [m]
+    Real hop = 0;              // largest height of the centre of mass above its position at the contact distance [m]
+    Real energy_share = 0;     // relative error of the energy balance
+    double cpu = 0;            // [s]
 
     void add(const Subject& subject, std::span<const Vec3> position, const Vec3& at) {
         center.push_back(at);
@@ -67,7 +67,7 @@ struct Motion {
         for (const Index node : subject.sole) sum += position[static_cast<std::size_t>(node)].x();
         sole.push_back(sum / static_cast<Real>(subject.sole.size()));
     }
-    // over 20 ms: vibrations of the body are no motion of it
+    // Averages over 20 ms, so that vibrations of the body do not count as motion.
     Real speed_about(Real time) const {
         const auto middle = static_cast<std::size_t>(std::lround(time * samples_a_second)) - 1;
         return (center[middle + 1].x() - center[middle - 1].x()) * samples_a_second / 2;
@@ -87,7 +87,7 @@ Vec3 gravity_at(Real angle) {
     return gravity * Vec3(std::sin(angle), 0, -std::cos(angle));
 }
 
-/// m/s^2, of a rigid body that starts to move.
+/// Acceleration of a rigid body that starts to move [m/s^2].
 Real expected_acceleration(const Subject& subject, Real angle) {
     return subject.rolls ? gravity * std::sin(angle) * 5 / 7
                          : gravity * (std::sin(angle) - subject.friction * std::cos(angle));
@@ -105,7 +105,7 @@ Motion run(const Case& one, Real offset, Real seconds) {
     world.add_collider(Plane{});
     const auto body =
         world.add_body(one.subject.mesh, {.material = world.add_material(material), .position = {0, 0, one.above}});
-    const Real shell = world.contact_distance(body) / 2;  // a plane has no part in it
+    const Real shell = world.contact_distance(body) / 2;  // a plane contributes nothing to the distance
     const Real at_shell = world.center_of_mass(body).z() - one.above + shell;
 
     Motion motion;
@@ -124,7 +124,7 @@ Motion run(const Case& one, Real offset, Real seconds) {
     return motion;
 }
 
-/// Nothing where the peer did not come to the end.
+/// Runs a peer. Returns nothing if it does not reach the end.
 std::optional<Motion> run(const Case& one, Real offset, Real seconds, const profiling::Peer& peer, Real step,
                           const std::filesystem::path& folder) {
     World world;
@@ -142,7 +142,7 @@ std::optional<Motion> run(const Case& one, Real offset, Real seconds, const prof
     body.velocity.assign(body.mesh.nodes.size(), Vec3::Zero());
     scene.bodies.push_back(std::move(body));
     profiling::set_masses(scene);
-    constexpr double cap = 20;  // CPU s a run
+    constexpr double cap = 20;  // CPU time limit of a run [s]
     const profiling::Record record = profiling::run_peer(scene, peer, step, 1, cap, folder);
     if (!record.finished) return std::nullopt;
     const std::vector<Real>& masses = scene.bodies[0].mass;
@@ -166,7 +166,8 @@ std::string number(const char* format, Real value) {
     return text;
 }
 
-/// A row: slips below the critical angle, errors of the acceleration above it; of what rolls these alone.
+/// Prints a row: slip speeds below the critical angle and errors of the acceleration above it. Bodies that roll have
+/// only errors of the acceleration.
 template <class Run>
 void print_row(const std::string& head, const Subject& subject, Real seconds, Run&& run_at) {
     std::string row = "| " + head + " |";

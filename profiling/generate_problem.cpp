@@ -8,7 +8,7 @@
 namespace skerry::profiling {
 namespace {
 
-/// Numbers that are the same with every standard library: its distributions are not.
+/// Random numbers that are identical with every standard library, unlike its distributions.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -19,7 +19,7 @@ public:
         const Real x = symmetric(limit), y = symmetric(limit), z = symmetric(limit);
         return {x, y, z};
     }
-    Real normal() {  // Box and Muller
+    Real normal() {  // Box-Muller transform
         const Real radius = std::sqrt(-2 * std::log(1 - uniform()));
         return radius * std::cos(2 * std::numbers::pi * uniform());
     }
@@ -29,10 +29,10 @@ private:
 };
 
 struct Sheet {
-    Index first;             // of its nodes
-    Index nodes;             // along an edge
-    Real spacing;            // fine edges
-    std::vector<Real> x, y;  // of its nodes, moved at random
+    Index first;             // index of its first node
+    Index nodes;             // number of nodes along an edge
+    Real spacing;            // edge length, in fine edges
+    std::vector<Real> x, y;  // positions of its nodes, moved at random
 
     Index node(Index i, Index j) const { return first + i * nodes + j; }
 };
@@ -53,7 +53,7 @@ Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, Lum
         for (Index j = 0; j < sheet.nodes; ++j) {
             sheet.x.push_back(sheet.spacing * (i + random.symmetric(0.25)));
             sheet.y.push_back(sheet.spacing * (j + random.symmetric(0.25)));
-            // a coarse node stands for as much of its sheet as it covers
+            // The mass of a node is proportional to the area that it covers.
             const Real mass =
                 std::exp(0.5 * random.normal()) * sheet.spacing * sheet.spacing * (upper ? settings.mass_ratio : 1);
             out.inverse_mass.push_back(fixed ? 0 : 1 / mass);
@@ -62,8 +62,8 @@ Sheet add_sheet(const SheetSettings& settings, Index number, Random& random, Lum
     return sheet;
 }
 
-/// The points inside `from` against the triangles of `to`, taken as a regular grid: it is the places of the points that
-/// are random.
+/// Adds contacts of the interior nodes of `from` with the triangles of `to`. The triangles are those of a regular grid:
+/// only the positions of the interior nodes are random.
 void add_contacts(const Sheet& from, const Sheet& to, const Vec3& up, const SheetSettings& settings, Random& random,
                   LumpedContacts& out) {
     for (Index i = 1; i + 1 < from.nodes; ++i)

@@ -1,4 +1,4 @@
-// Contact problems made by rule, of any size and difficulty: sheets of nodes that lie on each other.
+// Generated contact problems of any size and difficulty: sheets of nodes that lie on each other.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace skerry::profiling {
 
-/// Sheets of nodes one above the other. Every node inside a sheet touches the triangle of the neighbouring sheet under
-/// or above it.
+/// Sheets of nodes one above the other. Every interior node of a sheet touches a triangle of each neighbouring sheet,
+/// above and below it.
 struct SheetSettings {
     Index sheets = 2;
-    Index nodes = 12;      // along an edge of a sheet
-    Index coarse = 1;      // the upper of two sheets has so many times longer edges
-    bool stacked = false;  // all sheets fall on the lowest, which cannot move; else the upper strikes the others
-    Real mass_ratio = 1;   // of odd sheets to even ones
-    Real tilt = 0.05;      // normals are off the vertical by up to this much in each component
+    Index nodes = 12;      // along an edge of an odd-numbered sheet
+    Index coarse = 1;      // edge length of odd-numbered sheets over that of even-numbered ones
+    bool stacked = false;  // true: all sheets fall onto sheet 0, which is fixed; false: odd sheets strike even ones
+    Real mass_ratio = 1;   // mass per area of odd sheets over that of even ones
+    Real tilt = 0.05;      // largest deviation of each component of a normal from the vertical
     Real friction = 0.5;
     std::uint64_t seed = 1;
 };
 
-/// Those contacts that can move something.
+/// Generates the sheets. Contacts without a node that can move are left out.
 LumpedContacts generate_sheets(const SheetSettings& settings);
 
 struct NamedContacts {
@@ -30,7 +30,7 @@ struct NamedContacts {
     LumpedContacts contacts;
 };
 
-/// The generated problems of profile_solvers; `quick` leaves out the largest.
+/// The generated problems of profile_solvers. `quick` leaves out the large ones.
 std::vector<NamedContacts> generate_problems(bool quick);
 
 }  // namespace skerry::profiling

@@ -1,5 +1,5 @@
-// profile_implicit_factor: what the factor of an implicit body costs, by its size, and whole steps of such bodies
-// beside explicit ones: the tables of docs/methods/implicit_bodies.md 3, 6 and 8.
+// profile_implicit_factor: cost of the factor of an implicit body by its size, and of whole steps of such bodies beside
+// explicit ones. Prints the tables of docs/methods/implicit_bodies.md 3, 6 and 8.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
@@ -15,7 +15,7 @@ using namespace skerry;
 
 namespace {
 
-constexpr Real h = 1e-2;  // s
+constexpr Real h = 1e-2;  // [s]
 
 StiffBody stiff_cube(const Mesh& mesh) {
     const MaterialConstants material = material_constants(MaterialModel::corotational, 1e8, 0.3, 1000);
@@ -40,12 +40,13 @@ void print_row(int cells) {
 }
 
 struct Steps {
-    double first = 0, later = 0;  // s of CPU time, of the first step and of one of the next
+    double first = 0, later = 0;  // CPU time of the first step, and median of the next ones [s]
 };
 
-/// Of a cube of smoothed elements that lies on a floor, in short steps, so that explicit ones stand them, too.
+/// Times steps of a cube of smoothed elements that lies on a floor. The steps are short, so that explicit ones are
+/// stable, too.
 Steps time_steps(int cells, BodyDynamics dynamics) {
-    constexpr Real step = 1e-5;  // s
+    constexpr Real step = 1e-5;  // [s]
     constexpr int steps = 20;
     Settings settings;
     settings.step_size = step;
@@ -71,13 +72,13 @@ Steps time_steps(int cells, BodyDynamics dynamics) {
 }
 
 struct LargeSteps {
-    double each = 0;                 // s of CPU time, the median
-    double newton = 0, factors = 0;  // of each
+    double each = 0;                 // CPU time of a step, median [s]
+    double newton = 0, factors = 0;  // per step of large strain
 };
 
-/// Of a cube of smoothed elements that is so soft that it sinks in by a third of its height, while it does.
+/// Times steps of a cube of smoothed elements that is so soft that it sinks in by a third of its height, while it does.
 LargeSteps time_large_steps(int cells, BodyDynamics dynamics) {
-    const Real step = dynamics == BodyDynamics::implicit_elastic ? 1.0 / 240 : 1e-4;  // s
+    const Real step = dynamics == BodyDynamics::implicit_elastic ? 1.0 / 240 : 1e-4;  // [s]
     Settings settings;
     settings.step_size = step;
     settings.backend = Backend::serial;

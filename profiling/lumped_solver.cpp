@@ -5,7 +5,7 @@
 namespace skerry::profiling {
 namespace {
 
-constexpr Real step_size = 1e-3;  // s; with gaps of zero it says nothing
+constexpr Real step_size = 1e-3;  // without effect, since all gaps are zero [s]
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Contacts of lumped masses, solved as a step of the engine solves them: separation into regions, then the stage
+// Solver of contacts of lumped masses. Like a step of the engine it separates regions and then runs the stage
 // solve_regions.
 #pragma once
 
@@ -12,19 +12,19 @@
 
 namespace skerry::profiling {
 
-/// One thread, from r = 0.
+/// Solves on one thread, and from r = 0 after reset().
 class LumpedSolver {
 public:
     explicit LumpedSolver(const LumpedContacts& contacts);
 
     void separate(ContactRegions mode = ContactRegions::separate);
-    /// The state before a solve.
+    /// Restores the state before a solve: impulses zero, velocities as given.
     void reset();
     void solve(const SolverSettings& settings);
     /// Solves the problem with a method of the lab.
     void solve(const SolverSettings& settings, lab::Method method);
 
-    const std::vector<Vec3>& impulse() const { return impulse_; }  // N s, world axes
+    const std::vector<Vec3>& impulse() const { return impulse_; }  // in world axes [N s]
     const RegionTable& regions() const { return regions_; }
     Index most_iterations() const;
 
@@ -35,7 +35,7 @@ private:
     LumpedContacts contacts_;
     std::vector<Stencil> stencil_;
     std::vector<Vec3> surface_velocity_, impulse_, velocity_, push_out_;
-    std::vector<Real> none_;  // by contact: gap, restitution
+    std::vector<Real> none_;  // zeros, one per contact: gap, restitution
     std::vector<Index> region_of_;
     std::unique_ptr<Executor> executor_ = make_executor(Backend::serial, 1);
     SeparationMemory separation_memory_;

@@ -1,4 +1,4 @@
-// What the profiling programs share: clocks, medians, and repeated timing by one rule for whatever is compared.
+// Shared tools of the profiling programs: clocks, medians, and one rule for repeated timing.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace skerry::profiling {
 
-/// CPU time of the calling thread, or of the whole process.
+/// CPU time of the calling thread, or of the whole process with CLOCK_PROCESS_CPUTIME_ID [s].
 inline double cpu_seconds(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
     timespec now{};
     clock_gettime(clock, &now);
@@ -19,7 +19,7 @@ inline double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The upper median; 0 of nothing.
+/// The upper median; 0 if there are no values.
 inline double median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -27,14 +27,14 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-/// From this on a run is timed once, by the CPU time of its thread, which other programs do not lengthen. Shorter ones
-/// are repeated and timed by the wall clock, whose reading costs less; the median drops those that were interrupted.
-inline constexpr double long_run = 5e-3;  // s
-/// How long a short run is repeated, s. A program that is in a hurry sets less.
+/// Runs of at least this length are timed once, by the CPU time of their thread, which other programs do not lengthen.
+/// Shorter ones are repeated and timed by the wall clock, which costs less to read. The median drops interrupted runs.
+inline constexpr double long_run = 5e-3;  // [s]
+/// Total time for the repeats of a short run [s]. A program may set less to finish sooner.
 inline double repeat_budget = 20e-3;
 
-/// Seconds of `run`, by the rule above; `prepare` is called before each run and not timed. solve_problem times itself
-/// in the same way.
+/// Time of `run` by the rule of long_run [s]. `prepare` is called before each run and is not timed. solve_problem times
+/// itself in the same way.
 template <class Prepare, class Run>
 double timed(Prepare&& prepare, Run&& run) {
     std::vector<double> seconds;

@@ -1,5 +1,5 @@
-// profile_meshes: what meshes as people have them cost beside good ones: each dropped alone, and a box of about as many
-// tetrahedra with the same mean edge, in turns. A table of docs/step_length.md.
+// profile_meshes: cost of meshes as users have them, beside good ones. Each mesh is dropped alone, in turns with a box
+// of about as many tetrahedra and the same mean edge. Prints a table of docs/step_length.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -21,20 +21,20 @@ using namespace skerry::profiling;
 namespace {
 
 struct Fall {
-    Real size = 0.3;     // m, longest extent of a mesh
-    Real modulus = 1e6;  // Pa
-    Real velocity = 5;   // m/s, down
-    Real seconds = 1;    // simulated
+    Real size = 0.3;     // longest extent of a mesh [m]
+    Real modulus = 1e6;  // [Pa]
+    Real velocity = 5;   // downwards [m/s]
+    Real seconds = 1;    // simulated time [s]
     bool linear = false, clusters = true;
 };
 
 struct Outcome {
     std::string name;
-    std::vector<double> search, rest;  // CPU s, of each round: until clusters are found; from then on
+    std::vector<double> search, rest;  // CPU time of each round until clusters are found, and from then on [s]
     WorldReport at_start, report;
 };
 
-/// As long as the others are, its lowest point at z = 0.
+/// Scales a mesh and moves its lowest point to z = 0.
 Mesh placed(Mesh mesh, Real scale) {
     Real lowest = std::numeric_limits<Real>::infinity();
     for (Vec3& node : mesh.nodes) lowest = std::min(lowest, (node *= scale).z());
@@ -42,7 +42,7 @@ Mesh placed(Mesh mesh, Real scale) {
     return mesh;
 }
 
-/// A box that is nearly a cube, of about as many tetrahedra with that mean edge (m).
+/// Returns a box that is nearly a cube, with about `tetrahedra` tetrahedra and the given mean edge [m].
 Mesh box_like(std::size_t tetrahedra, Real mean_edge) {
     const Real cells = static_cast<Real>(tetrahedra) / 6;
     const int most = std::max(1, static_cast<int>(std::ceil(std::cbrt(cells))));

@@ -1,5 +1,5 @@
 // profile_regions: one large region of two sheets in contact, swept in order by one thread and in its coloured order by
-// several: what a sweep costs, how long it takes to a given error, and what ordering and loading cost beside it.
+// several. Measures the time of a sweep and of a solve to a given error, and the cost of ordering and loading.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ using namespace skerry::profiling;
 
 namespace {
 
-/// The region of a scene, loaded in the coloured order, or in its own where `coloured` is false.
+/// The region of a scene, loaded in the coloured order, or in its own order if `coloured` is false.
 struct Problem {
     Problem(const ContactScene& scene, Executor& executor, Team& team, bool coloured)
         : velocity_next(scene.velocity),
@@ -45,7 +45,7 @@ struct Problem {
         scale = loaded.scale;
     }
 
-    /// The split impulse, as if every third contact were pressed in.
+    /// Solves the split impulse with gaps of -1e-3 m at every third contact.
     template <class Walk>
     void push(const Walk& walk) {
         RegionInputs pressed = inputs;
@@ -56,7 +56,7 @@ struct Problem {
     }
 
     std::vector<Vec3> velocity_next, impulse_out, push_out;
-    std::vector<Real> gap;  // m, by row
+    std::vector<Real> gap;  // by row [m]
     SolverSettings settings{.method = SolverMethod::ags};
     RegionInputs inputs;
     RegionOutputs out;
@@ -69,16 +69,16 @@ struct Problem {
 };
 
 struct Times {
-    std::vector<double> sweep, solve, push, order, load;  // s
-    Index sweeps = 0;                                     // of the solve
+    std::vector<double> sweep, solve, push, order, load;  // [s]
+    Index sweeps = 0;                                     // number of sweeps of the solve
 };
 
-/// Milliseconds by the wall clock: of a sweep, the acceleration included, and of a solve.
+/// Measures wall times of a sweep (with acceleration), of loading, of a solve and of the split impulse [s].
 template <class Walk>
 void measure(Problem& problem, Team& team, const Walk& walk, const SolveLimits& limits, Times& times) {
     LumpedOperatorBy<Walk> op(problem.memory, Friction::cone, problem.scale, walk);
     op.remember();
-    constexpr double long_enough = 20e-3;  // s, also for the system to find a core for each worker
+    constexpr double long_enough = 20e-3;  // also enough for the system to find a core for each worker [s]
     std::vector<double> sweeps;
     double start = wall_seconds();
     for (const double begin = start; start < begin + long_enough;) {
@@ -141,7 +141,7 @@ void profile(Index contacts, const std::vector<int>& threads, const std::vector<
         for (const Case& each : cases) {
             Times& times = all[each.name];
             team.gather(*each.executor, [&] {
-                coloured.kept.moving[0][0] ^= 1;  // not the nodes that were there: to be ordered again
+                coloured.kept.moving[0][0] ^= 1;  // marks the nodes as changed, so that the region is ordered again
                 const double start = wall_seconds();
                 order_region(coloured.inputs, coloured.row, team, coloured.data.place.span(), coloured.kept);
                 times.order.push_back(wall_seconds() - start);

@@ -1,4 +1,4 @@
-// profile_rest: what a step costs when all bodies rest, over what it costs while they move: the table of
+// profile_rest: cost of a step when all bodies rest, over its cost while they move. Prints the table of
 // docs/methods/skipping.md 3.2.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,7 +16,7 @@ using namespace skerry::profiling;
 
 namespace {
 
-/// CPU seconds of a step, mean over `seconds` in frames of this length.
+/// Mean CPU time of a step over `seconds`, advanced in frames of length `frame` [s].
 double cost_of_step(World& world, double seconds, double frame) {
     const double end = world.time() + seconds;
     std::uint64_t steps = 0;
@@ -35,8 +35,7 @@ bool all_rest(const World& world) {
     return true;
 }
 
-/// How far the contacts of a body that rests are from carrying its weight, over its weight: the worst body, and the
-/// mean.
+/// Sum of the weight and the contact forces of a resting body, over its weight: of the worst body, and the mean.
 struct Missing {
     double worst = 0, mean = 0;
 };

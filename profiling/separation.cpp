@@ -1,4 +1,4 @@
-// profile_separation: what the paper reports of region separation and of its solver, measured again.
+// profile_separation: repeats the measurements of the paper on region separation and on its solver.
 // profiling/plot_separation.py reads the tables.
 #include "profiling/separation.h"
 

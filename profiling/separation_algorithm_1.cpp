@@ -12,7 +12,7 @@
 namespace skerry::profiling {
 namespace {
 
-/// A line of the table. The paper's algorithm takes quadratic time: both are timed once.
+/// Writes a line of the table. The paper's algorithm takes quadratic time, so both are timed only once.
 void compare(const std::string& name, const LumpedContacts& contacts, std::ofstream& csv) {
     std::vector<Stencil> stencil;
     for (std::size_t i = 0; i < contacts.node.size(); ++i) stencil.push_back({contacts.node[i], contacts.weight[i]});

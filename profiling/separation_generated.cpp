@@ -9,9 +9,9 @@
 namespace skerry::profiling {
 namespace {
 
-/// Small piles side by side, each a region of eight contacts.
+/// Makes small piles side by side, each a region of eight contacts.
 LumpedContacts make_piles(Index piles) {
-    constexpr int kinds = 16;  // different piles; then they repeat
+    constexpr int kinds = 16;  // number of different piles, which then repeat
     std::vector<LumpedContacts> kind;
     for (int k = 0; k < kinds; ++k)
         kind.push_back(generate_sheets({.nodes = 4, .seed = static_cast<std::uint64_t>(k + 1)}));
@@ -34,7 +34,7 @@ LumpedContacts make_piles(Index piles) {
     return all;
 }
 
-/// The two stages on them.
+/// Separation and solution of the piles.
 struct Stages {
     explicit Stages(Index piles) : solver(make_piles(piles)) {}
 
@@ -72,7 +72,7 @@ void profile_regions_of_one_size(const SeparationOptions& options) {
     }
 }
 
-/// One sweep is the difference of runs that do n and 2 n of them: loading and writing back are in both.
+/// Measures one sweep as the difference of runs of n and 2 n sweeps: loading and writing back are in both.
 void profile_sweep(const SeparationOptions& options) {
     std::ofstream csv(options.out / "sweep.csv");
     csv << "contacts,seconds_separate,seconds_sweep\n";
@@ -87,7 +87,7 @@ void profile_sweep(const SeparationOptions& options) {
         SolverSettings twice = once;
         twice.max_iterations = 2 * sweeps;
         for (int round = 0; round < 3; ++round) {
-            // one region of all: the sweep runs through memory as the separation does
+            // All contacts form one region: the sweep then runs through memory like the separation.
             separate.push_back(stages.separate(ContactRegions::separate));
             stages.separate(ContactRegions::global);
             const double first = stages.solve(once);

@@ -11,7 +11,7 @@
 namespace skerry::profiling {
 namespace {
 
-/// Problems of the scenes and generated ones, each with the name of its kind.
+/// A problem of a scene or a generated one, with the name of its kind.
 struct Case {
     std::string kind;
     ContactProblem problem;

@@ -11,8 +11,8 @@
 namespace skerry::profiling {
 namespace {
 
-/// How the contacts of a run are handled. The paper: its combined solver, cold, since it keeps nothing from one step to
-/// the next.
+/// Handling of the contacts of a run. The paper uses its combined solver without warm start, since it keeps nothing
+/// from one step to the next.
 struct Handling {
     const char* name;
     SolverMethod method;
@@ -30,7 +30,7 @@ Settings settings_of(const Handling& handling, ContactRegions mode) {
     settings.contact_regions = mode;
     settings.method = handling.method;
     settings.warm_start = handling.warm_start;
-    settings.sleep = false;  // what has settled is to be solved
+    settings.sleep = false;  // settled bodies are to be solved
     return settings;
 }
 
@@ -41,7 +41,7 @@ World balls_in_bucket(const Settings& settings, int balls) {
     world.add_collider(Bucket{.radius = 0.3, .height = 0.5, .thickness = 0.05}, {.friction = 0.5});
     const Mesh ball = mesh::ball(0.05, 4);
     for (int i = 0; i < balls; ++i) {
-        // layers of four by four, each turned a little so that no ball stands on the top of another
+        // Layers of four by four. Every second layer is shifted a little so that no ball stands on the top of another.
         const int layer = i / 16, row = i / 4 % 4, column = i % 4;
         const Real shift = 0.02 * (layer % 2) - 0.165;
         world.add_body(
@@ -73,7 +73,7 @@ double stage_seconds(const WorldReport& report, const char* name) {
     return 0;
 }
 
-/// Advances by `frame` and writes what the contacts of its steps took on average.
+/// Advances by `frame` and writes the mean contact counts and times of its steps.
 void measure_frame(World& world, Real frame, const std::string& labels, std::ofstream& csv) {
     const WorldReport before = world.report();
     const StepReport step = world.advance(frame);
@@ -91,7 +91,7 @@ void measure_frame(World& world, Real frame, const std::string& labels, std::ofs
         << ',' << seconds("contact/separate_regions") << ',' << seconds("solver/solve_regions") << '\n';
 }
 
-/// Two worlds that differ in nothing but how contacts are grouped, in turns.
+/// Measures two worlds in turns. They differ only in how contacts are grouped.
 void compare(const std::string& scene, int bodies, Real settle, Real seconds, Real frame,
              const std::function<World(const Settings&)>& build, std::ofstream& csv) {
     for (const Handling& handling : handlings) {
@@ -109,7 +109,7 @@ void compare(const std::string& scene, int bodies, Real settle, Real seconds, Re
     }
 }
 
-/// Adds the contact problems of some steps of a scene, after `settle`.
+/// Adds the contact problem of every `every`-th step of a scene, after it has settled for `settle` [s].
 void take_problems(World world, Real settle, Real seconds, std::uint64_t every, const std::string& name,
                    std::vector<StepProblem>& steps) {
     if (settle > 0) world.advance(settle);
@@ -122,7 +122,8 @@ void take_problems(World world, Real settle, Real seconds, std::uint64_t every, 
     world.advance(seconds);
 }
 
-/// The same problem with a block for every pair of contacts, mostly zeros: solve_problem then takes all for one region.
+/// Returns the problem with a block for every pair of contacts, mostly zeros: solve_problem then takes all for one
+/// region.
 ContactProblem filled(const ContactProblem& problem) {
     const Index contacts = problem.contacts();
     ContactProblem full;
@@ -156,7 +157,7 @@ std::vector<StepProblem> profile_scenes(const SeparationOptions& options) {
     csv << "scene,bodies,handling,mode,time,contacts,regions,largest_region,seconds_separate,seconds_solve\n";
     const std::vector<int> counts = options.quick ? std::vector<int>{1, 2, 6, 16}
                                                   : std::vector<int>{1, 2, 3, 4, 6, 8, 12, 16, 18, 20, 24, 32, 48, 64};
-    const Real settle = options.quick ? 0.15 : 0.3;  // s
+    const Real settle = options.quick ? 0.15 : 0.3;  // [s]
     std::vector<StepProblem> steps;
     for (const int balls : counts) {
         const auto build = [&](const Settings& settings) { return balls_in_bucket(settings, balls); };
@@ -174,7 +175,7 @@ void profile_dense(const SeparationOptions& options, const std::vector<StepProbl
     std::ofstream csv(options.out / "dense.csv");
     csv << "scene,problem,contacts,regions,seconds_global,seconds_separate,seconds_sparse\n";
     const ProblemSettings settings{.method = SolverMethod::pcg_pgs, .tolerance = 1e-3, .max_iterations = 200};
-    constexpr Index most_contacts = 1000;  // a matrix of 72 MB
+    constexpr Index most_contacts = 1000;  // limits the matrix to 72 MB
     for (const StepProblem& step : steps) {
         if (step.problem.contacts() > most_contacts) continue;
         std::fprintf(stderr, "\r\033[K%s, dense, %d contacts", step.problem.name.c_str(), step.problem.contacts());

@@ -22,19 +22,20 @@ namespace {
 
 enum class Storage { blocks, sparse, dense };
 
-/// A choice of solver and of what differs from its defaults.
+/// A solver, and its options that differ from the defaults.
 struct Choice {
     const char* name;
     int solver;
     Storage storage = Storage::blocks;
-    int local_solver = 0;  // of Gauss-Seidel; 0: the default, a Newton method with a projection before it
-    // measure the whole error every so many sweeps; 0: the default, the change of a sweep and a full test at the end
+    int local_solver = 0;  // local solver of Gauss-Seidel; 0: the default, a Newton method after a projection
+    // Number of sweeps between measurements of the full error; 0: the default, the change of a sweep and a full test at
+    // the end.
     int full_error = 0;
-    double relaxation = 0;  // of Gauss-Seidel: PSOR
+    double relaxation = 0;  // relaxation factor of Gauss-Seidel (PSOR)
     int freezing = 0;       // sweeps for which contacts at rest are left out
-    int hybrid = -1;        // of the nonsmooth Newton method
-    int balancing = -1;     // of the augmented Lagrangian
-    int symmetry = -1;      // of the augmented Lagrangian
+    int hybrid = -1;        // hybrid strategy of the nonsmooth Newton method
+    int balancing = -1;     // penalty strategy of ADMM (augmented Lagrangian)
+    int symmetry = -1;      // symmetry option of ADMM (augmented Lagrangian)
     Index most_contacts = 1 << 30;
     Index first_iterations = 20;
 };
@@ -111,7 +112,7 @@ SolverOptions* make_options(const Choice& choice, Real tolerance, Index max_iter
     return options;
 }
 
-/// Sends what is printed nowhere: some of Siconos' solvers print whatever its verbosity is.
+/// Discards all output: some of Siconos' solvers print at any verbosity.
 class Silence {
 public:
     Silence() {
@@ -134,7 +135,7 @@ private:
     int kept_[2] = {dup(1), dup(2)};
 };
 
-/// Siconos leaves a failed call by a jump: nothing with a destructor may live in here.
+/// Siconos leaves a failed call by a long jump, so nothing with a destructor may live in here. Returns -1 in that case.
 [[gnu::noinline]] int call_driver(FrictionContactProblem* problem, double* reaction, double* velocity,
                                   SolverOptions* options) {
     if (SN_SETJMP_EXTERNAL_START != 0) return -1;
@@ -172,7 +173,7 @@ struct SiconosProblem::Data {
         return &blocks;
     }
 
-    /// Siconos writes nothing into the blocks; its types do not say so, hence the copies.
+    /// Fills the block matrix with copies: Siconos does not write into the blocks, but its types are not const.
     void fill_blocks() {
         const std::size_t contacts = problem.q.size();
         for (Mat3& b : block) block_pointer.push_back(b.data());
@@ -216,7 +217,7 @@ struct SiconosProblem::Data {
 
 SiconosProblem::SiconosProblem(const ContactProblem& problem) : data_(std::make_unique<Data>(problem)) {
     numerics_set_verbose(0);
-    // one thread, as ours; Siconos is linked to whatever BLAS the system chose
+    // Siconos uses one thread, like Skerry. It is linked to the BLAS that the system chose.
     using SetThreads = void (*)(int);
     if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
         set_threads(1);

@@ -1,4 +1,4 @@
-// Siconos' solvers of the same problems, when its package is there. This header knows none of its types.
+// Solution of the same problems by Siconos, where its package is installed. This header uses none of its types.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 namespace skerry::profiling {
 
 struct SiconosSolution {
-    std::vector<Vec3> reaction;  // N s
+    std::vector<Vec3> reaction;  // [N s]
     double seconds = 0;
     Index iterations = 0;
-    bool finished = false;  // Siconos itself says that it reached what it was asked for
+    bool finished = false;  // Siconos reports that it reached the requested tolerance
 };
 
-/// A problem in the storages that Siconos' solvers ask for, made beforehand: none of it is timed.
+/// A problem in the storage formats of Siconos' solvers. Building them is not timed.
 class SiconosProblem {
 public:
     explicit SiconosProblem(const ContactProblem& problem);
     ~SiconosProblem();
 
-    /// Solves from r = 0 with the variant of this number (siconos_variants), repeated and timed as `timed` does it. The
-    /// options of a solver are made anew for each run, outside of the timing.
+    /// Solves from r = 0 with the variant at this index of siconos_variants(). It is repeated and timed by timed()
+    /// (measure.h). The options of a solver are created anew for each run, outside of the timing.
     SiconosSolution solve(std::size_t variant, Real tolerance, Index max_iterations);
 
 private:
@@ -33,11 +33,11 @@ private:
 
 struct SiconosVariant {
     std::string name;
-    Index most_contacts;     // larger problems would take it more time or memory than the comparison has
-    Index first_iterations;  // of the run that finds out what an iteration costs
+    Index most_contacts;     // larger problems are skipped, since they take too much time or memory
+    Index first_iterations;  // iterations of the run that measures the cost of an iteration
 };
 
-/// All variants; none when the program was built without Siconos.
+/// All variants; empty if the program was built without Siconos.
 const std::vector<SiconosVariant>& siconos_variants();
 
 }  // namespace skerry::profiling

@@ -1,4 +1,4 @@
-// Stands for siconos.cpp where the package is missing.
+// Replaces siconos.cpp where the package is missing.
 #include "profiling/siconos.h"
 
 namespace skerry::profiling {

@@ -1,5 +1,5 @@
-// profile_slivers: what a few flat tetrahedra cost: boxes that fall onto each other, with slivers and without, in
-// turns. A table of docs/step_length.md.
+// profile_slivers: cost of a few flat tetrahedra. Boxes fall onto each other, with slivers and without, in turns.
+// Prints a table of docs/step_length.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -25,7 +25,7 @@ struct Pile {
 
 struct Outcome {
     std::string name;
-    std::vector<double> cpu;  // s, of each round
+    std::vector<double> cpu;  // CPU time of each round [s]
     WorldReport report;
 };
 

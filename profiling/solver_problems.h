@@ -1,4 +1,4 @@
-// The problems that profile_solvers runs: FCLIB files, steps of scenes, and problems made by rule.
+// Problems of profile_solvers: FCLIB files, steps of scenes, and generated problems.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,16 @@ namespace skerry::profiling {
 struct SolverProblem {
     std::string origin;
     ContactProblem problem;
-    std::optional<LumpedContacts> lumped;  // where it has that form
+    std::optional<LumpedContacts> lumped;  // only if the problem has that form
 };
 
 using TakeProblem = std::function<void(const SolverProblem&)>;
 
-/// Files, and files in folders, in the order of their names.
+/// Reads files, and files in folders in the order of their names.
 void read_problems(const std::vector<std::string>& inputs, const TakeProblem& take);
 
-/// Of a scene "FILE:STEP,STEP...", the contact problems of those steps, tolerance and solver as the scene has them.
+/// Takes the contact problems of some steps of a scene, given as "FILE:STEP,STEP...". Tolerance and solver are those of
+/// the scene.
 void step_problems(const std::string& scene_and_steps, const TakeProblem& take);
 
 void generated_problems(bool quick, const TakeProblem& take);

@@ -1,11 +1,11 @@
-// profile_solvers: every method on every contact problem, beside Siconos where it is installed: a table of seconds,
-// iterations and errors for several tolerances (CSV). profiling/plot_solvers.py reads it.
+// profile_solvers: runs every method on every contact problem, beside Siconos where it is installed. Writes a table
+// (CSV) of seconds, iterations and errors for several tolerances. profiling/plot_solvers.py reads it.
 //
-// Contacts of lumped masses are solved twice by ours: as general blocks, as Siconos gets them, and as a step solves
-// them ("METHOD, lumped"). The methods of the lab (profiling/lab) are run in the same two ways. Ours and theirs run in
-// the same process and in turns, on one thread, each from r = 0 until its own test says that the tolerance is reached.
-// The error in the table is measured apart, by problem_error, for both. Where Siconos ends short of the tolerance by
-// that measure, it is asked for less, so that a laxer test of its own does not count against it.
+// Skerry solves contacts of lumped masses twice: as general blocks, like Siconos, and as a step solves them ("METHOD,
+// lumped"). The methods of the lab (profiling/lab) run in the same two ways. All methods run in one process and in
+// turns, on one thread, each from r = 0 until its own test says that the tolerance is reached. The error in the table
+// is measured apart, by problem_error. A Siconos or lumped solve that finishes, but misses the tolerance by this
+// measure, is repeated with a smaller one. A laxer test of its own then does not count against it.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -39,7 +39,7 @@ struct Options {
     std::string csv = "out/profiling/solvers/solvers.csv", associated;
     std::vector<Real> tolerances{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
     std::vector<std::string> methods;
-    Real cap = 2;  // s
+    Real cap = 2;  // [s]
     int rounds = 3;
     Index most_contacts = 1 << 30;
     bool quick = false, no_siconos = false, no_generated = false, no_scenes = false;
@@ -47,7 +47,7 @@ struct Options {
 
 enum class Owner { skerry, skerry_lumped, siconos };
 
-/// One method of ours on either operator, or one variant of Siconos.
+/// One method of Skerry on either operator, or one variant of Siconos.
 struct Contestant {
     std::string name;
     Owner owner = Owner::skerry;
@@ -61,7 +61,7 @@ struct Result {
     double seconds = 0;
     Index iterations = 0;
     Real error = 0;
-    bool finished = false;  // says the solver
+    bool finished = false;  // as reported by the solver
 };
 
 std::vector<Contestant> make_contestants(const Options& options) {
@@ -75,7 +75,7 @@ std::vector<Contestant> make_contestants(const Options& options) {
     };
     for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
         add(method, name, Owner::skerry);
-        // Newton steps need a matrix; the lumped operator makes one only to be checked against
+        // Newton steps need a matrix, which the lumped operator makes only for checks.
         if (method != SolverMethod::newton) add(method, name, Owner::skerry_lumped);
     }
     for (const auto& [method, name] : EnumNames<lab::Method>::table)
@@ -140,7 +140,7 @@ Result solve(Forms& forms, const Contestant& who, Real tolerance, Index max_iter
     const ProblemSolution solution =
         of_lab != nullptr ? lab::solve_problem(forms.blocks, *of_lab, settings) : solve_problem(forms.blocks, settings);
     const double cpu = cpu_seconds() - start;
-    // A long solve is done once: then the CPU time of the call is its own, and more than it.
+    // A long solve is done once. The CPU time of the call is then an upper bound for the CPU time of the solve.
     const double seconds = solution.seconds < long_run ? solution.seconds : std::min(solution.seconds, cpu);
     return {seconds, solution.iterations, problem_error(forms.blocks, solution.reaction).relative, solution.converged};
 }
@@ -150,11 +150,11 @@ bool leaves_friction_out(const Contestant& who) {
     return of_lab != nullptr && lab::needs_frictionless(*of_lab);
 }
 
-/// What stays the same for one contestant on one problem while the tolerance gets smaller.
+/// State of one contestant on one problem while the tolerance gets smaller.
 struct Standing {
-    Index max_iterations = 0;  // as many as the cap allows
-    Real asked_less = 1;       // part of the tolerance that it has to be asked for, if its own measure is another
-    bool out = false;          // missed a larger tolerance
+    Index max_iterations = 0;  // number of iterations that the cap allows
+    Real asked_less = 1;       // requested tolerance over the one to reach, below 1 if its own measure is laxer
+    bool out = false;          // excluded, for example since it missed a larger tolerance
 };
 
 Index iterations_within(Forms& forms, const Contestant& who, Real cap) {
@@ -192,7 +192,7 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
         std::vector<std::vector<double>> seconds(contestants.size());
         for (int round = 0; round < options.rounds; ++round)
             for (std::size_t c = 0; c < contestants.size(); ++c) {
-                // a solve of a tenth of the cap is long enough to be measured once
+                // A solve that takes longer than a tenth of the cap is measured only once.
                 if (standing[c].out ||
                     (round > 0 && (!(last[c].error <= tolerance) || last[c].seconds > options.cap / 10)))
                     continue;
@@ -216,8 +216,8 @@ void profile(const SolverProblem& given, const std::vector<Contestant>& contesta
     }
 }
 
-/// The same in a process of its own: some of Siconos' solvers end the process on some problems. Whoever did is left
-/// out, and the problem is done again.
+/// Calls profile() in a process of its own, since some of Siconos' solvers end the process on some problems. A
+/// contestant that did so is left out, and the problem is done again.
 void profile_apart(const SolverProblem& problem, std::vector<Contestant> contestants, const Options& options,
                    std::ofstream& csv) {
     void* shared = mmap(nullptr, sizeof(std::size_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);

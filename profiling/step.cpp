@@ -1,5 +1,5 @@
-// profile_step: what a step of each scene costs: nanoseconds per tetrahedron and per contact, the share of each stage,
-// CPU seconds per simulated second, and two threads against one, taken in turns.
+// profile_step: cost of a step of each scene: nanoseconds per tetrahedron and per contact, the share of each stage, CPU
+// seconds per simulated second, and two threads against one, in turns.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -19,8 +19,8 @@ using namespace skerry::profiling;
 namespace {
 
 struct Run {
-    double wall = 0;  // s
-    double cpu = 0;   // s, of all threads
+    double wall = 0;  // [s]
+    double cpu = 0;   // of all threads [s]
     WorldReport report;
 };
 

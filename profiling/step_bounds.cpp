@@ -1,5 +1,5 @@
-// profile_step_bounds: how long a step the bound allows over how long one would be stable, by kind of element: a table
-// for docs/methods/stable_step.md 2.1. Meshes are given by file; without any, built-in ones.
+// profile_step_bounds: the step that the bound allows over the longest stable step, by kind of element. Prints a table
+// for docs/methods/stable_step.md 2.1. Meshes are given by file; without any, built-in ones are used.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ using namespace skerry;
 
 namespace {
 
-constexpr Real safety = 0.9;  // of the bound that stable_step returns
+constexpr Real safety = 0.9;  // safety factor of stable_step: its result over the bound
 
 void print_rows(const std::string& name, const Mesh& mesh) {
     Real of_linear = 0;

@@ -1,6 +1,6 @@
-// profile_stiff: what stiff bodies cost, and how well they stand still, as explicit, implicit and rigid bodies: a block
-// on an incline, a stack of blocks, a heavy ball on a soft block, a pile of cubes, and thirty soft boxes on a slab or
-// on a tile each, with stiffness times 1, 100 and 10,000. profiling/plot_stiff.py draws the table.
+// profile_stiff: cost of stiff bodies as explicit, implicit and rigid bodies, and how well they stand still. Scenes: a
+// block on an incline, a stack of blocks, a heavy ball on a soft block, a pile of cubes, and thirty soft boxes on one
+// slab or on a tile each. The stiffness is multiplied by 1, 100 and 10,000. profiling/plot_stiff.py draws the table.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -24,21 +24,21 @@ constexpr Real g = 9.81;
 
 struct Case {
     std::string scene;
-    Real modulus;  // Pa
+    Real modulus;  // [Pa]
     BodyDynamics dynamics;
-    Real step;       // s, at most
-    Real tolerance;  // of regions
+    Real step;       // largest step size [s]
+    Real tolerance;  // tolerance of regions
     Real seconds;
     SolverMethod method;
 };
 
-/// What is measured of a scene; what has no meaning in it is not a number.
+/// Results of a scene. A result without meaning in it is NaN.
 struct Outcome {
-    double cpu = 0;                                                // s, of a simulated second
-    Real speed = 0;                                                // m/s, root mean square of all nodes at the end
-    Real creep = std::nan(""), acceleration_error = std::nan("");  // m/s, and a share
-    Real depth = 0;                                                // m, largest overlap
-    Index unconverged = 0;                                         // regions
+    double cpu = 0;                                                // CPU time per simulated second [s]
+    Real speed = 0;                                                // root mean square over all nodes at the end [m/s]
+    Real creep = std::nan(""), acceleration_error = std::nan("");  // speed [m/s], relative error [-]
+    Real depth = 0;                                                // largest overlap [m]
+    Index unconverged = 0;                                         // number of regions
     std::uint64_t steps = 0;
     std::string failed;
 };
@@ -49,7 +49,7 @@ Settings settings_of(const Case& one, const Vec3& gravity) {
     settings.threads = 1;
     settings.gravity = gravity;
     settings.step_size = one.step;
-    settings.sleep = false;  // what is static is compared closer than a thousandth
+    settings.sleep = false;  // static bodies are compared more closely than the error of sleep, a thousandth
     settings.tolerance = one.tolerance;
     settings.method = one.method;
     return settings;
@@ -66,7 +66,7 @@ void add_stack(World& world, const Case& one) {
         world.add_body(block, {.material = material, .position = {0, 0, 0.06 + 0.11 * k}, .dynamics = one.dynamics});
 }
 
-/// The ball is what `dynamics` says, the block is soft and explicit.
+/// Adds a ball with the given dynamics on a soft, explicit block.
 void add_ball_on_block(World& world, const Case& one) {
     MaterialSettings heavy = stiff(one, 0.5);
     heavy.density = 8000;
@@ -88,8 +88,8 @@ void add_pile(World& world, const Case& one) {
             {.material = material, .position = cube.position, .rotation = cube.rotation, .dynamics = one.dynamics});
 }
 
-/// Thirty soft and explicit boxes that are let go just above one slab, in one region with it, or above a tile each, in
-/// thirty regions. Slab and tiles are what `dynamics` says.
+/// Thirty soft, explicit boxes are let go just above one slab, in one region with it, or above a tile each, in thirty
+/// regions. Slab and tiles have the given dynamics.
 enum class Under { slab, tiles };
 void add_boxes(World& world, const Case& one, Under under) {
     const auto material = world.add_material(stiff(one, 0.5));
@@ -118,7 +118,7 @@ Real rms_speed(const World& world) {
     return std::sqrt(sum / static_cast<Real>(count));
 }
 
-/// Takes `seconds`, adding to the outcome.
+/// Advances by `seconds` and adds to the outcome. Returns false if the advance failed.
 bool advance(World& world, Real seconds, double& cpu, Outcome& outcome) {
     const double start = cpu_seconds();
     const StepReport report = world.advance(seconds);
@@ -130,7 +130,8 @@ bool advance(World& world, Real seconds, double& cpu, Outcome& outcome) {
     return report.ok();
 }
 
-/// A block half a degree below the friction angle creeps by nothing, two above it slides by the law.
+/// Runs a block half a degree below the friction angle, which should not creep, and one two degrees above it, which
+/// should slide by Coulomb's law.
 Outcome run_incline(const Case& one) {
     constexpr Real mu = 0.3;
     const auto on_slope = [&](Real degrees, double& cpu, Outcome& outcome) {
@@ -218,9 +219,9 @@ int main(int argc, char** argv) {
                      {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid})
                     for (const Real tolerance : {1e-3, 1e-6}) {
                         if (!only.empty() && only != scene) continue;
-                        // of the boxes the question is what it costs that they are one region, not how still they lie
+                        // The boxes show the cost of forming one region, not how still they lie.
                         if (scene.starts_with("boxes") && tolerance != 1e-3) continue;
-                        // stiffness means nothing to rigid bodies
+                        // Stiffness has no effect on rigid bodies.
                         if (dynamics == BodyDynamics::rigid && modulus != 1e8) continue;
                         if (dynamics == BodyDynamics::explicit_elastic && (modulus > (quick ? 1e6 : 1e8))) continue;
                         const Case one{scene,

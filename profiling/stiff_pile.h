@@ -1,4 +1,4 @@
-// The pile of profile_stiff and profile_stiff_peers: where its cubes start.
+// Start positions of the cubes in the pile of profile_stiff and profile_stiff_peers.
 #pragma once
 
 #include <numbers>
@@ -10,11 +10,11 @@
 namespace skerry::profiling {
 
 struct PiledCube {
-    Vec3 position;  // m
-    Vec3 rotation;  // rad, about its direction
+    Vec3 position;  // [m]
+    Vec3 rotation;  // rotation vector [rad]
 };
 
-/// 27 of them, 0.13 m apart, each turned by up to 8 degrees.
+/// Returns 27 cubes, 0.13 m apart, each rotated by up to 8 degrees about a random axis.
 inline std::vector<PiledCube> piled_cubes() {
     std::vector<PiledCube> cubes;
     std::mt19937 random(1);

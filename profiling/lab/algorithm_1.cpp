@@ -26,7 +26,7 @@ bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass)
 Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                            std::span<Index> contact_region) {
     std::fill(contact_region.begin(), contact_region.end(), no_index);
-    std::vector<std::size_t> in_area(inverse_mass.size(), 0);  // by node: 1 + the i for which it was last marked
+    std::vector<std::size_t> in_area(inverse_mass.size(), 0);  // by node: 1 + the i that last marked it
     Index area_count = 0;
     for (std::size_t i = 0; i < stencil.size(); ++i) {
         if (!has_moving_node(stencil[i], inverse_mass)) continue;
@@ -36,7 +36,7 @@ Index label_by_algorithm_1(std::span<const Stencil> stencil, std::span<const Rea
         for (std::size_t k = 0; k < stencil.size(); ++k)
             if (contact_region[k] == area) for_each_moving_node(stencil[k], inverse_mass, mark);
         for (std::size_t j = i + 1; j < stencil.size(); ++j) {
-            // the paper's omission: an area with a number is left as it is
+            // This is the omission of the paper: an area that has a number is not merged.
             if (contact_region[j] != no_index) continue;
             bool shares = false;
             for_each_moving_node(stencil[j], inverse_mass, [&](std::size_t node) { shares |= in_area[node] == i + 1; });

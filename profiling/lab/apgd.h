@@ -1,6 +1,6 @@
-// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; docs/methods/region_solver.md 5.3): all contacts step
-// at once, so that an iteration is one product with W whatever the couplings are, and nothing depends on the order of
-// the contacts.
+// Accelerated projected gradients (Nesterov; Mazhar et al. 2015; docs/methods/region_solver.md 5.3). All contacts step
+// at once. An iteration is one product with W whatever the couplings are, and nothing depends on the order of the
+// contacts.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace skerry::lab {
 
-/// The projection is that of the operator's friction law: with `cone` the fixed point is the exact Coulomb solution for
-/// any step length (measured against De Saxce's shifted velocity and the projection onto the cone, which it beats;
-/// docs/solvers.md), but without a theorem of convergence; with the associated law (associated_operator.h)
-/// the method is the convex one of the literature and converges. An iteration is one product with W, be its step taken
-/// or not. Leaves the last impulse when it converged or the count is fixed, else the best one.
+/// Projects with the friction law of the operator. With `cone` the fixed point is the exact Coulomb solution for any
+/// step length, but there is no theorem of convergence. In measurements it beats De Saxce's shifted velocity with the
+/// projection onto the cone (docs/solvers.md). With the associated law (associated_operator.h) the method is the convex
+/// one of the literature and converges. An iteration is one product with W, whether its step is accepted or rejected.
+/// Leaves the last impulse if it converged or the iteration count is fixed, else the best one.
 template <ContactOperator Op>
 class AcceleratedGradients {
 public:
@@ -37,7 +37,7 @@ public:
 
 private:
     void start() {
-        constexpr Index power_steps = 10;  // products; the backtracking makes up for what they lack
+        constexpr Index power_steps = 10;  // number of products; backtracking corrects an estimate that is too low
         steepness_ = largest_eigenvalue(op_, power_steps, [](Index, const Vec4& v) { return v; });
         std::ranges::copy(op_.impulse(), start_.begin());
         std::ranges::copy(start_, previous_.begin());
@@ -45,8 +45,8 @@ private:
         std::ranges::copy(pull_, pull_previous_.begin());
     }
 
-    /// From the extrapolated impulse to the operator's. False when the step was longer than the curvature along it
-    /// allows.
+    /// Steps from the extrapolated impulse and writes the result to the operator. Returns false if the step was longer
+    /// than the curvature along it allows.
     bool try_step() {
         const std::span<Vec4> impulse = op_.impulse();
         for (Index i = 0; i < op_.size(); ++i) {
@@ -69,8 +69,8 @@ private:
         return false;
     }
 
-    /// Residuals are affine in the impulses: they need no product of their own. A step that turns back ends the
-    /// momentum.
+    /// Extrapolates impulses and residuals. Residuals are affine in the impulses and need no product of their own. A
+    /// step that turns back resets the momentum.
     void extrapolate() {
         const Real next_momentum = (1 + std::sqrt(1 + 4 * momentum_ * momentum_)) / 2;
         Real beyond = (momentum_ - 1) / next_momentum;
@@ -86,23 +86,24 @@ private:
             previous_[i] = impulse[i];
         }
         std::swap(pull_previous_, pull_next_);
-        steepness_ *= forgotten;  // the bound along the way is often below the one of the whole space
+        steepness_ *= forgotten;  // the curvature along the path is often below the bound of the whole space
     }
 
-    // Of the steepness, where a step was too long: past the curvature that it met, and at least so much. The paper
-    // doubles, and forgets a tenth a step; smaller factors refuse fewer steps (docs/solvers.md, "Constants").
+    // Growth of the steepness after a step that was too long: at least `steeper`, and to `beyond_curvature` times the
+    // measured curvature. The paper doubles it, and reduces it by a tenth per step. Smaller factors reject fewer steps
+    // (docs/solvers.md, "Constants").
     static constexpr Real beyond_curvature = 1.05, steeper = 1.2;
-    static constexpr Real forgotten = 0.97;  // of the steepness, a step taken
+    static constexpr Real forgotten = 0.97;  // factor of the steepness after each accepted step
 
     Op& op_;
     const SolveLimits& limits_;
     ErrorTest<Op> test_;
-    Real steepness_ = 1;  // L: largest eigenvalue of D^-1 W that has shown
+    Real steepness_ = 1;  // L: present estimate of the largest eigenvalue of D^-1 W
     Real momentum_ = 1, against_ = 0;
     std::span<Vec4> previous_ = op_.workspace(1), start_ = op_.workspace(3);
-    // two vectors more than operators keep
+    // storage of two vectors beyond the workspace of the operator
     std::vector<Vec4> own_ = std::vector<Vec4>(2 * op_.impulse().size());
-    // -u of the impulse extrapolated to, of the last one and of the present one
+    // -u (u: contact velocity) at the extrapolated, the previous and the present impulse
     std::span<Vec4> pull_ = std::span(own_).first(op_.impulse().size()), pull_previous_ = op_.workspace(2),
                     pull_next_ = std::span(own_).subspan(op_.impulse().size());
 };

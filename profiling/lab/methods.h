@@ -1,4 +1,4 @@
-// The methods of the lab by name. They run on every operator of the library.
+// Solution methods of the lab by name. They run on every operator of the library.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace lab {
 
 enum class Method { nncg, apgd, mprgp };
 
-/// Whether a method leaves friction out.
+/// True if the method ignores friction.
 constexpr bool needs_frictionless(Method method) {
     return method == Method::mprgp;
 }

@@ -1,6 +1,6 @@
-// Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005;
-// docs/methods/region_solver.md 5.4): conjugate gradients with the active set done right, for contacts without
-// friction. In the norm of the diagonal: bounds keep their form when rows are scaled.
+// Modified proportioning with reduced gradient projections (Dostal and Schoeberl 2005; docs/methods/region_solver.md
+// 5.4): conjugate gradients with a consistent treatment of the active set, for contacts without friction. It works in
+// the norm of the diagonal, since bounds keep their form when rows are scaled.
 #pragma once
 
 #include <algorithm>
@@ -11,24 +11,26 @@
 
 namespace skerry::lab {
 
-/// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 keeps the gradient in place 0, 2 the
-/// direction (along the normals), 3 its product.
+/// Minimises x . W x / 2 + q . x over normal impulses x >= 0. Workspace 1 holds the gradient in component 0, workspace
+/// 2 the direction (along the normals), and workspace 3 its product with W in component 0.
 template <ContactOperator Op>
 class ProportionedGradients {
 public:
     explicit ProportionedGradients(Op& op) : op_(op) {}
 
     void start() {
-        constexpr Index power_steps = 20;  // products, to a few percent
-        constexpr Real margin = 1.1;       // they come from below
-        // of 1/|A|: up to 2 converges (Dostal, Domoradova and Sadowska 2011), and longer steps find the faces sooner
+        constexpr Index power_steps = 20;  // number of products, for an accuracy of a few percent
+        constexpr Real margin = 1.1;       // safety factor: power iteration approaches the eigenvalue from below
+        // Expansion step in units of 1/|A|. Lengths up to 2 converge (Dostal, Domoradova and Sadowska 2011), and longer
+        // steps find the faces sooner.
         constexpr Real expansion = 1.8;
         const auto normal_part = [this](Index i, const Vec4& v) { return Vec4(op_.normal(i).dot(v) * op_.normal(i)); };
         for (Index i = 0; i < op_.size(); ++i) {
             const Real pressed = op_.normal(i).dot(op_.impulse()[i]);
             op_.impulse()[i] = pressed > 0 && diagonal(i) > 0 ? Vec4(pressed * op_.normal(i)) : Vec4(Vec4::Zero());
         }
-        // in units of the mobility; those of the diagonal differ by at most the smallest ratio of the two
+        // The eigenvalue is relative to the mobility. The one relative to the diagonal is larger by at most 1 /
+        // smallest_ratio.
         Real smallest_ratio = 1;
         for (Index i = 0; i < op_.size(); ++i)
             if (diagonal(i) > 0) smallest_ratio = std::min(smallest_ratio, diagonal(i) / op_.mobility(i));
@@ -37,7 +39,7 @@ public:
         point_along_free();
     }
 
-    /// One step; false when there is no direction left.
+    /// Does one step. Returns false if there is no direction left.
     bool advance() {
         Real chopped = 0, reduced = 0;
         for (Index i = 0; i < op_.size(); ++i) {
@@ -46,7 +48,7 @@ public:
             if (x > 0) reduced += g * std::min(d * x / expansion_, g) / d;
             if (!(x > 0) && g < 0) chopped += g * g / d;
         }
-        if (chopped <= reduced) return minimise_in_face();  // proportional, with the paper's Gamma = 1
+        if (chopped <= reduced) return minimise_in_face();  // the iterate is proportional, with the paper's Gamma = 1
         for (Index i = 0; i < op_.size(); ++i) {
             const bool leaves = !(pressed(i) > 0) && gradient_[i][0] < 0 && diagonal(i) > 0;
             direction_[i] = leaves ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
@@ -58,7 +60,7 @@ public:
         return true;
     }
 
-    /// Impulse, velocities and gradient again from the impulse.
+    /// Recomputes velocities and gradient from the present impulse.
     void refresh() {
         op_.refresh();
         op_.residual(gradient_);
@@ -71,7 +73,7 @@ private:
     };
 
     Real pressed(Index i) { return op_.normal(i).dot(op_.impulse()[i]); }
-    /// n . W_ii n. The mobility is that where blocks are numbers times the identity.
+    /// Diagonal entry n . W_ii n. It is the mobility if the block is a multiple of the identity.
     Real diagonal(Index i) const {
         if constexpr (requires { op_.inner(i, op_.normal(i), op_.normal(i)); })
             return op_.mobility(i) > 0 ? op_.inner(i, op_.normal(i), op_.normal(i)) : 0;
@@ -91,7 +93,7 @@ private:
         return line;
     }
 
-    /// x -= length p. What comes to its bound is put there.
+    /// x -= length p. Components that reach their bound are set to it.
     void move(Real length) {
         for (Index i = 0; i < op_.size(); ++i) {
             const Real x = pressed(i) - length * op_.normal(i).dot(direction_[i]);
@@ -105,8 +107,8 @@ private:
             direction_[i] = pressed(i) > 0 ? Vec4((gradient_[i][0] / diagonal(i)) * op_.normal(i)) : Vec4(Vec4::Zero());
     }
 
-    /// A step of conjugate gradients; where it would leave the bounds it ends at the first of them, and a projected
-    /// gradient step follows.
+    /// Does a step of conjugate gradients. A step that would leave the bounds ends at the first of them, and a
+    /// projected gradient step follows.
     bool minimise_in_face() {
         const auto [slope, curvature] = multiply();
         if (!(curvature > 0)) return false;
@@ -148,11 +150,11 @@ private:
     Real expansion_ = 1;  // length of the projected gradient step, in units of 1/D
 };
 
-/// From the operator's present impulse; an iteration is one step. Friction is left out: the error then says so. Leaves
-/// the last impulse when it converged or the count is fixed, else the best one.
+/// Solves from the present impulse of the operator; an iteration is one step. Friction is ignored, and the error shows
+/// this. Leaves the last impulse if it converged or the iteration count is fixed, else the best one.
 template <ContactOperator Op>
 SolveResult solve_mprgp(Op& op, const SolveLimits& limits) {
-    constexpr Index refresh_interval = 64;  // steps; the gradient is carried along and gathers rounding
+    constexpr Index refresh_interval = 64;  // steps; the updated gradient accumulates rounding errors
     ErrorTest<Op> test(op, limits);
     ProportionedGradients<Op> gradients(op);
     gradients.start();

@@ -1,6 +1,6 @@
-// Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe, Erleben 2010; docs/methods/region_solver.md 5.2): a sweep
-// of Gauss-Seidel is the gradient step of Fletcher and Reeves. It is the paper's idea, conjugate gradients and
-// Gauss-Seidel together, the other way about.
+// Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe, Erleben 2010; docs/methods/region_solver.md 5.2): a
+// Gauss-Seidel sweep is the gradient step of Fletcher and Reeves. The paper also combines conjugate gradients with
+// Gauss-Seidel, but with the roles reversed.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace skerry::lab {
 
-/// Sweeps from the operator's present impulse. Leaves the last impulse when it converged or the count is fixed, else
-/// the best one.
+/// Solves from the present impulse of the operator. Leaves the last impulse if it converged or the iteration count is
+/// fixed, else the best one.
 template <ContactOperator Op>
 SolveResult solve_nncg(Op& op, const SolveLimits& limits) {
     ErrorTest<Op> test(op, limits);
@@ -24,8 +24,8 @@ SolveResult solve_nncg(Op& op, const SolveLimits& limits) {
         if (test.ends_after_sweep(iteration, change, limits.max_iterations)) return test.result();
         if (iteration == limits.max_iterations) break;
 
-        // a gradient that grows ends the conjugacy: the sweep stands alone, and the next starts from no direction.
-        // Keeping the gradient as the first direction instead takes up to seven times the sweeps on stacks
+        // A growing gradient ends the conjugacy: the sweep is taken without a direction, and so is the next. Keeping
+        // the gradient as the first direction instead takes up to seven times the sweeps on stacks.
         const bool turned = change_before > 0 && change > change_before;
         const Real beta = change_before > 0 && !turned ? change / change_before : 0;
         change_before = change;

@@ -1,4 +1,5 @@
-// The largest eigenvalue of D^-1 W, D_i the mobility of contact i: the step length of the gradient methods.
+// Estimate of the largest eigenvalue of D^-1 W, D_i the mobility of contact i. It sets the step length of gradient
+// methods.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +10,14 @@
 
 namespace skerry::lab {
 
-/// From below, to a few percent: `steps` products, from a start without pattern so that no eigenvector is missed. At
-/// least 1 unless the operator is not finite. Uses workspace 1 and 2; `restrict_to(i, vector)` is the part of a vector
-/// that counts for contact i.
+/// Estimates the eigenvalue from below, to a few percent, by `steps` products. The start vector is pseudo-random so
+/// that no eigenvector is missed. The result is at least 1. Uses workspaces 1 and 2. `restrict_to(i, vector)` returns
+/// the part of a vector that counts for contact i.
 template <ContactOperator Op, class Restrict>
 Real largest_eigenvalue(Op& op, Index steps, const Restrict& restrict_to) {
     const std::span<Vec4> vector = op.workspace(1), product = op.workspace(2);
     std::uint32_t state = 1;
-    const auto number = [&state] {  // in [-1, 1), the same on every machine
+    const auto number = [&state] {  // pseudo-random in [-1, 1), identical on every machine
         state = state * 1664525u + 1013904223u;
         return static_cast<Real>(state >> 8) / (1 << 23) - 1;
     };

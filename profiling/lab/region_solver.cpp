@@ -25,7 +25,7 @@ void RegionSolver::solve(Executor& executor, const RegionInputs& contacts, const
                          Method method, Real h, RegionTable& regions, const RegionOutputs& out) {
     SKERRY_CHECK(!contacts.clustered() && !contacts.rigid.any() && !contacts.implicit.any());
     SolverSettings own = settings;
-    own.method = SolverMethod::pcg_pgs;  // all vectors by contact, and no form of its own for any region
+    own.method = SolverMethod::pcg_pgs;  // makes room for all vectors by contact, without a special form for any region
     const std::size_t region_nodes = find_region_blocks(contacts, regions, memory_);
     memory_.make_room_for(memory_.rows, region_nodes, contacts.inverse_mass.size(), own);
     const RegionStage stage{contacts, own, h, out, memory_};

@@ -1,4 +1,4 @@
-// Regions of lumped contacts, solved by the methods of the lab as the stage solve_regions solves them by its own.
+// Solver of regions of lumped contacts with the methods of the lab, otherwise like the stage solve_regions.
 #pragma once
 
 #include "jobs/executor.h"
@@ -8,18 +8,18 @@
 
 namespace skerry::lab {
 
-/// Keeps its memory from one call to the next.
+/// Reuses its memory from one call to the next.
 class RegionSolver {
 public:
-    /// Solves regions like skerry::solve_regions, one after the other, and ignores settings.method. Without clusters,
-    /// rigid and implicit bodies.
+    /// Solves regions one after the other like skerry::solve_regions, and ignores settings.method. Clusters, rigid
+    /// bodies and implicit bodies are not supported.
     void solve(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Method method, Real h,
                RegionTable& regions, const RegionOutputs& out);
 
 private:
     RegionMemory memory_;
     ColouredRegion coloured_;
-    Team team_;  // of large regions
+    Team team_;  // for large regions
 };
 
 }  // namespace skerry::lab

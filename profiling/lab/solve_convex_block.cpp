@@ -9,17 +9,17 @@
 namespace skerry::lab {
 namespace {
 
-/// The first coordinate y of the solution on the surface of the cone, r = T (y, y_1, y_2). With the multiplier s of
-/// S(r) <= 0 the rows (1 + s sigma_i) y_i = -c_i give y_i = -c_i y / d_i, d_i = (1 + k_i) y + k_i c_0, and S(r) = 0
-/// becomes N(y) = 1 with N^2 = sum k_i c_i^2 / d_i^2. In y there is no pole, unlike in s, and 1/N is concave (a power
-/// mean of d_i): Newton's method from the left comes to the only root from below.
+/// Returns the first coordinate y of the solution on the surface of the cone, r = T (y, y_1, y_2). With the multiplier
+/// s of S(r) <= 0 the rows (1 + s sigma_i) y_i = -c_i give y_i = -c_i y / d_i, d_i = (1 + k_i) y + k_i c_0, and S(r) =
+/// 0 becomes N(y) = 1 with N^2 = sum k_i c_i^2 / d_i^2. The function of y has no pole, unlike that of s, and 1/N is
+/// concave (a power mean of d_i). Newton's method from the left therefore converges to the only root from below.
 Real find_height(const ConvexBlock& block, const Vec3& c) {
     Real y = std::max(Real(0), -c[0]);
     for (int i = 0; i < 2; ++i) {
         const Real k = block.ratio[i];
         y = std::max(y, (std::sqrt(k) * std::abs(c[i + 1]) - k * c[0]) / (1 + k));  // where this term alone is 1
     }
-    constexpr int iteration_limit = 60;  // bounds the time where the ratios are extreme
+    constexpr int iteration_limit = 60;  // bounds the time if the ratios are extreme
     for (int iteration = 0; iteration < iteration_limit; ++iteration) {
         Real squared = 0, slope = 0;  // N^2 and -N N'
         for (int i = 0; i < 2; ++i) {
@@ -43,7 +43,7 @@ ConvexBlock prepare_convex_block(const Mat3& matrix, Real mu) {
     if (!(matrix(0, 0) > 0)) return block;
     block.inverse_normal = 1 / matrix(0, 0);
     if (mu == 0) return block;
-    constexpr Real rank_rounding = 1e-14;  // of the trace
+    constexpr Real rank_rounding = 1e-14;  // relative to the trace
     const Mat3 symmetric = 0.5 * (matrix + matrix.transpose()) + (rank_rounding * matrix.trace()) * Mat3::Identity();
     const Mat3 inverse_factor = Mat3(symmetric.llt().matrixL()).inverse();
     const Vec3 cone(-mu * mu, 1, 1);
@@ -65,7 +65,7 @@ Vec3 solve_convex_block(const ConvexBlock& block, const Vec3& b, Real mu) {
     for (int i = 0; i < 2; ++i)
         if (c[i + 1] != 0) height[i + 1] = -c[i + 1] * (y / ((1 + block.ratio[i]) * y + block.ratio[i] * c[0]));
     Vec3 r = block.axes * height;
-    const Real shrink = mu * r[0] / std::hypot(r[1], r[2]);  // onto the cone to the last bit
+    const Real shrink = mu * r[0] / std::hypot(r[1], r[2]);  // puts r onto the cone to the last bit
     if (std::isfinite(shrink)) r.tail<2>() *= shrink;
     return r;
 }

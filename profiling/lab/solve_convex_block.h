@@ -1,4 +1,4 @@
-// One contact with a general symmetric positive block under the associated law: the impulse r in the cone K that
+// Solution of one contact with a general symmetric positive block under the associated law. The impulse r in the cone K
 // minimises r . W r / 2 + b . r, so that u = W r + b lies in the dual cone and u . r = 0. Frame: normal, tangent 1,
 // tangent 2.
 #pragma once
@@ -12,13 +12,14 @@ namespace skerry::lab {
 struct ConvexBlock {
     Mat3 axes;            // T' W T = 1, T' S T = diag(-1, ratio) times a number; the first axis lies in K
     Real ratio[2];        // > 0
-    Real inverse_normal;  // kg/s, of the block's first entry; 0: no mobility along the normal
+    Real inverse_normal;  // inverse of the first entry of the block, 0: no mobility along the normal [kg]
 };
 
-/// Of the symmetric part of the block, raised by 1e-14 of its trace so that one of lower rank can be factorised.
+/// Prepares the symmetric part of the block. Its diagonal is raised by 1e-14 of its trace so that a block of lower rank
+/// can be factorised.
 ConvexBlock prepare_convex_block(const Mat3& matrix, Real mu);
 
-/// r. A block without mobility along the normal gives zero.
+/// Returns r. The result is zero for a block without mobility along the normal.
 Vec3 solve_convex_block(const ConvexBlock& block, const Vec3& b, Real mu);
 
 }  // namespace skerry::lab

@@ -1,5 +1,5 @@
-// profile_scaling: records the steps of scenes on one thread block by block, predicts what they take on more cores, and
-// measures what the machine has beside it. profiling/plot_scaling.py draws what it writes.
+// profile_scaling: records the steps of scenes on one thread block by block, predicts their time on more cores, and
+// measures it on the threads of this machine. profiling/plot_scaling.py draws the output.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -17,9 +17,9 @@ namespace {
 
 struct ProgramOptions {
     std::vector<std::string> scenes;
-    int pile = 0;        // balls an edge
-    double seconds = 0;  // s, 0: what the scene says
-    int memory = 0;      // balls an edge
+    int pile = 0;        // number of balls along an edge; 0: no pile
+    double seconds = 0;  // simulated time, 0: as set in the scene [s]
+    int memory = 0;      // number of balls along an edge; 0: memory is not measured
     std::string ball = "scenes/meshes/drop_ball.msh";
     std::string out = "out/profiling/scaling";
     std::string record;
@@ -83,11 +83,11 @@ SceneStudy study_file(const std::string& file, const ProgramOptions& options) {
 }
 
 SceneStudy study_pile(const ProgramOptions& options) {
-    constexpr double touching = 0.2, settled = 0.4;  // s
+    constexpr double touching = 0.2, settled = 0.4;  // [s]
     World world = make_pile({.balls_per_edge = options.pile}, mesh::read(options.ball), 0);
     const int balls = options.pile * options.pile * options.pile;
     StudyOptions study = options.study;
-    study.windows = (study.windows + 1) / 2;  // it changes little while it settles
+    study.windows = (study.windows + 1) / 2;  // the pile changes little while it settles
     return study_scene("pile_" + std::to_string(balls), world, touching, settled, study);
 }
 

@@ -12,14 +12,14 @@ namespace skerry::profiling {
 
 namespace {
 
-constexpr double block_seconds = 200e-6;  // longer than anything that is looked for
+constexpr double block_seconds = 200e-6;  // longer than any delay that is measured
 
 void work_for(double seconds) {
     const double end = wall_seconds() + seconds;
     while (wall_seconds() < end) continue;
 }
 
-/// s, by which two blocks on two threads take longer than one block.
+/// Extra time of two blocks on two threads over one block [s].
 double delay_of_two_blocks(Executor& executor) {
     const double start = wall_seconds();
     executor.run_blocks(2, [](Index) { work_for(block_seconds); });
@@ -33,7 +33,7 @@ double phase_seconds(Executor& executor) {
     Team team;
     double seconds = 0;
     team.gather(executor, [&] {
-        team.run_phases(offset, [](Index) {});  // until the other has come
+        team.run_phases(offset, [](Index) {});  // waits until the other worker has joined
         const double start = wall_seconds();
         team.run_phases(offset, [](Index) {});
         seconds = wall_seconds() - start;
@@ -48,7 +48,7 @@ HandingOutCosts measure_costs() {
     std::vector<double> awake, asleep, phase;
     constexpr int batches = 5;
     for (int batch = 0; batch < batches; ++batch) {
-        constexpr double patience = 4;  // s
+        constexpr double patience = 4;  // [s]
         wait_for_quiet(patience);
         for (int i = 0; i < 100; ++i) awake.push_back(delay_of_two_blocks(*executor));
         for (int i = 0; i < 20; ++i) {

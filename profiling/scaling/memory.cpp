@@ -23,7 +23,7 @@ void advance_by(World& world, double seconds) {
     if (!report.ok()) throw std::runtime_error(report.message());
 }
 
-/// Bytes of a world after its first steps.
+/// Memory of a world after its first steps [bytes].
 template <class Make>
 double bytes_of(Make&& make) {
     const double before = bytes_in_use();
@@ -39,7 +39,7 @@ World one_ball(int resolution) {
     return world;
 }
 
-/// Bytes of a row of all columns together.
+/// Size of a row over all columns of the table [bytes].
 double row_bytes(auto& table) {
     double bytes = 0;
     table.for_each_column([&](const char*, auto& column, ColumnRole) {
@@ -66,7 +66,7 @@ MemoryFigures measure_memory(const Mesh& ball, int balls_per_edge) {
     figures.tetrahedron_in_body =
         more / static_cast<double>(mesh::ball(0.1, fine).tetrahedra.size() - mesh::ball(0.1, coarse).tetrahedra.size());
 
-    constexpr double until = 0.3;  // s, when all layers have come together
+    constexpr double until = 0.3;  // time at which all layers have come together [s]
     const double before = bytes_in_use();
     World pile = make_pile({.balls_per_edge = balls_per_edge}, ball, 1);
     advance_by(pile, until);

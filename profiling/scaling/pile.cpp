@@ -15,7 +15,7 @@ double radius_of(const Mesh& ball) {
     return radius;
 }
 
-/// The same on every compiler, which std::uniform_real_distribution is not.
+/// Uniform number in [-1, 1), identical with every compiler, unlike std::uniform_real_distribution.
 double uniform(std::mt19937_64& random) {
     return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0;
 }

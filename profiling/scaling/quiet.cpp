@@ -15,7 +15,7 @@ namespace skerry::profiling {
 
 namespace {
 
-/// s, that all cores together were at work; negative where it is not known.
+/// Time that all cores together were at work; negative if it is unknown [s].
 double busy_seconds() {
     std::ifstream file("/proc/stat");
     std::string cpu;
@@ -38,7 +38,7 @@ double OthersWatch::cores() const {
 
 double wait_for_quiet(double at_most) {
     constexpr std::chrono::milliseconds moment{200};
-    constexpr double little = 0.1;  // cores: what the system does anyway, and a tick of its clock
+    constexpr double little = 0.1;  // activity of the system itself, and one tick of its clock [cores]
     const double start = wall_seconds();
     while (wall_seconds() - start < at_most) {
         const OthersWatch others;

@@ -21,7 +21,7 @@ std::span<const Piece> pieces_of(const Recording& recording, const StageRun& run
         .subspan(static_cast<std::size_t>(run.pieces.begin), static_cast<std::size_t>(run.pieces.size()));
 }
 
-/// s, of a stage with as many cores as it has blocks.
+/// Time of a stage on as many cores as it has blocks [s].
 double shortest(const Recording& recording, const StageRun& run) {
     double seconds = 0;
     for (const Piece& piece : pieces_of(recording, run))
@@ -33,7 +33,7 @@ double critical_path_of(const Recording& recording, std::span<const StageRun> gr
     if (graph.front().stage == no_index) return shortest(recording, graph.front());
     std::vector<double> start(graph.size(), 0.0);
     double end = 0;
-    for (std::size_t s = 0; s < graph.size(); ++s) {  // every edge goes up
+    for (std::size_t s = 0; s < graph.size(); ++s) {  // every edge goes to a later stage
         const double done = start[s] + shortest(recording, graph[s]);
         end = std::max(end, done);
         for (Index e = recording.graph.successor_offset[s]; e < recording.graph.successor_offset[s + 1]; ++e) {

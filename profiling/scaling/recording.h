@@ -1,4 +1,4 @@
-// Recording: what each piece of some steps took on one thread, and what may run beside what.
+// Recording of steps on one thread: the time of each piece of work, and which pieces may run in parallel.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace skerry::profiling {
 
-/// serial: what one thread does alone. loop: the blocks of one run_blocks call. phase: those of one phase of a Team.
+/// serial: work that one thread does alone. loop: the blocks of one run_blocks call. phase: the blocks of one Team
+/// phase.
 enum class PieceKind : std::uint8_t { serial, loop, phase };
 
 struct Piece {
@@ -23,7 +24,7 @@ struct Piece {
     bool operator==(const Piece&) const = default;
 };
 
-/// One stage of one step, or what the thread does between two graphs: its pieces, one after the other.
+/// The pieces of one stage of one step, or of the work of the thread between two graphs, one after the other.
 struct StageRun {
     Index stage;   // no_index: between graphs
     Range pieces;  // rows of Recording::pieces
@@ -31,9 +32,9 @@ struct StageRun {
     bool operator==(const StageRun&) const = default;
 };
 
-/// Which stage waits for which, as GraphEdges.
+/// Dependencies between stages, in the layout of GraphEdges.
 struct RecordedGraph {
-    std::vector<Index> successor_offset;  // stage_count + 1
+    std::vector<Index> successor_offset;  // of length stage_count + 1
     std::vector<Index> successor;
     std::vector<Index> predecessor_count;  // by stage
 
@@ -43,23 +44,23 @@ struct RecordedGraph {
 };
 
 struct Recording {
-    RecordedGraph graph;          // the same in all steps
-    std::vector<StageRun> runs;   // a graph has one of each stage, in their order; what is between graphs has one
+    RecordedGraph graph;          // identical in all steps
+    std::vector<StageRun> runs;   // one per stage of a graph, in stage order; one for the work between two graphs
     std::vector<Piece> pieces;    // of all runs
-    std::vector<double> seconds;  // of each block
+    std::vector<double> seconds;  // time of each block [s]
 
-    /// Wall time of one thread, s.
+    /// Wall time of one thread [s].
     double work() const;
-    /// What no other thread can take part in, s. Other stages may run beside it.
+    /// Time of the serial pieces, which no other thread can share [s]. Other stages may run beside them.
     double serial() const;
-    /// The longest chain of pieces that wait for each other, s: no number of cores takes less.
+    /// Time of the longest chain of pieces that wait for each other: a lower bound for any number of cores [s].
     double critical_path() const;
-    /// The same pieces in the same order; what they took may differ.
+    /// True if both have the same pieces in the same order. Their times may differ.
     bool same_work(const Recording& other) const;
     std::span<const double> blocks(const Piece& piece) const;
 };
 
-/// Calls part(runs) for each graph, whose runs are one a stage, and for each single run between graphs.
+/// Calls part(runs) for each graph, with one run per stage, and for each single run between graphs.
 template <class Part>
 void for_each_part(const Recording& recording, Part&& part) {
     const std::span<const StageRun> runs(recording.runs);
@@ -70,24 +71,24 @@ void for_each_part(const Recording& recording, Part&& part) {
     }
 }
 
-/// What one stage comes to in all steps, s.
+/// Sums of one stage over all steps.
 struct StageSum {
     double work = 0;
     double serial = 0;
-    std::size_t blocks = 0;  // of loops and phases
+    std::size_t blocks = 0;  // number of blocks of loops and phases
 };
-/// By stage; the last is what lies between graphs.
+/// Sums by stage. The last entry is the work between graphs.
 std::vector<StageSum> sums_by_stage(const Recording& recording);
 
-/// Of each block what a fifth of several recordings of the same steps does not exceed (quiet.h): what was interrupted,
-/// or found its caches full of another program's data, is not taken for slow. Throws std::runtime_error unless all did
-/// the same work.
+/// Takes for each block the lower fifth of its times in several recordings of the same steps (quiet.h). A block that
+/// was interrupted, or found its caches full of another program's data, is then not taken for slow. Throws
+/// std::runtime_error unless all recordings did the same work.
 Recording undisturbed(std::span<const Recording> recordings);
 
-/// Appends steps of the same graph.
+/// Appends the steps of `more`. Throws std::runtime_error if they belong to a different graph.
 void append(const Recording& more, Recording& all);
 
-/// One line a piece: run, stage, kind, then microseconds of its blocks.
+/// Writes one line per piece: run, stage, kind, then the times of its blocks [us].
 void write_csv(const Recording& recording, std::span<const std::string> stage_name, std::ostream& out);
 
 }  // namespace skerry::profiling

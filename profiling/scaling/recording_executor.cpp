@@ -19,7 +19,7 @@ void reserve_as(const Recording& expected, Recording& recording) {
     constexpr std::size_t at_least = 1 << 16;
     recording.runs.reserve(std::max(at_least, expected.runs.size()));
     recording.pieces.reserve(std::max(at_least, expected.pieces.size()));
-    recording.seconds.resize(std::max(16 * at_least, expected.seconds.size()));  // so that its pages are there
+    recording.seconds.resize(std::max(16 * at_least, expected.seconds.size()));  // makes the system provide its pages
     recording.seconds.clear();
 }
 

@@ -1,4 +1,4 @@
-// RecordingExecutor: one thread that has work cut as for many, and notes what each block takes.
+// RecordingExecutor: one thread that runs work divided as if for many threads, and records the time of each block.
 #pragma once
 
 #include <chrono>
@@ -9,16 +9,16 @@
 
 namespace skerry::profiling {
 
-/// Runs all on the calling thread in the order of the list. Blocks that a block hands out count as part of it.
+/// Runs everything on the calling thread in the order of the list. Blocks that a block hands out count as part of it.
 class RecordingExecutor final : public Executor, public PhaseRunner {
 public:
-    /// `claimed_workers`: what worker_count() says, and so what work is cut for. At least 2: one worker does without a
-    /// Team.
+    /// `claimed_workers` is returned by worker_count(), so work is divided for it. It must be at least 2: one worker
+    /// does without a Team.
     explicit RecordingExecutor(int claimed_workers);
 
-    /// From now on. `expected`: of the same steps, for its size; memory is then there before.
+    /// Starts recording. `expected` is a recording of the same steps; memory for its size is allocated beforehand.
     void begin(const Recording& expected = {});
-    /// What was done since begin().
+    /// Stops recording and returns the work since begin().
     Recording end();
 
     Backend backend() const override { return Backend::serial; }
@@ -30,7 +30,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    /// Notes the time since the last note as a block, and returns its row.
+    /// Records the time since the last record as a block.
     void note_block();
     void note_serial();
     void run_noted(PieceKind kind, Index begin, Index end, FunctionRef<void(Index block)> body);
@@ -39,7 +39,7 @@ private:
 
     int claimed_workers_;
     bool on_ = false, in_block_ = false;
-    double note_cost_ = 0;  // s, of noting itself, which is taken off each block
+    double note_cost_ = 0;  // time of recording itself, subtracted from each block [s]
     Clock::time_point last_{};
     Recording recording_;
 };

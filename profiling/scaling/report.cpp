@@ -11,7 +11,7 @@ namespace skerry::profiling {
 
 namespace {
 
-/// Of one core over that of `cores`; 0 where either was not asked for.
+/// Speed-up: time on one core over the time on `cores`; 0 if one of the two is missing.
 double speed_up(const std::map<int, double>& seconds, int cores) {
     return seconds.contains(1) && seconds.contains(cores) ? seconds.at(1) / seconds.at(cores) : 0;
 }
@@ -35,7 +35,7 @@ void print_stages(const SceneStudy& study) {
                         static_cast<double>(sums[s].blocks) / static_cast<double>(study.steps));
 }
 
-/// What stages cost on so many cores, dearest first.
+/// Prints the costs of the stages on `cores` cores, the most expensive first.
 void print_costs(const SceneStudy& study, int cores, const std::vector<StageCost>& costs) {
     std::vector<std::size_t> order(costs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

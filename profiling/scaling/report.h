@@ -1,4 +1,4 @@
-// The figures of all scenes: as text, as tables for the plot, as JSON.
+// Results of all scenes: as text, as tables for the plot, and as JSON.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +15,14 @@ namespace skerry::profiling {
 struct ScalingReport {
     std::vector<SceneStudy> studies;
     std::optional<MemoryFigures> memory;
-    HandingOutCosts costs;  // of this machine, beside those of the model
+    HandingOutCosts costs;  // measured on this machine, for comparison with the model
 };
 
 void print(const SceneStudy& study);
 void print(const MemoryFigures& memory);
 void print(const HandingOutCosts& costs, const MachineModel& machine);
 
-/// scaling.csv, stages.csv and scaling.json, which has the machine, too.
+/// Writes scaling.csv, stages.csv and scaling.json. The JSON file also holds the machine model.
 void write(const std::filesystem::path& folder, const ScalingReport& report, const StudyOptions& options);
 
 }  // namespace skerry::profiling

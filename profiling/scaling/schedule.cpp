@@ -13,19 +13,19 @@ namespace {
 
 constexpr int nobody = -1;
 
-/// By what a block takes longer than alone when `busy` of `cores` cores are at work.
+/// Factor by which a block takes longer than alone while `busy` of `cores` cores work.
 class Slowdown {
 public:
     Slowdown(int cores, const MachineModel& machine, const Traffic& traffic)
         : demand_(traffic.bytes_per_second), bandwidth_(machine.bandwidth) {
         const int chiplets = (cores + machine.cores_per_chiplet - 1) / machine.cores_per_chiplet;
         in_caches_ = traffic.working_set <= chiplets * machine.cache_per_chiplet;
-        // What is read elsewhere each core has written as often as any other.
+        // Every core is assumed to have written an equal part of the data that a block reads.
         const double elsewhere = 1 - 1.0 / cores, far = 1 - 1.0 / chiplets;
         moved_ = demand_ * ((elsewhere - far) / machine.near_rate + far / machine.far_rate);
         moved_of_own_ = machine.own_from_elsewhere * moved_;
     }
-    /// `own`: a block of the worker's own share.
+    /// `own`: true for a block of the worker's own share.
     double operator()(int busy, bool own) const {
         const double alone = 1 + (own ? moved_of_own_ : moved_);
         return in_caches_ ? alone : std::max(alone, busy * demand_ / bandwidth_);
@@ -36,7 +36,7 @@ private:
     bool in_caches_ = true;
 };
 
-/// Cores that work through the parts of a recording, one part after the other.
+/// Simulated cores that work through the parts of a recording, one part after the other.
 class Cores {
 public:
     Cores(const Recording& recording, int count, const MachineModel& machine, const Traffic& traffic)
@@ -47,36 +47,36 @@ public:
           workers_(static_cast<std::size_t>(count)),
           costs_(recording.graph.stage_count() + 1) {}
 
-    /// Begins when all has ended before, on worker 0. Returns when it ends, s.
+    /// Runs a part, which begins on worker 0 after the end of all earlier parts. Returns the time at which it ends [s].
     double run(std::span<const StageRun> part);
     const std::vector<StageCost>& costs() const { return costs_; }
 
 private:
-    /// The blocks of a loop that one worker begins with.
+    /// Blocks of a loop that one worker begins with.
     struct Share {
-        Range blocks;        // those that nobody has taken
-        int taker = nobody;  // the last
+        Range blocks;        // blocks that no worker has taken yet
+        int taker = nobody;  // the worker that took a block last
         double counter_free = 0;
     };
-    /// A loop whose blocks are being taken.
+    /// A loop in progress.
     struct Loop {
         int owner;
-        int inside;  // workers
+        int inside;  // number of workers that take its blocks
         std::vector<Share> shares;
     };
     struct Worker {
-        Index stage = no_index;  // row of part_, if it runs one
-        Index piece = 0;         // its next
-        int loop = nobody;       // owner of the loop that it takes blocks from
-        std::size_t share = 0;   // of that loop, from which it takes them
+        Index stage = no_index;  // row of part_ that it runs, if any
+        Index piece = 0;         // its next piece
+        int loop = nobody;       // owner of the loop from which it takes blocks
+        std::size_t share = 0;   // share of that loop from which it takes blocks
         bool idle = true, in_team = false;
-        bool handed_out = false;  // a loop of its stage
-        bool alone = false;       // with a serial piece
+        bool handed_out = false;  // it has handed out a loop of its stage
+        bool alone = false;       // it runs a serial piece
         double idle_since = 0;
     };
     struct Event {
         double time;
-        std::uint64_t number;  // of events at the same time the first made is the first
+        std::uint64_t number;  // order of creation, which decides between events at the same time
         int worker;
         bool operator>(const Event& other) const {
             return time != other.time ? time > other.time : number > other.number;
@@ -88,7 +88,7 @@ private:
     int busy() const {
         return static_cast<int>(std::ranges::count_if(workers_, [](const Worker& w) { return !w.idle; }));
     }
-    /// Of a block or a serial piece of the stage.
+    /// Returns the time of a block or serial piece with its slowdown [s], and adds it to the costs of the stage.
     double longer(double seconds, bool own, Index stage) {
         const double slower = slowdown_(busy(), own);
         add(stage, &StageCost::work, seconds);
@@ -99,7 +99,7 @@ private:
         const Index number = part_[static_cast<std::size_t>(stage)].stage;
         return number == no_index ? costs_.back() : costs_[static_cast<std::size_t>(number)];
     }
-    /// s, of one core.
+    /// Adds the time of one core to a cost of the stage [s].
     void add(Index stage, double StageCost::*what, double seconds) {
         cost_of(stage).*what += seconds / static_cast<double>(workers_.size());
     }
@@ -128,14 +128,14 @@ private:
     double now_ = 0;
 
     std::span<const StageRun> part_;
-    std::vector<Index> left_;   // predecessors, by stage
-    std::vector<Index> ready_;  // stages
+    std::vector<Index> left_;   // number of unfinished predecessors, by stage
+    std::vector<Index> ready_;  // stages that may start
     std::vector<Loop> loops_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     std::uint64_t event_count_ = 0;
     int team_leader_ = nobody;
-    std::vector<StageCost> costs_;  // as stage_costs
-    double passed_ = 0;             // s, until when cores that wait have been counted
+    std::vector<StageCost> costs_;  // as returned by stage_costs
+    double passed_ = 0;             // time up to which waiting cores have been counted [s]
 };
 
 double Cores::run(std::span<const StageRun> part) {
@@ -163,7 +163,7 @@ double Cores::run(std::span<const StageRun> part) {
     return now_;
 }
 
-/// Counts the cores that wait until then.
+/// Adds the time of waiting and joining cores up to `time` to the costs.
 void Cores::pass(double time) {
     const double seconds = time - passed_;
     passed_ = time;
@@ -248,8 +248,8 @@ Cores::Loop& Cores::loop_of(int owner) {
     return *std::ranges::find_if(loops_, [&](const Loop& loop) { return loop.owner == owner; });
 }
 
-/// The next block of the loop that the worker is in, of its own share while there is one. When there is none the worker
-/// leaves, and the last that does lets the owner go on.
+/// Takes the next block of the worker's loop, from its own share while that has one. If there is none, the worker
+/// leaves the loop. The last worker to leave lets the owner continue.
 void Cores::take_block(int w, double time) {
     Loop& loop = loop_of(worker(w).loop);
     const std::size_t count = loop.shares.size(), own = static_cast<std::size_t>(w) % count;
@@ -317,7 +317,7 @@ void Cores::find_work(int w, double time) {
     self.idle_since = time;
 }
 
-/// Idle workers, those first that have looked for work the shortest time.
+/// Wakes up to `most` idle workers, those first that became idle last.
 void Cores::wake(Index most, double time) {
     for (; most > 0; --most) {
         int latest = nobody;
@@ -334,7 +334,8 @@ void Cores::wake(Index most, double time) {
     }
 }
 
-/// Members take blocks in their order, each when it has done its last. Returns when all are done.
+/// Runs a phase. Members take blocks in order, each when it has finished its previous one. Returns the end of the phase
+/// [s].
 double Cores::run_phase(int w, const Piece& piece, double time) {
     const Index count = piece.blocks.size();
     if (team_leader_ == nobody && count > 1) {
@@ -359,13 +360,13 @@ double Cores::run_phase(int w, const Piece& piece, double time) {
         end = std::max(end, done);
         work += seconds_of(block);
     }
-    // all count their blocks on one line
+    // All members count their blocks on one cache line.
     const double barrier = at_work == 1 ? 0 : machine_.barrier + static_cast<double>(at_work - 2) * transfer_;
     const Index stage = worker(w).stage;
     add(stage, &StageCost::work, work);
     add(stage, &StageCost::exchange, (slower - 1) * work);
     add(stage, &StageCost::handing_out, barrier * static_cast<double>(at_work));
-    // pass counts members, as they have no stage, as if they waited all the time
+    // pass() counts members as waiting all the time, since they have no stage. This corrects it.
     add(stage, &StageCost::tail, end - time - slower * work - barrier * static_cast<double>(at_work - 1));
     return end + barrier;
 }

@@ -20,13 +20,13 @@ void go_on_for(World& world, double seconds) {
     if (!report.ok()) throw std::runtime_error(report.message());
 }
 
-/// In frames, so that steps are as long as in a run.
+/// Advances in frames, so that steps have the same length as in a run.
 void run_to(World& world, double time) {
     constexpr double frame = 1.0 / 60;
     while (time - world.time() > 1e-9) go_on_for(world, std::min(frame, time - world.time()));
 }
 
-/// A copy of the world in the hands of an executor, with steps behind it in which memory grew and caches filled.
+/// A copy of the world that runs on an executor. Its first steps have let memory grow and caches fill.
 class Copy {
 public:
     Copy(const World& world, std::unique_ptr<Executor> executor, double warm_up) : world_(world.clone()) {
@@ -34,7 +34,7 @@ public:
         go_on_for(world_, warm_up);
     }
     void go_on(double seconds) { go_on_for(world_, seconds); }
-    /// s, of each step, by the wall clock.
+    /// Advances by `seconds` and returns the wall-clock time of each step [s].
     std::vector<double> measure(double seconds) {
         std::vector<double> steps;
         steps.reserve(1 << 16);
@@ -69,7 +69,7 @@ public:
             recordings.push_back(record(recordings, study, repeat == 0));
         append(undisturbed(recordings), study.recording);
         std::vector<Round> rounds;
-        double patience = options_.wait;  // s
+        double patience = options_.wait;  // [s]
         for (int repeat = 0; repeat < options_.repeats; ++repeat) {
             patience -= wait_for_quiet(patience);
             rounds.push_back(measure_all());
@@ -130,8 +130,8 @@ private:
 
     World& world_;
     const StudyOptions& options_;
-    double step_;  // s
-    int steps_;    // of the window
+    double step_;  // [s]
+    int steps_;    // number of steps of the window
     std::optional<std::uint64_t> hash_;
 };
 

@@ -1,10 +1,10 @@
-// profile_stiff_peers: stiff bodies of ours beside those of MuJoCo and Drake where these are installed: friction that
-// holds and slides, a cantilever, a stack, a heavy ball on a soft block, a pile. Writes stiff_peers.csv;
-// profiling/plot_stiff_peers.py prints tables of it and draws them.
+// profile_stiff_peers: compares stiff bodies of Skerry with those of MuJoCo and Drake where these are installed.
+// Scenes: friction that holds and slides, a cantilever, a stack, a heavy ball on a soft block, a pile. Writes
+// stiff_peers.csv; profiling/plot_stiff_peers.py prints tables of it and draws them.
 //
-// Every engine gets the same meshes, masses, material and gravity, runs on one thread, is timed by the CPU time of its
-// steps alone, and measured from the motion of its nodes by the same rules (measures.h). Short runs are repeated in
-// turns, one engine after the other.
+// Every engine gets the same meshes, masses, material and gravity and runs on one thread. It is timed by the CPU time
+// of its steps alone. It is measured from the motion of its nodes by the same rules (measures.h). Short runs are
+// repeated in turns, one engine after the other.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -26,11 +26,11 @@ struct Options {
     std::vector<std::string> engines{"Skerry", "MuJoCo", "Drake"};
     std::filesystem::path out = "out/profiling/stiff";
     std::string mujoco = "python3", drake = "python3";
-    double cap = 120;  // CPU s a run
-    double once = 5;   // CPU s: longer runs are not repeated
+    double cap = 120;  // CPU time limit of a run [s]
+    double once = 5;   // CPU time above which runs are not repeated [s]
     int repeat = 3;
     int finer = 1;
-    std::string setting;  // part of a name
+    std::string setting;  // only runs whose name contains this
 };
 
 std::vector<Real> moduli_of(const std::string& scene) {
@@ -59,7 +59,7 @@ void write(Real modulus, const Timed& one, std::ofstream& table) {
           << std::flush;
 }
 
-/// "implicit, tolerance 1e-03, 10 ms"
+/// Name of a runner with its step, for example "implicit, tolerance 1e-03, 10 ms".
 std::string name_of(const Runner& runner) {
     std::array<char, 32> step;
     std::snprintf(step.data(), step.size(), ", %g ms", 1e3 * runner.step);

@@ -37,7 +37,7 @@ void measure_incline(const PrecisionScene& scene, const Record& record, Measures
     found.acceleration_error = gained / time / law - 1;
 }
 
-/// Place and height of the parabola through a largest value and those beside it.
+/// Position and height of the vertex of the parabola through a maximum and its neighbours.
 std::array<Real, 2> top_of(const std::vector<Real>& values, std::size_t k) {
     if (k == 0 || k + 1 >= values.size()) return {static_cast<Real>(k), values[k]};
     const Real slope = (values[k + 1] - values[k - 1]) / 2, bend = values[k + 1] - 2 * values[k] + values[k - 1];
@@ -52,8 +52,8 @@ std::size_t largest(const std::vector<Real>& values, std::size_t begin, std::siz
     return static_cast<std::size_t>(std::max_element(at(begin), at(end)) - values.begin());
 }
 
-/// The first peak is sought in the first 0.65 periods of beam theory, whose period is 62 samples; the others one period
-/// after another.
+/// Searches the first peak in the first 0.65 periods of beam theory, whose period is 62 samples. Searches the other
+/// peaks one period after another.
 void measure_cantilever(const PrecisionScene& scene, const Record& record, Measures& found) {
     const Places& nodes = scene.bodies[0].mesh.nodes;
     std::size_t tip = 0;
@@ -68,7 +68,7 @@ void measure_cantilever(const PrecisionScene& scene, const Record& record, Measu
     for (int k = 1; k < 4; ++k) {
         const auto about = static_cast<std::size_t>(last + period);
         const Real next = top_of(sag, largest(sag, about - beam / 4, about + beam / 4))[0];
-        // what is left of a strongly damped swing has its peak anywhere
+        // The remainder of a strongly damped swing may have its peak anywhere.
         if (std::abs(next - last - period) > 0.1 * period) break;
         last = next;
         period = (last - first[0]) / k;
@@ -81,8 +81,8 @@ void measure_cantilever(const PrecisionScene& scene, const Record& record, Measu
     found.left = (*high - *low) / found.peak;
 }
 
-/// How deep a point is in a body, m; 0 outside. Distances are those to the planes of boundary faces, which for a convex
-/// body is the distance to its surface.
+/// Depth of a point in a body; 0 outside [m]. Distances are those to the planes of boundary faces. For a convex body
+/// this is the distance to its surface.
 class Inside {
 public:
     Inside(const Mesh& mesh, std::span<const Vec3> places) : mesh_(mesh), places_(places) {
@@ -121,7 +121,7 @@ private:
     std::vector<Mat3> inverse_;
 };
 
-/// The deepest node of one body in another, m.
+/// Depth of the deepest node of one body in another [m].
 Real overlap_of(const PrecisionScene& scene, const Places& places,
                 const std::vector<std::vector<BoundaryTriangle>>& faces) {
     std::vector<std::span<const Vec3>> nodes;
@@ -169,7 +169,7 @@ void measure_rest(const PrecisionScene& scene, const Record& record, Measures& f
     found.speed = std::sqrt(sum / static_cast<Real>(count));
 }
 
-/// How far the ball's lowest point comes below where the block's top was.
+/// Measures how deep the ball's lowest point comes below the initial top of the block.
 void measure_ball(const PrecisionScene& scene, const Record& record, Measures& found) {
     const Places& block = scene.bodies[0].mesh.nodes;
     Real top = block[0].z();

@@ -1,4 +1,4 @@
-// What a run of one of the scenes is measured by, whoever ran it: from the places and velocities of nodes alone.
+// Measures of a run of one of the scenes by any engine, from the positions and velocities of nodes alone.
 #pragma once
 
 #include <limits>
@@ -7,17 +7,17 @@
 
 namespace skerry::profiling {
 
-/// What has no meaning in a scene is not a number.
+/// Measures of a run. A measure without meaning in a scene is NaN.
 struct Measures {
     static constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
-    Real creep = none;                           // m/s, of the centre of mass over the second half
-    Real acceleration_error = none;              // over the second half, part of the law's
-    Real period = none;                          // s, of the cantilever's end
-    Real peak = none, peak_time = none;          // m, s: its first one, or the ball's deepest place
-    Real left = none;                            // peak-to-peak amplitude of the fifth period over the first peak
-    Real speed = none;                           // m/s, root mean square of nodes in the last 0.1 s
-    Real overlap = none, overlap_at_end = none;  // m, nodes in other bodies
-    Real below_planes = none;                    // m, nodes in floor and walls
+    Real creep = none;                   // speed of the centre of mass over the second half [m/s]
+    Real acceleration_error = none;      // over the second half, relative to the acceleration by Coulomb's law
+    Real period = none;                  // of the cantilever's end [s]
+    Real peak = none, peak_time = none;  // first peak of the cantilever, or deepest position of the ball [m], [s]
+    Real left = none;                    // peak-to-peak amplitude of the fifth period over the first peak
+    Real speed = none;                   // root mean square over nodes in the last 0.1 s [m/s]
+    Real overlap = none, overlap_at_end = none;  // depth of nodes in other bodies [m]
+    Real below_planes = none;                    // depth of nodes in floor and walls [m]
 };
 
 Measures measure(const PrecisionScene& scene, const Record& record);

@@ -39,7 +39,7 @@ void add_skerry(const PrecisionScene& scene, std::vector<Runner>& runners) {
         return;
     }
     if (scene.name == "ball on block") {
-        // it is pressed far together: implicit bodies are for small strain
+        // The block is strongly compressed, and implicit bodies are meant for small strain.
         for (const Real step : {0.0, 5e-4}) runners.push_back(skerry(explicit_elastic, step, 1e-3));
         runners.push_back(skerry(explicit_elastic, 1e-4, 1e-8));
         runners.back().setting = "reference";
@@ -60,7 +60,8 @@ void add_peer(const std::string& engine, const std::string& setting, Real step, 
                        .keeps_distance = engine != "Drake"});
 }
 
-/// Its implicit integrator ("discrete"), its own tolerance and, but where said, its own softness of contacts.
+/// Adds MuJoCo with its implicit integrator ("discrete"), its default tolerance and, unless stated otherwise, its
+/// default softness of contacts.
 void add_mujoco(const PrecisionScene& scene, const std::string& python, std::vector<Runner>& runners) {
     const std::string command = script_command(python, "mujoco_peer.py") + " --integrator discrete --tolerance 1e-8";
     const auto add = [&](const std::string& setting, Real step, const std::string& options) {
@@ -87,7 +88,8 @@ void add_mujoco(const PrecisionScene& scene, const std::string& python, std::vec
     }
 }
 
-/// Its convex solver with "lagged" friction, the default, and the dissipation (s/m) of its own example of a torus.
+/// Adds Drake with its convex solver and its default "lagged" friction. The usual dissipation is that of Drake's own
+/// torus example [s/m].
 void add_drake(const PrecisionScene& scene, const std::string& python, std::vector<Runner>& runners) {
     const std::string command = script_command(python, "drake_peer.py");
     const auto add = [&](const std::string& setting, Real step, const std::string& options) {

@@ -1,4 +1,4 @@
-// Who runs a scene of profile_stiff_peers, and with which settings.
+// Engines that run a scene of profile_stiff_peers, and their settings.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,22 @@
 
 namespace skerry::profiling {
 
-/// A point of a plot: ours if it has no peer.
+/// One engine with one setting: a point of a plot. It is Skerry if `peer` is empty.
 struct Runner {
     std::string engine, setting;
-    Real step = 0;  // s; 0 leaves it to the engine
+    Real step = 0;  // step size; 0 leaves it to the engine [s]
     SkerryVariant ours{};
     std::optional<Peer> peer{};
-    ElementKind element = ElementKind::linear;  // of ours
-    bool keeps_distance = true;                 // between surfaces
+    ElementKind element = ElementKind::linear;  // kind of element of Skerry
+    bool keeps_distance = true;                 // true if the engine keeps a distance between surfaces
 
-    /// The scene as this engine gets it.
+    /// Returns the scene in the form for this engine.
     PrecisionScene prepared(const PrecisionScene& scene) const;
-    /// Runs what prepared() gave.
+    /// Runs a scene returned by prepared().
     Record run(const PrecisionScene& scene, double cap, const std::filesystem::path& folder) const;
 };
 
-/// Those that have a program here. `mujoco` and `drake` are Pythons that may have the module.
+/// Returns the runners that are installed. `mujoco` and `drake` are Python interpreters that have the module, or empty.
 std::vector<Runner> make_runners(const PrecisionScene& scene, const std::string& mujoco, const std::string& drake);
 
 }  // namespace skerry::profiling

@@ -12,8 +12,8 @@
 namespace skerry::profiling {
 namespace {
 
-constexpr Real g = 9.81;       // m/s^2
-constexpr Real sample = 0.01;  // s, at which motion is looked at: the longest step that is compared
+constexpr Real g = 9.81;       // [m/s^2]
+constexpr Real sample = 0.01;  // interval of the samples: the longest step that is compared [s]
 
 PrecisionBody body_of(Mesh mesh, const Vec3& position, const Vec3& rotation = Vec3::Zero()) {
     const Real angle = rotation.norm();
@@ -29,13 +29,13 @@ void last_for(PrecisionScene& scene, Real seconds, Real interval = sample) {
     scene.seconds = scene.samples * interval;
 }
 
-/// A body's mesh: a box of that size, and so many cells along its axes, each of them in `finer` parts.
+/// Mesh of a box of the given size and number of cells along its axes, with each cell cut into `finer` parts per axis.
 Mesh box_of(const Vec3& size, std::array<int, 3> cells, int finer) {
     for (int& count : cells) count *= finer;
     return mesh::box(size, cells);
 }
 
-/// On the plane from the start, at the distance that it keeps.
+/// Adds a block that starts on the plane, at the distance that it keeps.
 void add_incline(PrecisionScene& scene, Real degrees, int finer) {
     const Real angle = std::atan(incline_friction) + degrees * std::numbers::pi / 180;
     scene.material.friction = incline_friction;
@@ -50,7 +50,7 @@ void add_cantilever(PrecisionScene& scene, int finer) {
     for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n)
         if (body.mesh.nodes[n].x() < -0.5 + 1e-9) body.fixed.push_back(static_cast<Index>(n));
     scene.bodies.push_back(std::move(body));
-    // five periods by the theory of beams, and a little
+    // The duration is a little more than five periods of beam theory.
     const Real slower = std::sqrt(1e7 / scene.material.young_modulus);
     last_for(scene, 3.25 * slower, sample * slower);
 }
@@ -63,7 +63,7 @@ void add_stack(PrecisionScene& scene, int finer) {
 }
 
 void add_ball_on_block(PrecisionScene& scene, int finer) {
-    constexpr Real radius = 0.1, fall = 0.3, height = 0.3;  // m
+    constexpr Real radius = 0.1, fall = 0.3, height = 0.3;  // [m]
     scene.planes.push_back({});
     scene.bodies.push_back(
         body_of(box_of({1, 1, height}, {10, 10, 3}, finer), {0, 0, height / 2 + scene.contact_distance}));
@@ -82,9 +82,9 @@ void add_pile(PrecisionScene& scene, int finer) {
     last_for(scene, 1);
 }
 
-/// That of a solid sphere, spread over the nodes that draw it.
+/// Sets the mass of a sphere to that of a solid one, spread evenly over the nodes of its mesh.
 void set_sphere_masses(PrecisionScene& scene) {
-    constexpr Real density = 8000;  // kg/m^3
+    constexpr Real density = 8000;  // [kg/m^3]
     for (PrecisionBody& body : scene.bodies) {
         if (body.sphere == 0) continue;
         const Real mass = density * 4 * std::numbers::pi / 3 * std::pow(body.sphere, 3);
@@ -97,7 +97,7 @@ void set_sphere_masses(PrecisionScene& scene) {
 PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus, int finer) {
     PrecisionScene scene;
     scene.name = name;
-    // without losses: what is left of motion is then what steps and contacts have left of it
+    // The material has no losses. Any loss of motion then comes from steps and contacts.
     scene.material = {.young_modulus = young_modulus,
                       .poisson_ratio = 0.3,
                       .density = 1000,
@@ -124,7 +124,7 @@ PrecisionScene make_stiff_scene(std::string_view name, Real young_modulus, int f
 }
 
 PrecisionScene without_distance(PrecisionScene scene) {
-    constexpr Real sunk = 1e-5;  // m: 1 kPa over the 1e8 Pa/m of Drake's contacts
+    constexpr Real sunk = 1e-5;  // depth: 1 kPa over the 1e8 Pa/m of Drake's contacts [m]
     for (PrecisionPlane& plane : scene.planes) plane.point += (scene.contact_distance + sunk) * plane.normal;
     scene.contact_distance = 0;
     return scene;

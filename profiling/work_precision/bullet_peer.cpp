@@ -1,10 +1,10 @@
-// work_precision_bullet: runs a scene of profile_work_precision with Bullet's deformable bodies. The only file that
-// knows Bullet; a program of its own, since Bullet comes in single and in double precision, which no one program can
-// hold, and since some of its runs end the process.
+// work_precision_bullet: runs a scene of profile_work_precision with Bullet's deformable bodies. This is the only file
+// that uses Bullet. It is a separate program for two reasons. Bullet comes in single and in double precision, which no
+// one program can hold. Some of its runs end the process.
 //
-// The bodies are tetrahedra of corotational material with the masses of the scene, without damping of Bullet's own.
-// What moves in the scene touches what stands still through nodes (SDF_RDN) and each other through nodes and faces
-// (VF_DD): the contacts that Bullet has for this.
+// The bodies are tetrahedra of corotational material with the masses of the scene, without Bullet's own damping. Moving
+// objects touch fixed ones through nodes (SDF_RDN) and each other through nodes and faces (VF_DD): the contacts that
+// Bullet has for this.
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
@@ -32,21 +32,21 @@ namespace {
 
 struct Options {
     std::string scene, result;
-    double step = 1.0 / 240;      // s
+    double step = 1.0 / 240;      // [s]
     bool implicit = false;        // elastic forces at the end of the step, by Newton's method; else at its start
-    int newton_steps = 1;         // of an implicit step; Bullet's default
-    bool line_search = false;     // of Newton's method
+    int newton_steps = 1;         // number of Newton steps of an implicit step; Bullet's default
+    bool line_search = false;     // line search of Newton's method
     bool projection = false;      // contacts as projections in the linear solver instead of multipliers
     int contact_iterations = 10;  // sweeps over the contacts; Bullet's default
-    double contact_residual = 0;  // at which the sweeps end early
-    double erp = 0.06;            // part of an overlap that is taken back in a step; Bullet's default
+    double contact_residual = 0;  // residual at which the sweeps end early
+    double erp = 0.06;            // part of an overlap that is corrected in a step; Bullet's default
     double cfm = 0.01;            // softness of contacts; Bullet's default
-    double repulsion = 0;         // N/m, spring between bodies that are nearer than their margins; 0: Bullet's default
+    double repulsion = 0;  // stiffness of springs between bodies nearer than their margins; 0: Bullet's default [N/m]
     int repeat = 1;
-    double cap = 60;  // CPU seconds that a run may take
+    double cap = 60;  // CPU time limit of a run [s]
 };
 
-/// Newton's method is set up by members that only derived classes see.
+/// Sets the parameters of Newton's method, which only derived classes can access.
 struct BodySolver : btDeformableBodySolver {
     BodySolver(int steps, btScalar tolerance) {
         m_maxNewtonIterations = steps;
@@ -76,7 +76,7 @@ btVector3 gravity_at(const Json& keys, double time) {
     return vector_of(keys.back(), 1);
 }
 
-/// A world as Bullet's own examples put it together, and what must outlive it.
+/// A world built like those of Bullet's own examples, and the objects that must outlive it.
 class Simulation {
 public:
     Simulation(const Json& scene, const Options& options)
@@ -115,7 +115,7 @@ public:
         world_->stepSimulation(static_cast<btScalar>(h), 0, static_cast<btScalar>(h));
     }
 
-    /// Appends x, y, z of all nodes of all bodies; false if one is not finite.
+    /// Appends x, y, z of all nodes of all bodies. Returns false if a position is not finite.
     bool sample(Json& positions, Json& velocities) const {
         bool finite = true;
         Json x = Json::array(), v = Json::array();
@@ -132,12 +132,12 @@ public:
     }
 
 private:
-    /// A half space is a large box: the distances that deformable bodies ask for are those of convex shapes.
+    /// Adds a half space as a large box, since deformable bodies need the distances of convex shapes.
     void add_plane(const Json& plane) {
         constexpr btScalar half_size = 5;
         auto shape = std::make_unique<btBoxShape>(btVector3(half_size, half_size, half_size));
         const btVector3 normal = vector_of(plane["normal"]);
-        // the other half is the margin of the bodies
+        // The other half of the contact distance is the margin of the bodies.
         const btScalar shift = scene_["contact_distance"].get<btScalar>() / 2 - half_size;
         btTransform pose(shortestArcQuat(btVector3(0, 0, 1), normal), vector_of(plane["point"]) + normal * shift);
         auto rigid = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, shape.get()));
@@ -148,7 +148,7 @@ private:
         rigid_.push_back(std::move(rigid));
     }
 
-    /// Bullet multiplies the two sides.
+    /// Friction factor of one side. Bullet multiplies the factors of both sides.
     btScalar factor_of_friction() const { return std::sqrt(scene_["material"]["friction"].get<btScalar>()); }
 
     void add_body(const Json& body) {
@@ -158,8 +158,8 @@ private:
         auto* soft = new btSoftBody(&world_->getWorldInfo(), count, nodes.data(), nullptr);
         for (const Json& t : body["tetrahedra"]) {
             soft->appendTetra(t[0], t[1], t[2], t[3]);
-            // Bullet's trees of nodes are built along links, without end where a node has none; they carry no force
-            // here
+            // Bullet builds its trees of nodes along links, and never ends at a node without links. The links carry no
+            // force here.
             for (int a = 0; a < 4; ++a)
                 for (int b = a + 1; b < 4; ++b) soft->appendLink(t[a].get<int>(), t[b].get<int>(), nullptr, true);
         }
@@ -174,7 +174,7 @@ private:
         }
         for (const Json& fixed : body["fixed"]) soft->setMass(fixed.get<int>(), 0);
         const Json& material = scene_["material"];
-        // two bodies keep the sum of theirs
+        // Two bodies keep the sum of their margins.
         soft->getCollisionShape()->setMargin(scene_["contact_distance"].get<btScalar>() / 2);
         if (options_.repulsion > 0) soft->setSpringStiffness(static_cast<btScalar>(options_.repulsion));
         soft->m_cfg.kDF = factor_of_friction();
@@ -217,7 +217,7 @@ private:
     std::unique_ptr<btDeformableMultiBodyDynamicsWorld> world_;
 };
 
-/// One run from the start; only the steps are timed.
+/// Runs the scene once from the start. Only the steps are timed.
 Json run_once(const Json& scene, const Options& options) {
     Simulation simulation(scene, options);
     const int samples = scene["samples"];

@@ -1,11 +1,12 @@
-// profile_work_precision: CPU time against error, ours beside Bullet's deformable bodies and MuJoCo's flex where those
-// are installed, for the time step and the integrator, the solver and its tolerance, the mesh; a pile by its
-// statistics; and how well friction holds. Writes CSV files; profiling/plot_work_precision.py draws them.
+// profile_work_precision: CPU time against error of Skerry, beside Bullet's deformable bodies and MuJoCo's flex where
+// these are installed. It varies the time step and integrator, the solver and its tolerance, and the mesh. It also
+// compares a pile by its statistics, and how well friction holds. Writes CSV files; profiling/plot_work_precision.py
+// draws them.
 //
 // Every engine gets the same meshes, masses, material and gravity (scenes.cpp), runs on one thread, and is timed by the
-// CPU time of its steps alone. The error is the mass-weighted distance of all nodes, in mean over time, from a run of
-// ours with a step far shorter than any compared, whose own error is written beside it, and from the peer's own run
-// with its shortest step.
+// CPU time of its steps alone. The error is the mass-weighted distance of all nodes, averaged over time. One error is
+// relative to a run of Skerry with a step far shorter than any compared; the error of that run is written, too. The
+// other is relative to the peer's own run with its shortest step.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>

@@ -35,8 +35,8 @@ Probes::Probes(const PrecisionScene& scene, int points_per_body) {
         const std::vector<Vec3>& x = body.mesh.nodes;
         Vec3 lower = x[0], upper = x[0];
         for (const Vec3& node : x) lower = lower.cwiseMin(node), upper = upper.cwiseMax(node);
-        // The same numbers on every mesh: a point counts where all meshes have material, which the core of the bounding
-        // box is taken for.
+        // Every mesh gets equal random numbers. Points lie in the core of the bounding box, where all meshes are
+        // assumed to have material.
         std::mt19937 random(7);
         const auto next = [&] { return 0.25 + 0.5 * static_cast<Real>(random()) / 4294967295.0; };
         for (int p = 0; p < points_per_body; ++p) {

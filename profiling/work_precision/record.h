@@ -1,4 +1,4 @@
-// What a run of a scene leaves behind, whoever ran it, and how far two runs are apart.
+// Record of a run of a scene by any engine, and the distance between two runs.
 #pragma once
 
 #include <array>
@@ -10,26 +10,26 @@ namespace skerry::profiling {
 
 struct Record {
     bool finished = false;
-    double seconds = 0;                         // CPU time of the steps, median of the repeats
-    double steps = 0;                           // taken
-    Real step = 0;                              // s
-    std::vector<std::vector<Vec3>> positions;   // m, by sample: all nodes of all bodies
-    std::vector<std::vector<Vec3>> velocities;  // m/s
+    double seconds = 0;                         // CPU time of the steps, median of the repeats [s]
+    double steps = 0;                           // number of steps taken
+    Real step = 0;                              // [s]
+    std::vector<std::vector<Vec3>> positions;   // of all nodes of all bodies, by sample [m]
+    std::vector<std::vector<Vec3>> velocities;  // [m/s]
 };
 
-/// Distance of two runs of the same scene at one sample, sqrt(sum m |x - y|^2 / sum m) / L (mass-weighted).
+/// Mass-weighted distance of two runs of the same scene at one sample: sqrt(sum m |x - y|^2 / sum m) / L.
 Real distance_at(const PrecisionScene& scene, const Record& a, const Record& b, std::size_t sample);
 
-/// Its mean over the first `samples` samples: L1 in time, so that an impact that comes a little late counts by as much
-/// as it is late. Infinite where one of the runs did not get so far.
+/// Mean of distance_at over the first `samples` samples. It is an L1 norm in time, so an impact that comes a little
+/// late counts in proportion to its delay. Infinite if one of the runs has fewer samples.
 Real mean_distance(const PrecisionScene& scene, const Record& a, const Record& b, std::size_t samples);
 
-/// Points of material, the same on every mesh of a scene: where they are is interpolated in the tetrahedra that hold
-/// them.
+/// Material points that are identical on every mesh of a scene. Their positions are interpolated in the tetrahedra that
+/// hold them.
 class Probes {
 public:
     Probes(const PrecisionScene& scene, int points_per_body);
-    /// Positions by sample.
+    /// Returns the positions of the points by sample.
     std::vector<std::vector<Vec3>> follow(const Record& record) const;
 
 private:
@@ -40,7 +40,7 @@ private:
     std::vector<Place> places_;
 };
 
-/// Mean over time of the root mean square distance, over L.
+/// Mean over time of the root mean square distance of the points, divided by `length`.
 Real mean_distance(const std::vector<std::vector<Vec3>>& a, const std::vector<std::vector<Vec3>>& b, Real length);
 
 }  // namespace skerry::profiling

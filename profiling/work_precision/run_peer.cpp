@@ -48,8 +48,7 @@ std::vector<Peer> find_peers(const std::filesystem::path& programs, const std::s
                              .command = in_quotes(file) + options,
                              .explicit_step = explicit_step});
     };
-    // Bullet's own choice of settings for its contacts, as its examples have them; others that were tried are in
-    // docs/work_precision.md.
+    // The contact settings are those of Bullet's own examples; docs/work_precision.md has others.
     bullet("work_precision_bullet_double", "explicit double", "", true);
     bullet("work_precision_bullet", "explicit single", "", true);
     bullet("work_precision_bullet_double", "implicit double", " --implicit --projection", false);
@@ -71,8 +70,7 @@ Record run_peer(const PrecisionScene& scene, const Peer& peer, Real step, int re
     std::filesystem::remove(result_file);
     char numbers[128];
     std::snprintf(numbers, sizeof numbers, " --step %.17g --repeat %d --cap %g", step, repeat, cap);
-    // What a peer says of its troubles, on its outputs or in files, is no part of our report; that it ended without a
-    // result is.
+    // Messages of a peer, on its outputs or in files, are discarded. Only the lack of a result is reported.
     const std::string command = "exec " + peer.command + " " + in_quotes(scene_file) + " " + in_quotes(result_file) +
                                 numbers + " >/dev/null 2>&1";
     Record record;

@@ -15,7 +15,7 @@ struct Built {
     std::vector<BodyHandle> bodies;
 };
 
-/// A rigid sphere of the mass of its nodes.
+/// Adds a rigid sphere with the total mass of its nodes.
 BodyHandle add_sphere(World& world, const PrecisionScene& scene, const PrecisionBody& body) {
     MaterialSettings material = scene.material;
     const Real volume = 4 * std::numbers::pi / 3 * std::pow(body.sphere, 3);
@@ -77,7 +77,7 @@ void sample(const Built& built, Record& record) {
     record.velocities.push_back(std::move(v));
 }
 
-/// While gravity changes it is set this often, s: as often as any step that is compared.
+/// Interval at which a changing gravity is updated [s].
 constexpr Real gravity_interval = 2e-3;
 
 Record run_once(const PrecisionScene& scene, const SkerryVariant& variant, Real step, double cap) {

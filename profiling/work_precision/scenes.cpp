@@ -10,9 +10,9 @@
 namespace skerry::profiling {
 namespace {
 
-constexpr Real g = 9.81;  // m/s^2
+constexpr Real g = 9.81;  // [m/s^2]
 
-/// Puts a mesh with its lowest node at `base` above z = 0 and gives every node a velocity.
+/// Moves a mesh so that its lowest node is `base` above `position`, and gives every node a velocity.
 PrecisionBody make_body(Mesh mesh, const Vec3& position, Real base, const Vec3& velocity) {
     Real lowest = mesh.nodes[0].z();
     for (const Vec3& node : mesh.nodes) lowest = std::min(lowest, node.z());
@@ -22,7 +22,7 @@ PrecisionBody make_body(Mesh mesh, const Vec3& position, Real base, const Vec3& 
     return body;
 }
 
-/// Losses of the peers' materials are others than ours.
+/// Turns off the losses of a material, since the peers have other kinds of losses.
 void lose_nothing(MaterialSettings& material) {
     material.loss_factor = material.bulk_viscosity = 0;
 }
@@ -53,9 +53,10 @@ PrecisionScene slide(int level) {
     return scene;
 }
 
-/// A bar held at one end is let go while it turns about its axis, more so towards the free end: it twists to and fro.
+/// A bar is held at one end and let go with a rotation about its axis that grows towards the free end. It twists to and
+/// fro.
 PrecisionScene twist(int level) {
-    constexpr Real length = 0.3, edge = 0.05, turning = 40;  // m, m, rad/s at the free end: about 0.9 rad of twist
+    constexpr Real length = 0.3, edge = 0.05, turning = 40;  // [m], [m], [rad/s] at the free end: ~0.9 rad of twist
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.3, .density = 1000, .friction = 0.3};
     PrecisionBody bar =
@@ -73,8 +74,8 @@ PrecisionScene twist(int level) {
     return scene;
 }
 
-/// A ball runs into three skittles. Where its trajectories part from those of a run that began 1e-12 m elsewhere is
-/// measured, not assumed.
+/// A ball runs into three skittles. The time at which its trajectories diverge from those of a run that began 1e-12 m
+/// elsewhere is measured, not assumed.
 PrecisionScene skittles(int level) {
     PrecisionScene scene;
     scene.material = {.young_modulus = 6e4, .poisson_ratio = 0.35, .density = 300, .friction = 0.4};
@@ -107,7 +108,7 @@ PrecisionScene stack(int level) {
 
 /// A gripper's finger of soft rubber, held at its root, falls under its weight until its tip bends around the floor.
 PrecisionScene finger(int level) {
-    constexpr Real length = 0.1, edge = 0.02, above = 0.03;  // m
+    constexpr Real length = 0.1, edge = 0.02, above = 0.03;  // [m]
     PrecisionScene scene;
     scene.material = {.young_modulus = 1e5, .poisson_ratio = 0.45, .density = 1000, .friction = 0.5};
     PrecisionBody body =
@@ -124,7 +125,7 @@ PrecisionScene finger(int level) {
 
 /// Eight balls fall into a box.
 PrecisionScene pile(int level) {
-    constexpr Real radius = 0.05, wall = 0.12;  // m
+    constexpr Real radius = 0.05, wall = 0.12;  // [m]
     PrecisionScene scene;
     scene.material = {.young_modulus = 5e4, .poisson_ratio = 0.3, .density = 1000, .friction = 0.5};
     const Mesh ball = mesh::ball(radius, 2 * level);
@@ -220,9 +221,9 @@ PrecisionScene make_creep_scene(Real fraction) {
     scene.bodies.push_back(
         make_body(mesh::box({0.1, 0.1, 0.05}, {3, 3, 2}), Vec3::Zero(), scene.contact_distance, Vec3::Zero()));
     scene.planes.push_back({});
-    // Weight first, the pull afterwards and slowly, with much damping: a soft block at 99 % of the cone flutters into
-    // sliding where its own oscillations are left alone (with 30/s it does so in any step and to any tolerance), which
-    // is mechanics and no creep.
+    // The weight acts first, and the pull follows slowly, with much damping. A soft block at 99 % of the cone flutters
+    // into sliding if its own oscillations are not damped. With 30/s it does so at any step and any tolerance. This is
+    // mechanics, not creep.
     const Real pull = fraction * scene.material.friction * g;
     scene.gravity = {{0, {0, 0, -g}}, {0.2 * creep_settling, {0, 0, -g}}, {0.6 * creep_settling, {pull, 0, -g}}};
     scene.seconds = creep_settling + creep_measured;
@@ -234,7 +235,7 @@ PrecisionScene make_creep_scene(Real fraction) {
 
 void perturb(PrecisionScene& scene, std::uint32_t seed, Real amplitude) {
     std::mt19937 random(seed);
-    // by hand: the distributions of the standard library differ from one library to the next
+    // The numbers are scaled by hand, since the distributions of standard libraries differ.
     const auto next = [&] { return amplitude * (2 * static_cast<Real>(random()) / 4294967295.0 - 1); };
     for (PrecisionBody& body : scene.bodies) {
         const Real x = next(), y = next(), z = next();

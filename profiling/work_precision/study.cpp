@@ -34,8 +34,8 @@ Record Study::run(const PrecisionScene& scene, const SkerryVariant& variant, Rea
 std::vector<Record> Study::run_ladder(const PrecisionScene& scene, const Peer& peer) const {
     std::vector<Record> runs;
     const std::filesystem::path folder = options.out / "runs";
-    // A sample interval is the longest step. Explicit ones begin near what the mesh stands: a run that blows up takes
-    // time for all its contacts.
+    // The longest step is a sample interval. Peers with explicit steps begin near the stable step of the mesh, since a
+    // run that blows up takes long for all its contacts.
     Real step = scene.seconds / scene.samples;
     while (peer.explicit_step && step > 1.2 * stable_step_of(scene)) step /= 2;
     for (; runs.size() < 20; step /= 2) {

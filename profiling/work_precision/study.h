@@ -1,4 +1,4 @@
-// What the parts of profile_work_precision share: options, peers, tables.
+// Shared declarations of the parts of profile_work_precision: options, peers, tables.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,11 @@ namespace skerry::profiling {
 struct StudyOptions {
     std::vector<std::string> scenes;  // empty: all
     std::filesystem::path out = "out/profiling/work_precision";
-    std::string python = "python3";  // that may have MuJoCo
+    std::string python = "python3";  // Python that may have MuJoCo
     bool quick = false;
     bool no_peers = false;
-    double cap = 6;  // CPU seconds of the longest run that is compared
-    int repeat = 3;  // of short runs; medians count
+    double cap = 6;  // CPU time of the longest run that is compared [s]
+    int repeat = 3;  // repeats of short runs; medians count
 
     bool wants(const std::string& scene) const;
 };
@@ -26,9 +26,9 @@ struct StudyOptions {
 struct Row {
     std::string axis, engine, variant;
     Real tolerance = 0;        // of the contact solver; 0: none
-    Real error = 0;            // against our reference
+    Real error = 0;            // against the reference of Skerry
     Real error_own = 0;        // against the engine's own reference
-    Real reference_error = 0;  // how far our reference is from the next coarser one
+    Real reference_error = 0;  // distance of Skerry's reference from the next coarser run
     Real own_reference_error = 0;
 };
 
@@ -38,12 +38,12 @@ struct Study {
     std::ofstream table;
 
     void write(const PrecisionScene& scene, const Row& row, const Record& record);
-    /// A line on stderr that moves on.
+    /// Shows progress in a line on stderr that is overwritten.
     void show(const std::string& what) const;
-    /// Runs that are over soon are repeated.
+    /// Runs Skerry. Runs that take less than 0.5 s are repeated.
     Record run(const PrecisionScene& scene, const SkerryVariant& variant, Real step) const;
-    /// The last run is the engine's own reference and may take four times the cap; runs before it are given half of
-    /// that at most.
+    /// Runs the peer with steps that are halved from run to run. The last run is the engine's own reference and may
+    /// take four times the cap. Earlier runs may take half of that at most.
     std::vector<Record> run_ladder(const PrecisionScene& scene, const Peer& peer) const;
 };
 
@@ -53,9 +53,9 @@ void study_time(Study& study);
 void study_solver(Study& study);
 /// (c) mesh refinement, linear and smoothed elements, with the peers.
 void study_mesh(Study& study);
-/// A pile by its statistics: pile.csv.
+/// Statistics of a pile. Writes pile.csv.
 void study_pile(Study& study);
-/// Friction that holds: creep.csv.
+/// Creep of a block that friction holds. Writes creep.csv.
 void study_creep(Study& study);
 
 }  // namespace skerry::profiling

@@ -1,4 +1,4 @@
-// A block that friction can hold: how fast does it creep?
+// Creep of a block that friction can hold.
 #include <string>
 
 #include "profiling/work_precision/study.h"
@@ -6,7 +6,7 @@
 namespace skerry::profiling {
 namespace {
 
-/// Mean tangential speed of the centre of mass after the settling, m/s.
+/// Mean tangential speed of the centre of mass after the settling [m/s].
 Real creep_of(const PrecisionScene& scene, const Record& record) {
     const auto center = [&](std::size_t sample) {
         Vec3 moment = Vec3::Zero();

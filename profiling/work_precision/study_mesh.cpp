@@ -1,5 +1,5 @@
-// Work against precision as the mesh gets finer, with either kind of element: the same material points on every mesh,
-// each at the step that its mesh stands.
+// Work against precision as the mesh gets finer, with both kinds of element. The material points are identical on every
+// mesh, and the step is a fixed part of the stable step of the mesh.
 #include <cmath>
 #include <limits>
 
@@ -10,14 +10,14 @@ namespace {
 
 constexpr int points_per_body = 64;
 
-/// Of the stable step; the error in time is then well below that of the mesh.
+/// Step size over the stable step. The error in time is then well below that of the mesh.
 constexpr Real step_fraction = 0.5;
 
-/// A mesh with one kind of element, as far as it is run.
+/// Run of a mesh with one kind of element.
 struct MeshRun {
     PrecisionScene scene;
     Record record;
-    std::vector<std::vector<Vec3>> path;  // of the material points
+    std::vector<std::vector<Vec3>> path;  // positions of the material points, by sample
 };
 
 MeshRun run_mesh(const Study& study, const std::string& name, int level, ElementKind element) {
@@ -30,7 +30,7 @@ MeshRun run_mesh(const Study& study, const std::string& name, int level, Element
 }
 
 void study_scene(Study& study, const std::string& name) {
-    // the finest is the reference, with smoothed elements, and what it differs by from the mesh before its error
+    // The reference is the finest mesh with smoothed elements. Its error is its distance from the next coarser mesh.
     const bool several = make_scene(name, 1).bodies.size() > 1;
     std::vector<int> levels{1, 2, 3, 4};
     if (!study.options.quick) levels.insert(levels.end(), {6, 8});
@@ -62,7 +62,7 @@ void study_scene(Study& study, const std::string& name) {
             write("Skerry", std::string(name_of(run.scene.element)), run.scene, run.record,
                   mean_distance(run.path, reference.path, length));
     for (const Peer& peer : study.peers) {
-        if (!peer.explicit_step || peer.engine != "Bullet") continue;  // the others have other laws
+        if (!peer.explicit_step || peer.engine != "Bullet") continue;  // the other peers have other material laws
         for (const MeshRun& ours : linear) {
             study.show(name + ": " + peer.engine + ", mesh of level " + std::to_string(ours.scene.level));
             const Record run = run_peer(ours.scene, peer, step_fraction * stable_step_of(ours.scene), 1,

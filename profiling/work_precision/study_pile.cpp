@@ -1,5 +1,5 @@
-// A pile is chaotic: what can be compared is not where a ball lies but what many piles have in common. One row a run;
-// the plot makes the statistics.
+// Statistics of piles. A pile is chaotic: the position of a ball cannot be compared, only properties that many piles
+// have in common. Writes one row per run; the plot computes the statistics.
 #include <algorithm>
 #include <numbers>
 #include <string>
@@ -9,12 +9,12 @@
 namespace skerry::profiling {
 namespace {
 
-constexpr Real placement = 1e-4;  // m, by which the balls of two runs are placed differently
+constexpr Real placement = 1e-4;  // largest random offset of a ball per component [m]
 
 struct PileState {
-    Real height = 0;   // m, of the centre of mass
-    Real top = 0;      // m, below which 95 % of the nodes are
-    Real kinetic = 0;  // J
+    Real height = 0;   // of the centre of mass [m]
+    Real top = 0;      // height below which 95 % of the nodes are [m]
+    Real kinetic = 0;  // [J]
 };
 
 /// Means over the last third of the run.

@@ -1,4 +1,4 @@
-// Work against precision as contacts are solved to smaller tolerances, at one step, by several methods, with and
+// Work against precision of the contact solver: decreasing tolerances at one step size, by several methods, with and
 // without warm start.
 #include <string>
 
@@ -22,7 +22,7 @@ SkerryVariant variant_of(SolverMethod method, Real tolerance, WarmStart warm_sta
 
 void study_scene(Study& study, const std::string& name) {
     PrecisionScene scene = make_scene(name, usual_level(name));
-    // The first third: a difference of the solver's size must not have grown by the motion's own instability.
+    // Only the first third is used: the instability of the motion must not amplify a difference of the solver's size.
     scene.seconds /= 3;
     scene.samples = std::max(1, scene.samples / 3);
     const auto samples = static_cast<std::size_t>(scene.samples);

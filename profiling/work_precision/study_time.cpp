@@ -1,4 +1,4 @@
-// Work against precision as the step gets shorter, for our integrators and for the peers.
+// Work against precision as the step gets shorter, for the integrators of Skerry and for the peers.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,14 +11,15 @@ namespace {
 
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
-/// Our reference may take so many times what the longest run of a peer that is compared may take; ours are compared up
-/// to a step that is longer by 2 to the power of `reference_halvings`.
+/// The reference of Skerry may take `reference_share` times as long as the longest run of a peer that is compared. Runs
+/// of Skerry are compared down to a step 2^reference_halvings times longer than that of the reference.
 constexpr double reference_share = 10;
 constexpr int reference_halvings = 3;
 
-/// A scene is compared up to half the time at which two runs, begun this far apart, are further apart than diverged.
-constexpr Real first_distance = 1e-12;  // m
-constexpr Real diverged = 1e-4;         // of the scene's length
+/// A scene is compared up to half its divergence time. From then on two runs that began `first_distance` apart are
+/// further apart than `diverged`.
+constexpr Real first_distance = 1e-12;  // [m]
+constexpr Real diverged = 1e-4;         // in units of the scene's length
 
 /// Cuts the scene off at half its divergence time; does nothing if it does not diverge.
 void cut_at_divergence(Study& study, PrecisionScene& scene, const SkerryVariant& variant, Real step) {
@@ -27,7 +28,7 @@ void cut_at_divergence(Study& study, PrecisionScene& scene, const SkerryVariant&
     PrecisionScene moved = scene;
     perturb(moved, 1, first_distance);
     SkerryVariant exact = variant;
-    exact.settings.tolerance = 1e-12;  // else what the solver leaves over is what the runs differ by
+    exact.settings.tolerance = 1e-12;  // otherwise the residual of the solver dominates the difference of the runs
     const Record a = run_skerry(scene, exact, step), b = run_skerry(moved, exact, step);
     for (std::size_t s = 0; s < std::min(a.positions.size(), b.positions.size()); ++s) {
         if (distance_at(scene, a, b, s) < diverged) continue;
@@ -53,7 +54,7 @@ void write_peers(Study& study, const PrecisionScene& scene, const Record& refere
         const Real own_error = own > 0 ? mean_distance(scene, runs[own], runs[own - 1], samples) : infinite;
         for (std::size_t k = 0; k <= own; ++k) {
             if (!runs[k].finished) continue;
-            // the two runs next to the own reference are no measure against it
+            // The own reference and the run next to it are not compared with the reference.
             const Real error_own = k + 2 <= own ? mean_distance(scene, runs[k], runs[own], samples) : std::nan("");
             study.write(scene,
                         {.axis = "time",
@@ -72,7 +73,7 @@ void write_peers(Study& study, const PrecisionScene& scene, const Record& refere
 void study_scene(Study& study, const std::string& name) {
     PrecisionScene scene = make_scene(name, usual_level(name));
     const std::vector<SkerryVariant> variants = time_variants();
-    const Real longest = 0.95 * stable_step_of(scene);  // a deformed body may stand less than one at rest
+    const Real longest = 0.95 * stable_step_of(scene);  // the stable step of a deformed body may be shorter
     cut_at_divergence(study, scene, variants.back(), longest / 8);
     const auto samples = static_cast<std::size_t>(scene.samples);
     const double first = run_skerry(scene, variants.back(), longest).seconds;
