@@ -18,7 +18,7 @@ namespace {
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end and a side exceeds this, the end lies on one point of its rim only.
 constexpr Real lying_tilt = 0.5;
-// A touch may lie beyond the normals of an edge or rim by this, as for capsules (collision.md 4.5) [rad].
+// A touch may lie beyond the normals of an edge or rim by this, as for capsules (docs/methods/collision.md 4.5) [rad].
 constexpr Real rim_angle = 0.03;
 // A gradient this near to the axis is that of an end; one this near to the plane across the axis is that of the side.
 constexpr Real place_rounding = 1e-9;

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "systems/material/material_law.h"
 
@@ -41,7 +42,8 @@ Real BodyElements::largest_strain(const Displacements& displacement) const {
     Real squared = 0;
     for (std::size_t e = 0; e < size(); ++e) {
         const Real of_element = gradient_of(e, displacement).squaredNorm();
-        if (!(of_element <= squared)) squared = of_element;  // also if it is not a number
+        if (std::isnan(of_element)) return of_element;
+        squared = std::max(squared, of_element);
     }
     return std::sqrt(squared);
 }

@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "systems/dynamics/elements/element_energy.h"
@@ -64,6 +66,17 @@ void begin_step(StiffBody& stiff, const std::vector<Vec3>& displacement, const s
 }
 
 }  // namespace
+
+TEST_CASE("the largest strain is not a number if one displacement is not", "[dynamics][implicit]") {
+    ElasticBody body = rubber(MaterialModel::stable_neo_hookean);
+    const StiffBody stiff = stiff_body_of(body);
+    const std::vector<Vec3> u = bent(stiff, body, 0.01);
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        std::vector<Vec3> broken = u;
+        broken[n].y() = std::numeric_limits<Real>::quiet_NaN();
+        CHECK(std::isnan(stiff.elements().largest_strain(broken)));
+    }
+}
 
 TEST_CASE("elements of an implicit body of large strain have the forces and energy of explicit ones",
           "[dynamics][implicit]") {
