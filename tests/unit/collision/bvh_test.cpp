@@ -56,7 +56,7 @@ TEST_CASE("a tree holds each triangle of its body in one lane of one leaf", "[un
 
 namespace {
 
-/// Surface and trees of bodies of one mesh, one behind the other.
+/// Surfaces and trees of bodies with one mesh, appended one after the other.
 struct Outlines {
     SurfaceTables surface;
     BvhTable bvh;
