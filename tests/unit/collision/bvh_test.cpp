@@ -63,7 +63,7 @@ struct Outlines {
     BvhLeafTable leaves;
     std::vector<Vec3> position;
 
-    /// The rows of all that names some, one after the other.
+    /// All row numbers that columns, tree nodes, leaves and features refer to, in one list.
     std::vector<Index> rows() {
         std::vector<Index> all;
         const auto add = [&](const auto& rows) { all.insert(all.end(), rows.begin(), rows.end()); };
