@@ -126,7 +126,7 @@ TEST_CASE("nodal forces are minus the derivative of the elastic energy", "[prope
         body.compute_forces(*executor);
         Real scale = 0;
         for (const Vec3& f : body.force) scale = std::max(scale, f.norm());
-        constexpr Real step = 1e-6;  // m; cells are 0.1 m
+        constexpr Real step = 1e-6;  // [m]; cells are 0.1 m
         for (std::size_t n = 0; n < body.position.size(); ++n)
             for (int i = 0; i < 3; ++i) {
                 const Real before = body.position[n][i];

@@ -17,7 +17,7 @@ using test::jittered_box;
 
 namespace {
 
-constexpr Real cell = 0.1;  // m
+constexpr Real cell = 0.1;  // [m]
 
 ElasticBody body_of(const test::TetMesh& mesh, ElementKind kind,
                     MaterialModel model = MaterialModel::stable_neo_hookean, Real nu = 0.4) {
@@ -106,7 +106,7 @@ TEST_CASE("forces of every kind of element are minus the derivative of its energ
             ElasticBody body = body_of(jittered_box({2, 2, 2}, cell, 0.25, 3), kind, model);
             scatter(body, 0.015, 4);
             body.compute_forces(*executor);
-            constexpr Real step = 1e-6;  // m
+            constexpr Real step = 1e-6;  // [m]
             INFO(name_of(kind) << ", " << name_of(model));
             std::mt19937_64 random(5);
             for (int trial = 0; trial < 20; ++trial) {

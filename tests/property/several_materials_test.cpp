@@ -16,7 +16,7 @@ using test::jittered_box;
 
 namespace {
 
-constexpr Real cell = 0.1;  // m
+constexpr Real cell = 0.1;  // [m]
 
 MaterialConstants soft(MaterialModel model = MaterialModel::stable_neo_hookean) {
     return material_constants(model, 1e4, 0.4, 500);
@@ -140,7 +140,7 @@ TEST_CASE("forces of a layered body are minus the derivative of its energy, with
             for (std::size_t n = 0; n < start.size(); ++n) body.position[n] = start[n] + s * way[n];
             return elastic_energy(body.inputs(), body.blocks, body.position);
         };
-        constexpr Real step = 1e-5;  // m
+        constexpr Real step = 1e-5;  // [m]
         const Real slope =
             (8 * (energy_at(step) - energy_at(-step)) - (energy_at(2 * step) - energy_at(-2 * step))) / (12 * step);
         CHECK(-slope == Approx(work).epsilon(1e-7));

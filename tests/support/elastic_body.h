@@ -19,7 +19,7 @@ struct ElasticBody {
     std::vector<Vec3> position, velocity, load, force;
     std::vector<Real> mass, inverse_mass;
     TetMesh mesh;
-    std::vector<Real> tetrahedron_mass;  // kg
+    std::vector<Real> tetrahedron_mass;  // [kg]
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
@@ -27,7 +27,7 @@ struct ElasticBody {
     ElementPatches patches;
     Column<MaterialConstants> constants;
     ElementList list;
-    std::vector<Index> element_at;  // place in `list` of each lane; no_index in an unused lane
+    std::vector<Index> element_at;  // index in `list` of the element in each lane; no_index in an unused lane
 
     ElasticBody(const TetMesh& of, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)

@@ -16,7 +16,7 @@ inline Real exact_frequency_squared(ElasticBody& body) {
     const auto executor = make_executor(Backend::serial, 1);
     const Eigen::Index size = 3 * static_cast<Eigen::Index>(body.position.size());
     Eigen::MatrixXd K(size, size);
-    constexpr Real step = 1e-6;  // m; cells are 0.1 m
+    constexpr Real step = 1e-6;  // [m]; cells are 0.1 m
     const auto forces = [&](Eigen::Index j, Real by) {
         Real& x = body.position[static_cast<std::size_t>(j / 3)][j % 3];
         const Real before = x;

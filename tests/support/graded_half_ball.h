@@ -14,7 +14,7 @@ namespace skerry::test {
 /// a has `fine` shells, so that elements there are a / fine thick. Beyond a the shells grow by a factor of e^(growth /
 /// fine) from one to the next until the radius is reached.
 struct HalfBallShape {
-    Real a = 1;  // m
+    Real a = 1;  // [m]
     int fine = 4;
     Real growth = 4;   // logarithm of the growth in thickness over `fine` shells
     Real radius = 30;  // lower bound [m]

@@ -12,7 +12,7 @@
 namespace skerry::test {
 
 struct TetMesh {
-    std::vector<Vec3> nodes;                       // m
+    std::vector<Vec3> nodes;                       // [m]
     std::vector<std::array<Index, 4>> tetrahedra;  // positive volumes
 };
 

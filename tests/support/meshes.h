@@ -11,7 +11,7 @@
 namespace skerry::test {
 
 struct SolidMesh {
-    std::vector<Vec3> nodes;                       // m
+    std::vector<Vec3> nodes;                       // [m]
     std::vector<std::array<Index, 4>> tetrahedra;  // positive volumes
 };
 

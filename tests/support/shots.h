@@ -40,7 +40,7 @@ inline Mesh single_tetrahedron(Real size) {
 }
 
 inline Named random_shot(std::mt19937_64& random) {
-    const Real size = 0.02 + 0.03 * fraction(random);  // m, across
+    const Real size = 0.02 + 0.03 * fraction(random);  // size across [m]
     switch (static_cast<int>(5 * fraction(random))) {
         case 0:
             return {"ball of 160", mesh::ball(size / 2, 4)};
@@ -160,7 +160,7 @@ inline SurfaceMesh revolved_bucket(const Bucket& bucket, Real within, Index arou
                     around);
 }
 
-/// Analytic colliders, above all thin and sharp ones. Their surfaces lie inside them by a tenth of the thickness.
+/// Analytic colliders, above all thin and sharp ones. Their surfaces lie inside them by 5 to 10 % of the thickness.
 inline Target random_shape(std::mt19937_64& random) {
     const Mat3 lying = rotation_matrix(Vec3(std::acos(-1.0) / 2, 0, 0));
     const auto target = [](const char* name, const Shape& shape, SurfaceMesh surface, Real aim, Real steepest,

@@ -9,7 +9,7 @@
 
 namespace skerry::test {
 
-inline constexpr Real standard_gravity = 9.81;  // m/s^2
+inline constexpr Real standard_gravity = 9.81;  // [m/s^2]
 
 /// Gravity on a plane tilted by `degrees` about y, seen from the plane: downhill is +x.
 inline Vec3 tilted_gravity(Real degrees) {

@@ -27,8 +27,8 @@ const Named shapes[] = {
 constexpr int samples = 400;
 
 struct Sampled {
-    Real least = std::numeric_limits<Real>::infinity();  // m
-    Real at_ends = 0;                                    // m
+    Real least = std::numeric_limits<Real>::infinity();  // [m]
+    Real at_ends = 0;                                    // [m]
 };
 
 Sampled sample_edge(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {

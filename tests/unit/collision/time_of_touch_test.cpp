@@ -19,7 +19,7 @@ using Kind = TouchingFeature::Kind;
 
 namespace {
 
-constexpr Real h = 0.01;  // s
+constexpr Real h = 0.01;  // [s]
 constexpr int times = 100, places = 30;
 
 struct Named {

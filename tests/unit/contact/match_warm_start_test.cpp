@@ -153,7 +153,7 @@ TEST_CASE("what a contact that is gone carried goes to the nearest one of its pa
 
     after.add(key(1), {0.1, 0, 0});
     after.add(key(6), {0.205, 0, 0});                // replaces 2, and is nearer to it than 8
-    after.add(key(7), {0.3, 0, 0}, -Vec3::UnitZ());  // at 3, but from the other side
+    after.add(key(7), {0.3, 0, 0}, -Vec3::UnitZ());  // at the place of 3, but on the other side
     after.add(key(8), {0.21, 0, 0});
     after.add(key(9), {0.421, 0, 0});                    // further from 4 than twice the contact distance
     after.add(key(10), {0.5, 0.001, 0}, {0, 0.6, 0.8});  // about where 5 was, but turned by too much

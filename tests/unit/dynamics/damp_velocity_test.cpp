@@ -99,7 +99,7 @@ std::vector<Vec3> random_vectors(std::size_t count, Real size, const Vec3& centr
 TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
-    cloud.lag = GENERATE(0.0, 0.02);  // s: a tenth of the body's size
+    cloud.lag = GENERATE(0.0, 0.02);  // a tenth of the body's size [s]
     cloud.add(random_vectors(1000, 0.5, Vec3(10, -20, 5), 1), random_vectors(1000, 2, Vec3(3, 1, 0), 2), 1);
     const Momenta before = momenta(cloud);
     Real dissipated = 0;
@@ -117,7 +117,7 @@ TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit
 TEST_CASE("damping has the bits of one sum after the other", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
-    cloud.lag = 0.02;  // s
+    cloud.lag = 0.02;  // [s]
     cloud.add(random_vectors(200, 0.5, Vec3(10, -20, 5), 1), random_vectors(200, 2, Vec3(3, 1, 0), 2), 1);
     const std::vector<Vec3> x = cloud.position, v = cloud.velocity;
     // momentum and inertia about the first node, then about the centre of mass

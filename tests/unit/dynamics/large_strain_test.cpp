@@ -247,7 +247,7 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
             stiff.find_shape(at_end, shape);
             return step.angular_momentum.dot(shape.inertia().inverse() * step.angular_momentum) / 2;
         };
-        constexpr Real along = 1e-5;  // m
+        constexpr Real along = 1e-5;  // [m]
         for (std::size_t k = 0; k < stiff.size(); ++k)
             for (Index axis = 0; axis < 3; ++axis) {
                 at_end[k][axis] += along;
@@ -287,7 +287,7 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);
     const std::vector<Vec3> shape = random_vectors(stiff.size(), 0.02, 17);  // rough, so that bounds are nearly reached
-    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);                  // kg m^2/s
+    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);                  // [kg m^2/s]
     int large = 0;
     for (int k = 0; k < 600; ++k) {
         const Real size = 0.2 * std::pow(std::sin(0.01 * k), 2);

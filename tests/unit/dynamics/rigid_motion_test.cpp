@@ -10,7 +10,7 @@ namespace skerry::test::rigid_motion_test {
 
 namespace {
 
-const Vec3 moments(1, 2, 3);  // kg m^2
+const Vec3 moments(1, 2, 3);  // [kg m^2]
 
 Mat3 turned_for(Mat3 rotation, const Vec3& angular_momentum, Real seconds, int steps) {
     for (int k = 0; k < steps; ++k)

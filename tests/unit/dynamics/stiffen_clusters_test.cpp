@@ -132,7 +132,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
         stiffen_clusters(box.body.inputs(), bodies, kick, patches, {box.body.elements.implicit_modulus, box.clusters});
     REQUIRE(brought > 0);
 
-    std::vector<Vec3> given(box.body.position.size(), Vec3::Zero());  // N s
+    std::vector<Vec3> given(box.body.position.size(), Vec3::Zero());  // [N s]
     Vec3 sum = Vec3::Zero();
     for (std::size_t s = 0; s < patches.node.size(); ++s) {
         Vec3 more;
@@ -142,7 +142,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
         sum += more;
     }
     std::vector<Vec3> velocity_next(box.body.velocity.begin(), box.body.velocity.end());
-    Real before = 0, after = 0, largest = 0;  // J, J, N s
+    Real before = 0, after = 0, largest = 0;  // [J], [J], [N s]
     for (std::size_t c = 0; c < box.clusters.size(); ++c) {
         const auto nodes = box.clusters.nodes[c];
         const auto count = static_cast<Eigen::Index>(nodes.size());
@@ -167,7 +167,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
             velocity_next[static_cast<std::size_t>(nodes[static_cast<std::size_t>(k)])] = next.row(k).transpose();
     }
     CHECK(sum.norm() < 1e-12 * largest);
-    Real taken = 0;  // J
+    Real taken = 0;  // [J]
     for (std::size_t b = 0; b < blocks; ++b) {
         const LaneMat3<Real8> rate = deformation_of(inputs, b, box.body.velocity),
                               rate_next = deformation_of(inputs, b, velocity_next);

@@ -15,7 +15,7 @@ namespace skerry::test::update_sleep_test {
 
 namespace {
 
-constexpr Real h = 1e-3, time_still = 0.5;  // s
+constexpr Real h = 1e-3, time_still = 0.5;  // [s]
 
 constexpr Real deflection = 0.1;  // deflection of each end from the middle [edges]
 
@@ -106,7 +106,7 @@ TEST_CASE("what is fast, or comes far slowly, is not still", "[unit]") {
 }
 
 TEST_CASE("what goes on at one speed is not still down to the noise, whether it trembles or not", "[unit]") {
-    constexpr Real edge = 0.02;                     // m
+    constexpr Real edge = 0.02;                     // [m]
     for (const Real speed : {12e-3, 1e-3, 1e-4}) {  // speeds [edges/s]
         for (const Real tremble :
              {0.0, speed / 80}) {  // amplitude [edges]; the motion between two samples is 2.5 times as large
@@ -148,14 +148,14 @@ std::optional<Real> left_at_rest(Real gravity, const std::function<Real(Real)>& 
 
 TEST_CASE("a shape rests near to its place: half a percent of its deflection where it sinks, 0.8 where it swings",
           "[unit]") {
-    constexpr Real shape = deflection * 0.02;        // m
-    for (const Real rate : {0.3, 1.0, 3.0, 10.0}) {  // 1/s
+    constexpr Real shape = deflection * 0.02;        // [m]
+    for (const Real rate : {0.3, 1.0, 3.0, 10.0}) {  // [1/s]
         CAPTURE(rate);
         const auto left = left_at_rest(9.81, [&](Real t) { return 0.1 * shape * std::exp(-rate * t); });
         REQUIRE(left);
         CHECK(*left < 5e-3 * shape);
     }
-    for (const Real frequency : {1.0, 2.0, 3.7, 5.0, 8.0, 12.6, 20.0, 60.0}) {  // rad/s
+    for (const Real frequency : {1.0, 2.0, 3.7, 5.0, 8.0, 12.6, 20.0, 60.0}) {  // [rad/s]
         for (const Real phase : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8}) {
             CAPTURE(frequency, phase);
             const Real gravity = frequency * frequency * shape;  // gravity that causes this deflection

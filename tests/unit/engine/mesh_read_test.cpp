@@ -158,7 +158,7 @@ TEST_CASE("every format gives the boundary as a surface", "[unit]") {
         CHECK(surface.nodes.size() == boundary.nodes.size());
         REQUIRE(surface.triangles.size() == boundary.triangles.size());
         for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-            for (std::size_t a = 0; a < 3; ++a) {  // STL numbers its nodes anew, and keeps floats only in binary
+            for (std::size_t a = 0; a < 3; ++a) {  // STL renumbers nodes; binary STL has single precision
                 const Vec3& x = surface.nodes[static_cast<std::size_t>(surface.triangles[t][a])];
                 CHECK((x - boundary.nodes[static_cast<std::size_t>(boundary.triangles[t][a])]).norm() < 1e-7);
             }

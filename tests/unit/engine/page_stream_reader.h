@@ -38,7 +38,7 @@ struct ReadShape {
     std::vector<Index> node;
     std::vector<std::array<Index, 3>> triangles;
     Vec3 origin;
-    Real step;  // m
+    Real step;  // [m]
 };
 
 struct ReadRun {

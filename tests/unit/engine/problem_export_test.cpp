@@ -97,7 +97,7 @@ TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][prob
             for (int axis = 1; axis < 3; ++axis) {
                 // Nothing else moves here: tangentially the offset is the half turn of the midpoint slip.
                 const Real turned = step.lumped.offset[i].dot(frame[axis]);
-                CHECK(u[i][axis] == Approx(contact.slip.dot(frame[axis]) + turned).margin(1e-12));  // m/s
+                CHECK(u[i][axis] == Approx(contact.slip.dot(frame[axis]) + turned).margin(1e-12));  // [m/s]
                 turns += turned != 0;
             }
             CHECK(step.region[i] == contact.region);
