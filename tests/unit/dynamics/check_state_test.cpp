@@ -188,8 +188,7 @@ TEST_CASE("the verdict is the same on any number of workers", "[unit][determinis
         const StepVerdict verdict = state.check(workers);
         CHECK(verdict.fault == StepFault::too_fast);
         CHECK(verdict.body == 0);
-        CHECK(verdict.node ==
-              101);  // a corner of the first of the equally fast elements; its base is the fast node 100
+        CHECK(verdict.node == 101);  // a corner of the first of the equally fast elements; its base is node 100
     }
 }
 
@@ -300,8 +299,7 @@ TEST_CASE("an implicit element may deform five times as fast", "[unit]") {
     TrembleState state(ElementKind::edge_smoothed);
     for (ElementLane& of : state.body.tetrahedra.leeway) of = {{5, 5, 5, 5, 5, 5, 5, 5}};
     const auto [rate, fastest] = state.fastest();
-    CHECK(state.check(0.3 * rate).fault ==
-          StepFault::none);  // no tetrahedron exceeds its limit, so elements are not tested
+    CHECK(state.check(0.3 * rate).fault == StepFault::none);  // no tetrahedron is too fast: elements are not tested
     for (ElementLane& of : state.body.tetrahedra.leeway) of = {{1, 1, 1, 1, 1, 1, 1, 1}};
     REQUIRE(state.check(0.99 * rate).fault == StepFault::too_fast);
     state.body.elements.implicit_modulus[fastest / element_lanes][fastest % element_lanes] = 1;

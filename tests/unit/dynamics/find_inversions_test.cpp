@@ -103,8 +103,7 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
         std::vector<Vec3> start = loose.position;
         for (int step = 0; step < 200; ++step) {
             for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
-                const Real speed =
-                    (step / 50) % 2 ? 0.002 : 0.2;  // speed of a node: slow and fast periods alternate [m/s]
+                const Real speed = (step / 50) % 2 ? 0.002 : 0.2;  // speed of a node in slow and fast periods [m/s]
                 for (Index b = loose.blocks[body].begin; b < loose.blocks[body].end; ++b)
                     for (std::size_t l = 0; l < element_lanes; ++l)
                         for (std::size_t a = 0; a < 4; ++a) {
@@ -140,8 +139,7 @@ TEST_CASE("an element is safe until its corners have moved by half of its width"
     Loose loose(random, {1});
     loose.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     REQUIRE(loose.find().count == 0);
-    CHECK(loose.uninverted_until[0] ==
-          Approx(std::sqrt(1.0 / 3) / 2));  // half the distance from the corner to the slanted face
+    CHECK(loose.uninverted_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // half the distance to the slanted face
     loose.travel[0] = 5;
     loose.displacement[0] = 0.1;
     REQUIRE(loose.find().count == 0);

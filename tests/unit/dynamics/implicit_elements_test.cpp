@@ -401,8 +401,7 @@ TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][cluster
     for (const Index at : {0, 2, 4, 6, 7}) covered.offset.push_back(at);
     for (const Index t : {0, 1, 1, 2, 2, 9, 9}) covered.item.push_back(t);
     std::vector<ElementLane> modulus(1), leeway(2);
-    modulus[0][0] = modulus[0][1] = modulus[0][3] =
-        1e5;  // the third element, which covers tetrahedra 2 and 9, is explicit
+    modulus[0][0] = modulus[0][1] = modulus[0][3] = 1e5;  // the third element (tetrahedra 2, 9) is explicit
     find_leeway(covered, modulus, implicit_leeway, leeway);
     for (std::size_t t = 0; t < 2 * element_lanes; ++t) {
         CAPTURE(t);

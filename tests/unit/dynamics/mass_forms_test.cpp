@@ -73,8 +73,7 @@ TEST_CASE("the step by mass forms is below the limit and near it", "[unit][long]
         for (const MaterialModel model : test::material_models)
             for (const Real jitter : {0.0, 0.3})
                 for (const Real nu : {0.0, 0.3, 0.45}) {
-                    if (kind == ElementKind::edge_node_smoothed && nu == 0)
-                        continue;  // nodal elements would have no stiffness
+                    if (kind == ElementKind::edge_node_smoothed && nu == 0) continue;  // nodes would have no stiffness
                     ElasticBody body(jittered_box({4, 3, 3}, 0.1, jitter, 11, 0.02),
                                      material_constants(model, 1e5, nu, 1000), Mat3::Identity(), kind);
                     find_forms(body);

@@ -161,8 +161,7 @@ TEST_CASE("a drift without a push-out has the bits of one with a push-out of zer
                 largest = std::max(
                     largest, (plain.position[static_cast<std::size_t>(n)] - plain.origin[static_cast<std::size_t>(n)])
                                  .squaredNorm());
-            CHECK(plain.displacement_squared[b] ==
-                  Approx(largest).epsilon(1e-15));  // rounding: the order of three summands
+            CHECK(plain.displacement_squared[b] == Approx(largest).epsilon(1e-15));  // the order of three summands
         }
     }
 }

@@ -71,8 +71,7 @@ TEST_CASE(
             const Real step = step_of(body).step;
             INFO("nu " << nu << " stretch " << stretch.transpose() << ": " << step / limit);
             CHECK(!(step > 0.9 * limit * (1 + 1e-5)));
-            CHECK(std::isfinite(
-                step));  // compressed to a point it is soft, but counts as no softer in shear than at rest
+            CHECK(std::isfinite(step));  // compressed to a point: soft, but no softer in shear than at rest
         }
 }
 

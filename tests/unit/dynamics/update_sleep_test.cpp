@@ -106,10 +106,9 @@ TEST_CASE("what is fast, or comes far slowly, is not still", "[unit]") {
 }
 
 TEST_CASE("what goes on at one speed is not still down to the noise, whether it trembles or not", "[unit]") {
-    constexpr Real edge = 0.02;                     // [m]
-    for (const Real speed : {12e-3, 1e-3, 1e-4}) {  // speeds [edges/s]
-        for (const Real tremble :
-             {0.0, speed / 80}) {  // amplitude [edges]; the motion between two samples is 2.5 times as large
+    constexpr Real edge = 0.02;                         // [m]
+    for (const Real speed : {12e-3, 1e-3, 1e-4}) {      // speeds [edges/s]
+        for (const Real tremble : {0.0, speed / 80}) {  // amplitude [edges]; the motion between samples is 2.5 times it
             CAPTURE(speed, tremble);
             CHECK_FALSE(
                 rests(edge, 10, [&](Real t) { return edge * (0.9 * speed * t + tremble * std::sin(300 * t)); }));

@@ -173,8 +173,7 @@ TEST_CASE("packed frames give back places to half a step and values to half a co
                                                       half_code(value[f], read.top[f]));
             }
             CHECK(farthest <= shape.step / 2 * 1.000001);
-            for (const Real halves : worst)
-                CHECK(halves <= 1.001);  // a code is exact to a half; the root adds rounding
+            for (const Real halves : worst) CHECK(halves <= 1.001);  // a code is exact to a half; the root rounds
             for (std::size_t t = 0; t < body.surface.size(); ++t)
                 for (std::size_t k = 0; k < 3; ++k)
                     CHECK(shape.node[static_cast<std::size_t>(shape.triangles[t][k])] == body.surface[t][k]);

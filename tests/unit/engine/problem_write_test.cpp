@@ -106,8 +106,7 @@ TEST_CASE("a file has the groups, names and types of FCLIB's own writer", "[unit
 
 TEST_CASE("a written problem is the problem, bit for bit, and so are its bytes", "[unit][problem]") {
     const TemporaryFolder folder;
-    ContactProblem problem =
-        read_back(local_file());  // W is not symmetric, so that exchanged rows and columns are noticed
+    ContactProblem problem = read_back(local_file());  // W is not symmetric: exchanged rows and columns are noticed
     problem.description = "two contacts";
     const fs::path path = folder.path() / "a.hdf5";
     write_problem(problem, path);

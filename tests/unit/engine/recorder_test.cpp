@@ -112,8 +112,7 @@ TEST_CASE("series are written as CSV and HDF5 with all digits and units, and rea
     for (int call = 0; call < 5; ++call) {
         REQUIRE(swing.world.advance(0.01).ok());
         recorder.sample(swing.world);
-        CHECK(lines_of(streamed).size() ==
-              recorder.row_count() + 1);  // written at once, so that a killed run loses nothing
+        CHECK(lines_of(streamed).size() == recorder.row_count() + 1);  // at once: a killed run loses nothing
     }
     recorder.write_csv(folder.path() / "whole.csv");
     const std::vector<std::string> lines = lines_of(streamed);

@@ -66,8 +66,7 @@ TEST_CASE("a block of rank one is solved where that is possible", "[unit][solver
     w(0, 0) = 4;
     const Vec3 r = solve_once(w, Vec3(-2, 0, 0), 0.5);
     CHECK((r - Vec3(0.5, 0, 0)).norm() < 1e-15);
-    const Vec3 sliding =
-        solve_once(w, Vec3(-2, 1, 0), 0.5);  // nothing stops the tangential motion: full friction opposes it
+    const Vec3 sliding = solve_once(w, Vec3(-2, 1, 0), 0.5);  // the tangent is free: full friction against it
     CHECK((sliding - Vec3(0.5, -0.25, 0)).norm() < 1e-10);
 }
 

@@ -202,8 +202,7 @@ TEST_CASE("a solved region obeys Coulomb's law contact by contact", "[property][
         CHECK(r.dot(n) >= 0);
         CHECK(u.dot(n) * r.dot(n) < 1e-9);
         CHECK(friction.norm() <= 0.4 * r.dot(n) + 1e-12);
-        CHECK(std::abs(friction.dot(slip) + 0.4 * r.dot(n) * slip.norm()) <
-              1e-9);  // opposite to the slip, and full when it slides
+        CHECK(std::abs(friction.dot(slip) + 0.4 * r.dot(n) * slip.norm()) < 1e-9);  // opposite, and full when it slides
     }
 }
 
