@@ -1,4 +1,4 @@
-// Derivatives by differences, and what stress must be for simple deformations.
+// Derivatives against finite differences, and properties of the stress for simple deformations.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
@@ -32,7 +32,7 @@ TEST_CASE("stress is the derivative of the energy density", "[property]") {
         for (int trial = 0; trial < 300; ++trial) {
             Mat3 F = Mat3::Identity() + (trial % 2 ? 1.0 : 0.2) * random_matrix(random);
             if (trial % 3 == 0) F.col(1) *= -1;
-            if (stiffness_bound(material, F) > 100) continue;  // corotational, where the frame is about to jump
+            if (stiffness_bound(material, F) > 100) continue;  // corotational model just before its frame jumps
             const Mat3 P = stress(material, F);
             constexpr Real step = 1e-5;  // error step^2 times the third derivative plus 1e-16 / step
             for (int i = 0; i < 9; ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("a tangent is the derivative of stress without its negative part", "[p
             const MaterialConstants material = material_constants(model, 1, trial % 4 == 0 ? -0.3 : 0.4, 1);
             Mat3 F = Mat3::Identity() + (trial % 2 ? 0.7 : 0.2) * random_matrix(random);
             if (trial % 5 == 0) F.col(1) *= -1;
-            if (stiffness_bound(material, F) > 30) continue;  // corotational, where the frame is about to jump
+            if (stiffness_bound(material, F) > 30) continue;  // corotational model just before its frame jumps
             Matrix9 slope, found;
             const Tangent tangent = skerry::tangent(material, F);
             for (int i = 0; i < 9; ++i) {
@@ -91,7 +91,8 @@ TEST_CASE("a tangent is the derivative of stress without its negative part", "[p
 }
 
 TEST_CASE("small strains meet the Lame moduli", "[property][accuracy]") {
-    // docs/methods/accuracy.md 19: dP/dF at rest is lambda I:dF + 2 mu sym(dF); 1e-6 for the differences.
+    // docs/methods/accuracy.md 19: dP/dF at rest is lambda I:dF + 2 mu sym(dF). The tolerance 1e-6 is for the
+    // differences.
     std::mt19937_64 random(2);
     for (MaterialModel model : test::material_models) {
         const MaterialConstants material = material_constants(model, 1e5, 0.4, 1000);
@@ -125,7 +126,7 @@ TEST_CASE("nodal forces are minus the derivative of the elastic energy", "[prope
         body.compute_forces(*executor);
         Real scale = 0;
         for (const Vec3& f : body.force) scale = std::max(scale, f.norm());
-        constexpr Real step = 1e-6;  // m; cells are 0.1 m
+        constexpr Real step = 1e-6;  // [m]; cells are 0.1 m
         for (std::size_t n = 0; n < body.position.size(); ++n)
             for (int i = 0; i < 3; ++i) {
                 const Real before = body.position[n][i];
@@ -157,7 +158,7 @@ TEST_CASE("internal forces have no sum and, rotation-invariant models, no torque
         INFO(name_of(model));
         CHECK(sum.norm() <= 1e-13 * size);
         if (model == MaterialModel::linear)
-            CHECK(torque.norm() > 1e-6 * arm);  // the known fault of linear elasticity
+            CHECK(torque.norm() > 1e-6 * arm);  // known defect of linear elasticity: no balance of torque
         else
             CHECK(torque.norm() <= 1e-13 * arm);
     }

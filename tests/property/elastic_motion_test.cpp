@@ -1,4 +1,4 @@
-// Motion in time: stability edge, frequency, conservation, and the energy theorem of the contact step.
+// Motion in time: stability limit, frequency, conservation, and the energy theorem of the contact step.
 #include <catch2/catch.hpp>
 
 #include "jobs/executor.h"
@@ -32,8 +32,8 @@ struct Motion {
     }
 };
 
-/// One element, all corners pinned but the last: an oscillator with a known frequency along x, sqrt(k / m), k = V mu
-/// |g|^2 for motion across its gradient g = z / h.
+/// One element with all corners pinned except the last: an oscillator along x with the known frequency sqrt(k / m). k =
+/// V mu |g|^2 for motion across the element's gradient g = z / h.
 ElasticBody oscillator() {
     const test::TetMesh one{{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1)}, {{0, 1, 2, 3}}};
     ElasticBody body(one, material_constants(MaterialModel::linear, 1e5, 0.3, 1000));
@@ -118,8 +118,8 @@ TEST_CASE("the stability edge is omega h = 2", "[property][accuracy]") {
 }
 
 TEST_CASE("plane waves have the speeds of the bulk", "[property][accuracy]") {
-    // docs/methods/accuracy.md 12. Nodes move along one axis only, as they would within an endless body: a standing
-    // wave of one length over 20 elements.
+    // docs/methods/accuracy.md 12. Nodes move along one axis only, as they would inside an infinite body: a standing
+    // wave with one wavelength over 20 elements.
     constexpr Index n = 20;
     constexpr Real h_element = 0.1, nu = 0.3, density = 1000;
     for (bool pressure : {true, false}) {
@@ -177,8 +177,8 @@ TEST_CASE("a body runs at its stable step and keeps its momenta", "[property]") 
         }
         const Momenta end = momenta(body);
         INFO(name_of(model));
-        CHECK(largest < 10);  // it started with 2.5
-        // docs/methods/accuracy.md 3: 1e-12 a step; symplectic Euler keeps x cross m v exactly.
+        CHECK(largest < 10);  // initial value: 2.5
+        // docs/methods/accuracy.md 3: 1e-12 per step; symplectic Euler conserves the sum of x cross m v exactly.
         CHECK((end.linear - start.linear).norm() <= 1e-13 * steps * start.linear.norm());
         CHECK((end.angular - start.angular).norm() <= 1e-12 * steps * start.angular.norm());
     }

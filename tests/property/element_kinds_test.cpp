@@ -1,4 +1,4 @@
-// What every kind of element must keep, and what smoothed ones add (docs/methods/elasticity.md 7).
+// Properties that every kind of element must have, and those that smoothed elements add (docs/methods/elasticity.md 7).
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
@@ -17,7 +17,7 @@ using test::jittered_box;
 
 namespace {
 
-constexpr Real cell = 0.1;  // m
+constexpr Real cell = 0.1;  // [m]
 
 ElasticBody body_of(const test::TetMesh& mesh, ElementKind kind,
                     MaterialModel model = MaterialModel::stable_neo_hookean, Real nu = 0.4) {
@@ -39,7 +39,7 @@ Real energy(const ElasticBody& body) {
     return elastic_energy(body.inputs(), body.blocks, body.position);
 }
 
-/// u^T K u at rest, of linear material: twice the energy.
+/// u^T K u at rest for a linear material: twice the energy [J].
 Real quadratic_form(ElasticBody& body, const std::vector<Vec3>& rest, const std::vector<Vec3>& u) {
     for (std::size_t n = 0; n < u.size(); ++n) body.position[n] = rest[n] + u[n];
     const Real twice = 2 * energy(body);
@@ -95,7 +95,7 @@ TEST_CASE("patch test of every kind of element", "[property]") {
             INFO(name_of(kind) << ", " << name_of(model));
             CHECK(force <= 1e-12 * largest(body.force));
             for (std::size_t e = 0; e < 8 * body.elements.first.size(); ++e)
-                if (body.volume(e) > 0) CHECK((body.deformation(e) - A).norm() <= 2e-14 * 30);  // places are up to 4 m
+                if (body.volume(e) > 0) CHECK((body.deformation(e) - A).norm() <= 2e-14 * 30);  // coordinates reach 4 m
         }
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("forces of every kind of element are minus the derivative of its energ
             ElasticBody body = body_of(jittered_box({2, 2, 2}, cell, 0.25, 3), kind, model);
             scatter(body, 0.015, 4);
             body.compute_forces(*executor);
-            constexpr Real step = 1e-6;  // m
+            constexpr Real step = 1e-6;  // [m]
             INFO(name_of(kind) << ", " << name_of(model));
             std::mt19937_64 random(5);
             for (int trial = 0; trial < 20; ++trial) {
@@ -188,7 +188,7 @@ TEST_CASE("rigid motion alone costs nothing, however thin the mesh", "[property]
             const auto size = static_cast<Eigen::Index>(3 * body.position.size());
             Eigen::MatrixXd K(size, size);
             const std::vector<Vec3> rest = body.position;
-            for (Eigen::Index j = 0; j < size; ++j) {  // linear: forces are -K u
+            for (Eigen::Index j = 0; j < size; ++j) {  // linear model: forces are -K u
                 body.position[static_cast<std::size_t>(j / 3)][j % 3] += 1;
                 body.compute_forces(*executor);
                 body.position = rest;
@@ -236,11 +236,11 @@ TEST_CASE("the stable step of every kind is below the limit, and shares of mass 
                     const Real after = test::stable_step_of(body);
                     INFO(name_of(kind) << ", " << name_of(model) << ", jitter " << jitter << ", nu " << nu << ": "
                                        << before / limit << ", shared " << after / limit);
-                    CHECK(before <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+                    CHECK(before <= 0.9 * limit * (1 + 1e-6));  // 1e-6: error of the differences
                     CHECK(after <= 0.9 * limit * (1 + 1e-6));
                     CHECK(after >= 0.6 * 0.9 * limit);
                     CHECK(after >= 0.99 * before);
-                    scatter(body, 0.02, 12);  // shares of the rest shape are rigorous for others, too
+                    scatter(body, 0.02, 12);  // mass shares of the rest shape are rigorous for other shapes, too
                     CHECK(test::stable_step_of(body) <= 0.9 * test::exact_limit(body) * (1 + 1e-5));
                 }
 }

@@ -1,4 +1,4 @@
-// What keeps small tetrahedra among smoothed elements from turning over (docs/methods/elasticity.md 7.7).
+// Inversion barriers that keep small tetrahedra of smoothed elements from inverting (docs/methods/elasticity.md 7.7).
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -40,7 +40,7 @@ LaneMat3<Real8> everywhere(const Mat3& F) {
     return {column(0), column(1), column(2)};
 }
 
-/// dP/dF by differences, as a 9x9 matrix.
+/// dP/dF by finite differences, as a 9x9 matrix.
 Eigen::Matrix<Real, 9, 9> hessian(const Mat3& F) {
     constexpr Real step = 1e-6;
     Eigen::Matrix<Real, 9, 9> H;
@@ -54,7 +54,7 @@ Eigen::Matrix<Real, 9, 9> hessian(const Mat3& F) {
     return H;
 }
 
-/// Knots in a box whose other tetrahedra are above the bound, but for a few.
+/// A box with knots. Almost all of its other tetrahedra are above the size bound.
 TetMesh knotted() {
     return test::knotted_box(test::jittered_box({3, 3, 3}, 0.1, 0.1, 7), {40, 100});
 }
@@ -71,7 +71,7 @@ ElementList guards_of(const TetMesh& mesh, ElementKind kind = ElementKind::edge_
     return list;
 }
 
-/// A body whose elements have guards behind them, as the world makes it.
+/// A body whose elements have inversion barriers, built as the world builds it.
 struct GuardedBody : test::ElasticBody {
     std::vector<Real> viscous_time;
 
@@ -91,7 +91,7 @@ struct GuardedBody : test::ElasticBody {
 
     bool is_guard(std::size_t element) const { return elements.part[element / element_lanes] == ElementPart::guard; }
 
-    /// Elements of whose nodes `chained` says so of all are implicit.
+    /// Makes those elements implicit for all of whose nodes `chained` returns true.
     template <class Chained>
     void make_implicit(Chained&& chained) {
         for (std::size_t e = 0; e < element_at.size(); ++e) {
@@ -105,7 +105,7 @@ struct GuardedBody : test::ElasticBody {
         find_viscous_times(elements.implicit_modulus, 1e-3, viscous_time);
     }
 
-    /// Without viscosity: nothing moves.
+    /// Forces without viscosity: nothing moves.
     std::vector<Vec3> forces() {
         const auto executor = make_executor(Backend::serial, 1);
         ElementInputs now = inputs();
@@ -147,7 +147,7 @@ TEST_CASE("the law of guards is nothing above half of the volume, and below it t
         CHECK(P.cwiseProduct(turn).sum() ==
               Approx(slope).epsilon(1e-6).margin(1e-8 * law.lame_lambda * turn.norm() * (1 + F.squaredNorm())));
         CHECK((P * F.transpose() - F * P.transpose()).norm() <= 1e-12 * (P * F.transpose()).norm());  // no torque
-        CHECK(P.cwiseProduct((F.inverse()).transpose()).sum() * J < 0);                               // it opens
+        CHECK(P.cwiseProduct((F.inverse()).transpose()).sum() * J < 0);  // the force opens the element
     }
     CHECK(pressed > 20);
     CHECK(mirrored > 20);
@@ -158,7 +158,7 @@ TEST_CASE("the bounds on the stiffness of guards hold, and lanes are as the law"
     for (int i = 0; i < 100; ++i) {
         const Mat3 F = random_gradient(random, i % 2 == 0 ? 0.3 : 1);
         const Real J = F.determinant();
-        if (std::abs(J - Guard::intact) < 1e-3) continue;  // differences across the kink
+        if (std::abs(J - Guard::intact) < 1e-3) continue;  // the differences would cross the kink
         const Real bound = Guard::stiffness_bound(law, F);
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>> modes(hessian(F));
         const Real highest = modes.eigenvalues()[8];
@@ -171,7 +171,7 @@ TEST_CASE("the bounds on the stiffness of guards hold, and lanes are as the law"
         const LaneMat3<Real8> P_lanes = Guard::stress(law, lanes);
         CHECK(P_lanes.c0.y[2] == Approx(P(1, 0)).margin(1e-9 * P.norm()));
         CHECK(P_lanes.c2.x[7] == Approx(P(0, 2)).margin(1e-9 * P.norm()));
-        // The tangent is the Hessian without what softens.
+        // The tangent is the Hessian without its softening part.
         const Tangent tangent = Guard::tangent(law, F);
         CHECK(std::max({tangent.normal.norm(), tangent.flip.maxCoeff(), tangent.twist.maxCoeff()}) <=
               std::sqrt(Real(3)) * bound + 1e-9);
@@ -266,7 +266,7 @@ TEST_CASE("guards act where one cluster has all of their moving corners", "[prop
     const std::size_t all = guards_of(mesh).size();
     body.make_implicit([](std::size_t) { return true; });
     CHECK(body.acting() == all);
-    // half of the body is in a cluster; a held corner asks for nothing
+    // Half of the body is in a cluster. A held corner need not be in it.
     const auto left = [&](std::size_t n) { return mesh.nodes[n].x() < 0.16; };
     body.inverse_mass[body.mesh.nodes.size() - 1] = 0;
     body.make_implicit(left);
@@ -278,7 +278,7 @@ TEST_CASE("guards act where one cluster has all of their moving corners", "[prop
         for (std::size_t k = 0; k < 4; ++k) {
             const std::size_t n = body.node(e, k);
             corner[k] = mesh.nodes[n];
-            bool chained = false;  // by an element all of whose nodes are on the left
+            bool chained = false;  // true if the node belongs to an implicit element, whose nodes are all on the left
             for (std::size_t other = 0; other < body.element_at.size(); ++other) {
                 if (body.is_guard(other) ||
                     !(body.elements.implicit_modulus[other / element_lanes][other % element_lanes] > 0))
@@ -297,7 +297,7 @@ TEST_CASE("guards act where one cluster has all of their moving corners", "[prop
     CHECK(expected > 0);
     CHECK(expected < all);
     CHECK(body.acting() == expected);
-    // what acts keeps the modulus that it has come to, and is let go with the cluster
+    // An acting barrier keeps the modulus that it has reached, and is released together with the cluster.
     for (std::size_t b = 0; b < body.elements.first.size(); ++b)
         for (Real& m : body.elements.implicit_modulus[b].lane) m *= 1e3;
     const Column<ElementLane> raised = body.elements.implicit_modulus;
@@ -320,7 +320,7 @@ TEST_CASE("while small tetrahedra are intact guards change no bit of a force; cr
     CHECK(idle.forces() == acting.forces());
     CHECK(elastic_energy(acting.inputs(), acting.blocks, acting.position) ==
           elastic_energy(idle.inputs(), idle.blocks, idle.position));
-    // the inside of a knot pressed flat
+    // The inside of a knot is pressed flat.
     const ElementList guards = guards_of(mesh);
     for (const Index n : std::span(guards.node).first(4)) moved[static_cast<std::size_t>(n)].z() *= 1.001;
     for (std::size_t n = 0; n < moved.size(); ++n)
@@ -348,7 +348,7 @@ TEST_CASE("while small tetrahedra are intact guards change no bit of a force; cr
             CHECK(force[static_cast<std::size_t>(n)][i] ==
                   Approx(-(energy(up) - energy(down)) / (2 * step)).epsilon(1e-4).margin(1e-4 * size));
         }
-    // and let go: nothing stays of what they did
+    // After the release nothing remains of the barriers' effect.
     acting.make_implicit([](std::size_t) { return false; });
     CHECK(acting.forces() == without);
 }

@@ -1,4 +1,4 @@
-// A body of several materials: no element covers two (docs/methods/elasticity.md 7.6).
+// A body of several materials: no element spans two materials (docs/methods/elasticity.md 7.6).
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -16,7 +16,7 @@ using test::jittered_box;
 
 namespace {
 
-constexpr Real cell = 0.1;  // m
+constexpr Real cell = 0.1;  // [m]
 
 MaterialConstants soft(MaterialModel model = MaterialModel::stable_neo_hookean) {
     return material_constants(model, 1e4, 0.4, 500);
@@ -26,7 +26,7 @@ MaterialConstants stiff(MaterialModel model = MaterialModel::stable_neo_hookean)
     return material_constants(model, 1e6, 0.3, 2000);
 }
 
-/// 0 below the plane y = middle, 1 above, by the place of a tetrahedron.
+/// Material of each tetrahedron by its centroid: 0 below the plane y = middle, 1 above.
 std::vector<Index> layers_of(const test::TetMesh& mesh, Real middle) {
     std::vector<Index> layer;
     for (const auto& t : mesh.tetrahedra) {
@@ -76,7 +76,7 @@ TEST_CASE("no element covers tetrahedra of two materials, and each material is c
 }
 
 TEST_CASE("an edge or a node between two materials has an element of each", "[property]") {
-    // Two tetrahedra that share a face: three edges and three nodes lie in both.
+    // Two tetrahedra with a common face: three edges and three nodes belong to both.
     const test::TetMesh mesh{{{0, 0, 0}, {cell, 0, 0}, {0, cell, 0}, {0, 0, cell}, {cell, cell, cell}},
                              {{0, 1, 2, 3}, {1, 2, 3, 4}}};
     REQUIRE(volume_of(mesh, mesh.tetrahedra[1]) > 0);
@@ -110,7 +110,7 @@ TEST_CASE("where strain is the same everywhere all kinds give the forces of both
         ElasticBody body = layered(mesh, {soft(), stiff()}, kind);
         for (Vec3& x : body.position) x = F * x;
         const std::vector<Vec3> found = forces(body);
-        if (expected.empty()) expected = found;  // of tetrahedra
+        if (expected.empty()) expected = found;  // forces of plain tetrahedra
         INFO(name_of(kind));
         Real size = 0;
         for (const Vec3& f : expected) size = std::max(size, f.norm());
@@ -140,7 +140,7 @@ TEST_CASE("forces of a layered body are minus the derivative of its energy, with
             for (std::size_t n = 0; n < start.size(); ++n) body.position[n] = start[n] + s * way[n];
             return elastic_energy(body.inputs(), body.blocks, body.position);
         };
-        constexpr Real step = 1e-5;  // m
+        constexpr Real step = 1e-5;  // [m]
         const Real slope =
             (8 * (energy_at(step) - energy_at(-step)) - (energy_at(2 * step) - energy_at(-2 * step))) / (12 * step);
         CHECK(-slope == Approx(work).epsilon(1e-7));
@@ -192,7 +192,7 @@ TEST_CASE("the stable step of a layered body is below its limit, and shares of m
             const Real after = test::stable_step_of(body);
             INFO(name_of(kind) << ", " << name_of(below) << " below " << name_of(above) << ": " << before / limit
                                << ", shared " << after / limit);
-            CHECK(before <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+            CHECK(before <= 0.9 * limit * (1 + 1e-6));  // 1e-6: error of the differences
             CHECK(after <= 0.9 * limit * (1 + 1e-6));
             CHECK(after >= 0.6 * 0.9 * limit);
             CHECK(after >= 0.99 * before);

@@ -18,10 +18,10 @@ inline constexpr Real radius = 0.1, length = 0.4, kept = 0.001, density = 1000, 
 inline const Real ball = 4 * pi / 3 * density * radius * radius * radius,
                   shaft = pi * density * radius * radius * length, mass = ball + shaft,
                   axial = ball * 0.4 * radius * radius + shaft * radius * radius / 2,
-                  // either end by itself: 83/320 m R^2 about its centre of mass, 3/8 R beyond the end of the axis
+                  // one half ball by itself: 83/320 m R^2 about its centre of mass, 3/8 R beyond the end of the axis
     across = ball * (83.0 / 320 * radius * radius + std::pow(length / 2 + 3.0 / 8 * radius, 2)) +
              shaft * (radius * radius / 4 + length * length / 12);
-// rotations of the axis from z
+// rotations that turn the axis from z to x and to y
 inline const Vec3 along_x(0, pi / 2, 0), along_y(-pi / 2, 0, 0);
 
 struct Capsules {
@@ -64,7 +64,7 @@ struct Capsules {
     }
     Vec3 middle(BodyHandle body) const { return (end(body, 0) + end(body, 1)) / 2; }
     Vec3 end(BodyHandle body, std::size_t k) const { return world.positions(body)[k]; }
-    /// m, between two axes.
+    /// Distance between the axes of two capsules [m].
     Real apart(BodyHandle a, BodyHandle b) const {
         return std::sqrt(closest_points_of_segments(end(a, 0), end(a, 1), end(b, 0), end(b, 1)).distance_squared);
     }
@@ -76,7 +76,7 @@ inline Settings steps_of(Real h, const Vec3& gravity = {0, 0, -g}) {
     return settings;
 }
 
-/// What a capsule lies on, its upper side at z = 0; m kept to it.
+/// Kinds of floor with the upper side at z = 0. add_floor() returns the distance that a capsule keeps to it [m].
 enum Floor { plane, box, mesh_collider, rigid_slab };
 
 inline Real add_floor(Capsules& c, Floor floor) {

@@ -1,4 +1,4 @@
-// Bodies and colliders as the collision stages see them, without an engine around.
+// Bodies and colliders as the collision stages see them, without an engine.
 #pragma once
 
 #include <memory>
@@ -59,12 +59,12 @@ struct CollisionWorld {
         collider.slot[row] = next_slot++;
         collider.geometry[row] = {shape, size};
         collider.motion[row] = collider.initial[row] = motion;
-        collider.surface[row] = {-1, -1, -1};  // left to the body
+        collider.surface[row] = {-1, -1, -1};  // negative: the values of the body are used
         collider.body[row] = no_index;
         return static_cast<Index>(row);
     }
 
-    /// A surface whose nodes are moved by hand: the body part of a mesh collider.
+    /// Adds a surface whose nodes the test moves: the body part of a mesh collider.
     Index add_kinematic(const std::vector<Vec3>& points, const std::vector<BoundaryTriangle>& triangles,
                         Real contact_distance) {
         const Index c = add_collider(ColliderShape::mesh, Vec3::Zero(), at(Vec3::Zero()));
@@ -86,13 +86,13 @@ struct CollisionWorld {
         return b;
     }
 
-    /// Both stages, as in a step.
+    /// Runs both stages as in a step.
     void find(Real h) {
         find_candidates(*executor, inputs(), settings, h, bvh.box, search, pairs);
         find_contacts(*executor, inputs(), settings, h, pairs, crossings, contacts);
     }
 
-    /// Moves every node by h velocity and keeps the books of the engine.
+    /// Moves every node by h velocity and updates frames and travelled distances like the engine.
     void drift(Real h) {
         for (std::size_t n = 0; n < nodes.position.size(); ++n) nodes.position[n] += h * nodes.velocity[n];
         for (std::size_t b = 0; b < body.slot.size(); ++b) {
@@ -119,7 +119,7 @@ struct CollisionWorld {
         }
     }
 
-    /// Frames go with their bodies from now on.
+    /// From now on every frame moves with the mean velocity of its body.
     void follow_bodies() {
         for (std::size_t b = 0; b < body.slot.size(); ++b) {
             Vec3 sum = Vec3::Zero();

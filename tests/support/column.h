@@ -1,5 +1,5 @@
-// A bar whose mesh is one-dimensional: the closed forms of bars hold on it to rounding where they hold on a chain of
-// points and springs.
+// A bar with a one-dimensional mesh. Closed forms for bars hold on it to rounding if they hold on a chain of points and
+// springs.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,15 +9,15 @@
 
 namespace skerry::test {
 
-/// Area of the cross-section of a column, m^2.
+/// Area of the cross-section of a column [m^2].
 constexpr Real column_area(Real width) {
     return width * width / 2;
 }
 
-/// A column over a right triangle with two sides of `width`, along z and centred in z, in n layers of three tetrahedra.
-/// Each tetrahedron has one edge along the column, so that all corners of a layer inside carry the same mass and,
-/// without lateral strain, feel the same force: for a Poisson ratio of 0 the layers move as the points of a chain. At
-/// the two ends the masses of the corners are as 1 : 2 : 3 and 3 : 2 : 1. Nodes 3 k to 3 k + 2 are layer k.
+/// A column along z, centred in z, over a right triangle with two sides of `width`, in n layers of three tetrahedra.
+/// Each tetrahedron has one edge along the column. All corners of an interior layer thus have equal mass and, without
+/// lateral strain, equal force: for Poisson ratio 0 the layers move like the points of a chain. At the two ends the
+/// masses of the corners are as 1 : 2 : 3 and 3 : 2 : 1. Nodes 3 k to 3 k + 2 form layer k.
 inline Mesh column(Real width, Real length, int n) {
     Mesh mesh;
     for (int k = 0; k <= n; ++k) {

@@ -21,7 +21,7 @@ struct SolvedScene {
     std::vector<Vec3> contact_impulse, contact_moment, push_velocity, push_spin;  // by rigid body
 };
 
-/// Rigid bodies of a scene: body 0 of the tables deforms and has the nodes of no rigid body.
+/// Rigid bodies of a scene. Body 0 of the tables is deformable and owns the nodes that belong to no rigid body.
 struct RigidScene {
     std::vector<Index> node_body;
     std::vector<Range> body_nodes, body_rigid;
@@ -33,7 +33,7 @@ struct RigidScene {
     RigidInputs inputs() const {
         return {nodes(), position, center, mass, {inverse_inertia, angular_momentum, moment_kick}, momentum, kick};
     }
-    /// The nodes first .. first + places - 1 of a scene of `count` nodes; at rest.
+    /// Adds a body at rest with nodes first .. first + places - 1 of a scene with `count` nodes.
     void add(std::size_t count, Index first, std::span<const Vec3> places, const Vec3& at, Real weight,
              const Mat3& inertia) {
         if (body_nodes.empty()) {
@@ -131,8 +131,8 @@ struct ContactScene {
     }
 };
 
-/// Adds two sheets of size x size points, each inner point against a triangle of the other: 2 (size - 2)^2 contacts in
-/// one region, an oblique impact with uneven masses (docs/methods/measuring.md 4.1).
+/// Adds two sheets of size x size points. Each inner point touches a triangle of the other sheet: 2 (size - 2)^2
+/// contacts in one region, an oblique impact with uneven masses (docs/methods/measuring.md 4.1).
 inline void add_sheets(ContactScene& scene, int size, Real mu, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<Real> noise;

@@ -1,4 +1,4 @@
-// Replaces operator new of a whole program.
+// Replaces operator new of a whole program by one that counts.
 #include "tests/support/count_allocations.h"
 
 #include <cstddef>

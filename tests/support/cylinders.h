@@ -25,13 +25,13 @@ struct Cylinders : capsules::Capsules {
         const RigidBodyTable& table = WorldAccess::state_of(world).model.rigid_bodies;
         return table.rotation[row(body)].transpose() * (point - middle(body));
     }
-    /// m: how far a point is from a cylinder; below zero inside.
+    /// Distance of a point from a cylinder, negative inside [m].
     Real distance(BodyHandle body, const Vec3& point) const {
         const Vec3 at = local(body, point);
         const Real out = at.head<2>().norm() - radius, up = std::abs(at.z()) - height / 2;
         return out > 0 && up > 0 ? std::hypot(out, up) : std::max(out, up);
     }
-    /// m: the lowest point.
+    /// Height of the lowest point of a cylinder [m].
     Real lowest(BodyHandle body) const {
         const Real up = std::abs(axis(body).z());
         return middle(body).z() - height / 2 * up - radius * std::sqrt(std::max(Real(0), 1 - up * up));

@@ -1,4 +1,4 @@
-// Tables of one elastic body, as the world would make them.
+// Tables of one elastic body, built like those of a world.
 #pragma once
 
 #include <Eigen/LU>
@@ -19,7 +19,7 @@ struct ElasticBody {
     std::vector<Vec3> position, velocity, load, force;
     std::vector<Real> mass, inverse_mass;
     TetMesh mesh;
-    std::vector<Real> tetrahedron_mass;  // kg
+    std::vector<Real> tetrahedron_mass;  // [kg]
     TetrahedronBlockTable tetrahedra;
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
@@ -27,13 +27,13 @@ struct ElasticBody {
     ElementPatches patches;
     Column<MaterialConstants> constants;
     ElementList list;
-    std::vector<Index> element_at;  // of the list, by place; no_index in a lane that is left over
+    std::vector<Index> element_at;  // index in `list` of the element in each lane; no_index in an unused lane
 
     ElasticBody(const TetMesh& of, const MaterialConstants& material, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
         : ElasticBody(of, {material}, std::vector<Index>(of.tetrahedra.size(), 0), rotation, kind) {}
 
-    /// Of several materials: that of each tetrahedron.
+    /// Builds a body of several materials; `material_of` gives the material of each tetrahedron.
     ElasticBody(const TetMesh& of, const std::vector<MaterialConstants>& materials,
                 const std::vector<Index>& material_of, const Mat3& rotation = Mat3::Identity(),
                 ElementKind kind = ElementKind::linear)
@@ -86,8 +86,8 @@ struct ElasticBody {
                 .frame_bound = elements.frame_bound};
     }
 
-    /// `h`: s, since the elements were last looked at: what relaxes does so for this long. Returns what that
-    /// dissipates, J.
+    /// Computes element forces. Viscous strain relaxes for `h`, the time since the last evaluation [s]. Returns the
+    /// dissipated energy [J].
     Real compute_elements(Executor& executor, Real h = 0) {
         return compute_element_forces(executor, inputs(), position, velocity, h, 0, elements.rotation,
                                       {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
@@ -110,7 +110,7 @@ struct ElasticBody {
         swap(elements.rotation, elements.rotation_next);
     }
 
-    /// Number of nodes, and node and force k, of an element.
+    /// Number of nodes of an element, its node k, and its gradient k.
     std::size_t node_count(std::size_t element) const {
         return static_cast<std::size_t>(elements.count[element / element_lanes]);
     }
@@ -123,7 +123,7 @@ struct ElasticBody {
         return {g[0][l], g[1][l], g[2][l]};
     }
 
-    /// F of one element by the textbook, for comparison with the kernels.
+    /// F of one element by the textbook formula, for comparison with the kernels.
     Mat3 deformation(std::size_t element) const {
         Mat3 F = Mat3::Zero();
         for (std::size_t k = 0; k < node_count(element); ++k)

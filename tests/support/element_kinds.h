@@ -1,4 +1,4 @@
-// The kinds of elements that are registered, but for the one that stands for others.
+// The registered kinds of elements, except the one that stands for others.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The exact limit of the step, by differences and a dense eigenvalue solver: what the bound of stable_step is compared
-// with.
+// The exact stability limit of the step, from finite differences and a dense eigenvalue solver. Tests compare the bound
+// of stable_step with it.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -10,13 +10,13 @@
 
 namespace skerry::test {
 
-/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape, K by central differences of the nodal
-/// forces.
+/// Largest eigenvalue of M^-1/2 K M^-1/2 of the whole mesh in its present shape. K comes from central differences of
+/// the nodal forces.
 inline Real exact_frequency_squared(ElasticBody& body) {
     const auto executor = make_executor(Backend::serial, 1);
     const Eigen::Index size = 3 * static_cast<Eigen::Index>(body.position.size());
     Eigen::MatrixXd K(size, size);
-    constexpr Real step = 1e-6;  // m; cells are 0.1 m
+    constexpr Real step = 1e-6;  // [m]; cells are 0.1 m
     const auto forces = [&](Eigen::Index j, Real by) {
         Real& x = body.position[static_cast<std::size_t>(j / 3)][j % 3];
         const Real before = x;
@@ -34,7 +34,7 @@ inline Real exact_frequency_squared(ElasticBody& body) {
         .eigenvalues()[size - 1];
 }
 
-/// The step at which symplectic Euler turns unstable, s.
+/// Longest step for which symplectic Euler is stable [s].
 inline Real exact_limit(ElasticBody& body) {
     return 2 / std::sqrt(exact_frequency_squared(body));
 }

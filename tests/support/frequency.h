@@ -8,8 +8,8 @@
 
 namespace skerry::test {
 
-/// Angular frequency, rad/s, of the oscillation about `mean` that symplectic Euler has sampled every h seconds, without
-/// the error of the step: x_n+1 + x_n-1 = (2 - (omega h)^2) x_n, solved for omega by least squares.
+/// Angular frequency of an oscillation about `mean`, sampled every h seconds by symplectic Euler, without the error of
+/// the step [rad/s]. Solves x_n+1 + x_n-1 = (2 - (omega h)^2) x_n for omega by least squares.
 inline Real angular_frequency(std::span<const Real> sample, Real h, Real mean = 0) {
     Real product = 0, square = 0;
     for (std::size_t n = 1; n + 1 < sample.size(); ++n) {

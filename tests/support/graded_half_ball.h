@@ -10,14 +10,14 @@
 
 namespace skerry::test {
 
-/// Half a ball below z = 0, centred at the origin: shells of a block of cubes, drawn onto half spheres. `fine` shells
-/// make up the radius a, so that elements there are a / fine thick; beyond a they grow by a factor of e^(growth / fine)
-/// from shell to shell until the radius is reached.
+/// Half a ball below z = 0, centred at the origin: the shells of a block of cubes, mapped onto half spheres. The radius
+/// a has `fine` shells, so that elements there are a / fine thick. Beyond a the shells grow by a factor of e^(growth /
+/// fine) from one to the next until the radius is reached.
 struct HalfBallShape {
-    Real a = 1;  // m
+    Real a = 1;  // [m]
     int fine = 4;
-    Real growth = 4;   // per a of even shells
-    Real radius = 30;  // m, at least
+    Real growth = 4;   // logarithm of the growth in thickness over `fine` shells
+    Real radius = 30;  // lower bound [m]
 
     int shells() const {
         return fine + static_cast<int>(std::ceil(fine * std::log1p(growth * (radius / a - 1)) / growth));
@@ -40,7 +40,7 @@ inline Mesh graded_half_ball(const HalfBallShape& shape) {
     return mesh;
 }
 
-/// Turns tetrahedra of negative volume over.
+/// Swaps two corners of each tetrahedron with negative volume.
 inline void orient(Mesh& mesh) {
     for (auto& t : mesh.tetrahedra) {
         const auto edge = [&](std::size_t i) -> Vec3 {
@@ -50,9 +50,9 @@ inline void orient(Mesh& mesh) {
     }
 }
 
-/// Inverts the half ball so that its flat face becomes the sphere of the given radius that touches z = 0 at the origin
-/// from above, and its fine middle the lowest point: an angle-preserving map. The top, where the far shell ends up, is
-/// cut off.
+/// Maps the half ball by an inversion, which keeps angles. The flat face becomes the sphere of the given radius that
+/// touches z = 0 at the origin from above; its fine middle becomes the lowest point. The top of the sphere, where the
+/// outermost shell ends up, is cut off.
 inline void roll_up(Mesh& mesh, Real radius) {
     const Vec3 top(0, 0, 2 * radius);
     for (Vec3& x : mesh.nodes) x = top + 4 * radius * radius / (x - top).squaredNorm() * (x - top);

@@ -1,4 +1,4 @@
-// A box of tetrahedra with nodes moved at random: the mesh of the elastic tests.
+// A box of tetrahedra with randomly moved nodes: the mesh of the elastic tests.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@
 namespace skerry::test {
 
 struct TetMesh {
-    std::vector<Vec3> nodes;                       // m
+    std::vector<Vec3> nodes;                       // [m]
     std::vector<std::array<Index, 4>> tetrahedra;  // positive volumes
 };
 
@@ -21,7 +21,7 @@ inline Real volume_of(const TetMesh& mesh, const std::array<Index, 4>& tet) {
     return (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
 }
 
-/// Uniform in [-1, 1], the same numbers on every machine (std::uniform_real_distribution is not).
+/// A uniform number in [-1, 1], equal on every machine (std::uniform_real_distribution is not).
 inline Real uniform(std::mt19937_64& random) {
     return static_cast<Real>(random() >> 11) * 0x1p-52 - 1;
 }
@@ -31,9 +31,9 @@ inline Vec3 random_vector(std::mt19937_64& random) {
     return {x, y, z};
 }
 
-/// Cells of edge h, six tetrahedra each (Kuhn), the lower corner at the origin. Every node is moved by up to jitter h
-/// in each direction, unless that would leave a tetrahedron less than `flattest` of its volume: jitter 0.3 with
-/// flattest 0.01 gives slivers.
+/// A box of cells of edge h, six tetrahedra each (Kuhn), with the lower corner at the origin. Every node is moved by up
+/// to jitter h in each direction, less where a tetrahedron would keep less than `flattest` of its volume. jitter 0.3
+/// with flattest 0.01 gives slivers.
 inline TetMesh jittered_box(const std::array<Index, 3>& cells, Real h, Real jitter, std::uint64_t seed,
                             Real flattest = 0.05) {
     const auto row = [&](Index i, Index j, Index k) { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; };

@@ -1,4 +1,4 @@
-// A box of tetrahedra with knots: places where the mesh is a thousand times finer, by volume, than all around.
+// A box of tetrahedra with knots: places where the mesh is a thousand times finer, by volume, than around them.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace skerry::test {
 
-/// A box of the size of `jittered_box`, where each of the tetrahedra `at` is replaced by thirteen: one of `scale` its
-/// size about its middle, and what joins that to its faces.
+/// A copy of `box` in which each of the tetrahedra `at` is replaced by thirteen: one of `scale` its size about its
+/// middle, and twelve that connect it to the faces.
 inline TetMesh knotted_box(const TetMesh& box, std::vector<std::size_t> at, Real scale = 0.1) {
     TetMesh mesh = box;
     std::ranges::sort(at, std::greater<>());

@@ -1,4 +1,4 @@
-// Worlds that have much to remember from step to step.
+// Worlds with much state that is carried from step to step.
 #pragma once
 
 #include "jobs/executor.h"
@@ -7,8 +7,8 @@
 
 namespace skerry::test {
 
-/// Everything that has a memory at once: stiff and soft elements, also in one body, bodies at rest and bodies that fall
-/// onto them, friction, damping, loads, a mesh collider and a bar that move by scripts, and a held body.
+/// A world with every kind of carried state: stiff and soft elements, also in one body, bodies at rest and bodies that
+/// fall onto them, friction, damping, loads, a mesh collider and a capsule that move by scripts, and a held body.
 inline World lively_scene(Settings settings, int threads = 1) {
     settings.backend = available_backends().front();
     settings.threads = threads;
@@ -45,7 +45,7 @@ inline World lively_scene(Settings settings, int threads = 1) {
     return world;
 }
 
-/// Boxes with slivers, thrown onto a plane: elements that become implicit and stiffen.
+/// Boxes with slivers, thrown onto a plane. Some of their elements become implicit and stiffen.
 inline World thrown_slivers(Settings settings = {}) {
     World world(settings);
     world.add_collider(Plane{});

@@ -1,4 +1,4 @@
-// The main function of all test programs: that of Catch2, and `--list-cases` for cmake/discover_tests.cmake.
+// The main function of all test programs: that of Catch2, plus `--list-cases` for cmake/discover_tests.cmake.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -6,7 +6,7 @@
 
 namespace {
 
-/// Prints a line for each test case that is not hidden: its name, then each of its tags, separated by tabs.
+/// Prints one line for each test case that is not hidden: its name, then its tags, separated by tabs.
 void list_cases(Catch::Session& session) {
     for (const Catch::TestCase& test : Catch::getAllTestCasesSorted(session.config())) {
         if (test.isHidden()) continue;

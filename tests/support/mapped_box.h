@@ -1,4 +1,4 @@
-// Boxes whose nodes are moved, loads on a part of their surface, and their rest.
+// Boxes with mapped nodes, loads on a part of their surface, and their state of rest.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,7 +10,7 @@
 
 namespace skerry::test {
 
-/// A box of cells whose nodes `place` puts where they belong: it takes a point of the unit cube.
+/// A box of cells. `place` maps a point of the unit cube to the position of the node.
 template <class Place>
 Mesh mapped_box(const std::array<int, 3>& cells, Place place) {
     Mesh mesh = mesh::box({1, 1, 1}, cells);
@@ -20,7 +20,7 @@ Mesh mapped_box(const std::array<int, 3>& cells, Place place) {
     return mesh;
 }
 
-/// Numbers of the nodes that `chosen` says yes to, by their place.
+/// Indices of the nodes for whose position `chosen` returns true.
 template <class Chosen>
 std::vector<Index> nodes_where(const Mesh& mesh, Chosen chosen) {
     std::vector<Index> rows;
@@ -29,8 +29,8 @@ std::vector<Index> nodes_where(const Mesh& mesh, Chosen chosen) {
     return rows;
 }
 
-/// Forces on the nodes, N: a third for each corner of what `force` makes of the area (outward, m^2) of the surface
-/// triangles all of whose corners are `loaded`.
+/// Forces on the nodes [N] from a load on the surface triangles all of whose corners satisfy `loaded`. `force` maps the
+/// area vector of a triangle (outward [m^2]) to its force; each corner takes a third of it.
 template <class Loaded, class Force>
 std::vector<Vec3> surface_loads(const Mesh& mesh, std::span<const std::array<Index, 3>> surface, Loaded loaded,
                                 Force force) {
@@ -44,7 +44,7 @@ std::vector<Vec3> surface_loads(const Mesh& mesh, std::span<const std::array<Ind
     return load;
 }
 
-/// Advances by `look` seconds, again and again, until next to nothing of the energy is kinetic.
+/// Advances by `look` seconds at a time until the kinetic energy is at most 1e-10 of the elastic energy.
 inline void settle(World& world, Real look) {
     Energy energy;
     do {

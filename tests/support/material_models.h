@@ -1,4 +1,4 @@
-// All material models that are registered: a new one meets every claim that is made for each of them.
+// All registered material models. A new model has to pass every test that runs over all of them.
 #pragma once
 
 #include <array>

@@ -11,7 +11,7 @@
 namespace skerry::test {
 
 struct SolidMesh {
-    std::vector<Vec3> nodes;                       // m
+    std::vector<Vec3> nodes;                       // [m]
     std::vector<std::array<Index, 4>> tetrahedra;  // positive volumes
 };
 
@@ -42,7 +42,7 @@ inline SolidMesh box_mesh(const std::array<Index, 3>& cells, const Vec3& size) {
     return mesh;
 }
 
-/// A ball: a cube of n^3 cells whose shells are drawn onto spheres. 4 cells: 384 tetrahedra, 192 surface triangles.
+/// A ball: a cube of n^3 cells whose shells are mapped onto spheres. 4 cells: 384 tetrahedra, 192 surface triangles.
 inline SolidMesh ball_mesh(Real radius, Index cells) {
     SolidMesh mesh = box_mesh({cells, cells, cells}, Vec3::Constant(2));
     for (Vec3& x : mesh.nodes) {

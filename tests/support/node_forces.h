@@ -1,4 +1,4 @@
-// What predict_velocity does, by the textbook: forces summed at the nodes, then the kick.
+// Textbook version of predict_velocity: forces summed at the nodes, then the kick.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ inline Vec3 vector_of(const PaddedVec3& padded) {
     return {padded[0], padded[1], padded[2]};
 }
 
-/// force = sum of what all patches around the node do to it + mass gravity + load.
+/// force = sum of the forces of all patches around the node + mass gravity + load.
 inline void gather_node_forces(RaggedView<Index> slots_of_node, std::span<const PaddedVec3> patch_force,
                                std::span<const Real> mass, const Vec3& gravity, std::span<const Vec3> load,
                                std::span<Vec3> force) {
@@ -23,7 +23,7 @@ inline void gather_node_forces(RaggedView<Index> slots_of_node, std::span<const 
     }
 }
 
-/// velocity_next = velocity + h force / mass where there is freedom.
+/// velocity_next = velocity + h force / mass for free nodes; pinned nodes keep their velocity.
 inline void kick(std::span<const Vec3> force, std::span<const Real> inverse_mass, std::span<const Vec3> velocity,
                  Real h, std::span<Vec3> velocity_next) {
     for (std::size_t n = 0; n < force.size(); ++n)

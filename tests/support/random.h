@@ -9,7 +9,7 @@
 
 namespace skerry::test {
 
-/// Uniform in [-1, 1], the same numbers on every machine.
+/// Uniform numbers in [-1, 1], equal on every machine.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : bits_(seed) {}

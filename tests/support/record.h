@@ -1,4 +1,4 @@
-// What tests leave behind for the tables of docs/: one line of JSON a row.
+// Results that tests record for the tables of docs/: one line of JSON per row.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ public:
     RecordLine& add(const char* key, Real number);  // finite
     RecordLine& add(const char* key, int number);
 
-    /// Appends the line to the file of this process in the folder that the environment variable SKERRY_RECORD names;
-    /// without it, does nothing. One file a process: test programs may run side by side.
+    /// Appends the line to a file in the folder named by the environment variable SKERRY_RECORD; does nothing without
+    /// it. Each process has its own file because test programs may run side by side.
     void write() const;
 
 private:

@@ -1,4 +1,4 @@
-// A world goes on with the same bits on any number of threads, cloned, and from a file.
+// A world continues bitwise identically with any number of threads, as a clone, and from a file.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 
 namespace skerry::test {
 
-/// `course(threads)` makes what has a world and moves it; `go_on(world)` moves that, and its copies, further.
+/// `course(threads)` builds an object with a world and advances it; `go_on(world)` advances that world and its copies.
 void check_same_bits(auto&& course, auto&& go_on) {
     auto one = course(1), two = course(2);
     CHECK(one.world.state_hash() == two.world.state_hash());

@@ -40,7 +40,7 @@ inline Mesh single_tetrahedron(Real size) {
 }
 
 inline Named random_shot(std::mt19937_64& random) {
-    const Real size = 0.02 + 0.03 * fraction(random);  // m, across
+    const Real size = 0.02 + 0.03 * fraction(random);  // size across [m]
     switch (static_cast<int>(5 * fraction(random))) {
         case 0:
             return {"ball of 160", mesh::ball(size / 2, 4)};
@@ -55,21 +55,21 @@ inline Named random_shot(std::mt19937_64& random) {
     }
 }
 
-/// What is shot at, around the origin with its front towards +z.
+/// A target around the origin with its front towards +z.
 struct Target {
     std::string name;
-    Mesh mesh;                       // empty: a collider
-    SurfaceMesh surface;             // of a collider; of an analytic one a little within it
-    bool held = false;               // at its rim
-    Real aim = 0.03;                 // m, how far from the axis shots may go
-    Real steepest = 60;              // degrees from the axis
-    Real reach = 0.03;               // m, along the axis
-    std::optional<Shape> shape{};    // of an analytic collider
-    Mat3 turned = Mat3::Identity();  // from the frame of the shape
+    Mesh mesh;                       // empty for a collider
+    SurfaceMesh surface;             // surface of a collider; for an analytic shape it lies a little inside
+    bool held = false;               // true if the rim is held
+    Real aim = 0.03;                 // largest distance of the aim from the axis [m]
+    Real steepest = 60;              // largest angle of a shot from the axis [degrees]
+    Real reach = 0.03;               // extent along the axis [m]
+    std::optional<Shape> shape{};    // shape of an analytic collider
+    Mat3 turned = Mat3::Identity();  // rotation from the frame of the shape
 };
 
 inline SurfaceMesh pyramid(const Vec3& half, bool ridge) {
-    // A ridge along x, or a point, above a base below.
+    // A ridge along x, or a point, above a base.
     const Real top = ridge ? half.x() : 0.2 * half.x();
     const Mesh solid = mesh::box({2, 2, 2}, {1, 1, 1});
     SurfaceMesh surface = mesh::boundary(solid);
@@ -107,8 +107,8 @@ inline Target random_target(std::mt19937_64& random) {
     }
 }
 
-/// What a line of (distance from the axis, height) sweeps about the z axis. It begins and ends on the axis, outside on
-/// its right.
+/// The surface that a line of (distance from the axis, height) sweeps about the z axis. The line begins and ends on the
+/// axis and has the outside on its right.
 inline SurfaceMesh revolved(const std::vector<std::array<Real, 2>>& line, Index around) {
     SurfaceMesh surface;
     surface.nodes = {{0, 0, line.front()[1]}, {0, 0, line.back()[1]}};
@@ -131,7 +131,7 @@ inline SurfaceMesh revolved(const std::vector<std::array<Real, 2>>& line, Index 
     return surface;
 }
 
-/// A capsule about z; a ball where `length` is 0.
+/// A capsule about z; a ball if `length` is 0.
 inline SurfaceMesh revolved_capsule(Real radius, Real length, Index around) {
     std::vector<std::array<Real, 2>> line;
     constexpr int steps = 8;
@@ -160,7 +160,7 @@ inline SurfaceMesh revolved_bucket(const Bucket& bucket, Real within, Index arou
                     around);
 }
 
-/// Analytic colliders, thin and sharp ones above all. Their surfaces lie within them by a tenth of the thickness.
+/// Analytic colliders, above all thin and sharp ones. Their surfaces lie inside them by 5 to 10 % of the thickness.
 inline Target random_shape(std::mt19937_64& random) {
     const Mat3 lying = rotation_matrix(Vec3(std::acos(-1.0) / 2, 0, 0));
     const auto target = [](const char* name, const Shape& shape, SurfaceMesh surface, Real aim, Real steepest,
@@ -207,14 +207,14 @@ inline Target random_shape(std::mt19937_64& random) {
 
 struct Outcome {
     std::string description;
-    std::string failure;  // empty: stopped
+    std::string failure;  // empty if the shot was stopped
     WorldReport report;
 };
 
-/// Who flies: the shot, or a collider towards it, whose velocity is set anew at every look.
+/// The flying object: the shot, or a collider towards it whose velocity is set anew before every advance.
 enum class Flying { shot, collider };
 
-/// At what: all of random_target, its colliders, or analytic colliders.
+/// Targets to draw from: all of random_target, its colliders only, or analytic colliders.
 enum class Targets { all, surfaces, shapes };
 
 inline Target random_target(std::mt19937_64& random, Targets targets) {
@@ -225,11 +225,11 @@ inline Target random_target(std::mt19937_64& random, Targets targets) {
     }
 }
 
-/// What is shot: meshes that deform, rigid spheres, or rigid capsules and cylinders that turn.
+/// Kinds of shot: deformable meshes, rigid spheres, or rigid capsules and cylinders that spin.
 enum class Bullets { meshes, spheres, capsules, cylinders };
 
-/// Whether a point of a triangle is in a cylinder, by more than rounding: what of it lies between the ends, as seen
-/// along the axis, comes as near to the axis as the side.
+/// True if a point of a triangle lies in a cylinder by more than rounding: the part of the triangle between the ends,
+/// projected along the axis, comes closer to the axis than the radius.
 inline bool is_in_cylinder(const std::array<Vec3, 3>& triangle, const Vec3& middle, const Vec3& axis, Real radius,
                            Real half) {
     constexpr Real most = 1 - 1e-9;
@@ -253,7 +253,7 @@ inline bool is_in_cylinder(const std::array<Vec3, 3>& triangle, const Vec3& midd
     return false;
 }
 
-/// One shot: everything about it follows from its number.
+/// One shot. All of its properties follow from its number.
 class Shot {
 public:
     Shot(std::uint64_t number, bool continuous, Flying flying, Targets targets, Bullets bullets)
@@ -280,8 +280,8 @@ public:
     }
 
     Outcome fly() {
-        // A shot moves by less than a sixth of its radius between two looks: nothing goes through another unseen. Long
-        // enough for the shot to come, to be stopped and to leave again.
+        // A shot moves by less than a sixth of its radius between two checks, so that no crossing goes unseen. The time
+        // is long enough for the shot to arrive, to be stopped and to leave again.
         const Real look = 0.15 * radius_ / speed_;
         const Real end = 2 * (start_ + 4 * radius_) / speed_;
         for (Real t = 0; t < end && outcome_.failure.empty(); t += look) {
@@ -353,7 +353,7 @@ private:
         world_.attach(target_body_, rim);
     }
 
-    /// A little faster or slower, and turning.
+    /// Sets a new velocity of the collider, a little faster or slower, and a spin.
     void control() {
         const Real turn = 0.1 * speed_ / radius_;
         world_.set_velocity(collider_, -(0.8 + 0.4 * fraction(random_)) * flight_,
@@ -415,15 +415,15 @@ private:
     BodyDynamics target_dynamics_ = BodyDynamics::explicit_elastic;
     BodyHandle shot_body_, target_body_;
     ColliderHandle collider_;
-    Vec3 flight_ = Vec3::Zero();               // m/s, of the shot as seen from the target
-    std::vector<std::array<Index, 3>> faces_;  // of the target
+    Vec3 flight_ = Vec3::Zero();               // velocity of the shot relative to the target [m/s]
+    std::vector<std::array<Index, 3>> faces_;  // triangles of the target
     Real speed_ = 0, radius_ = 0, length_ = 0, start_ = 0;
     Outcome outcome_;
 };
 
 struct Count {
-    std::string wrong;          // one line a shot
-    std::uint64_t pressed = 0;  // of them, in what they are shot at by less than can be seen
+    std::string wrong;          // one line per failed shot
+    std::uint64_t pressed = 0;  // number of failures with a penetration below seen_penetration
     std::uint64_t shots = 0, touching = 0, tests = 0, stopped = 0, crossed = 0;
 };
 

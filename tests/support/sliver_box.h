@@ -1,4 +1,4 @@
-// A box of tetrahedra some of which are nearly flat.
+// A box of tetrahedra of which some are nearly flat.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,8 +10,8 @@
 
 namespace skerry::test {
 
-/// A box of cubic cells, each the mirror image of its neighbours: unlike in mesh::box a node can move to the middle of
-/// a face opposite to it without turning another tetrahedron inside out.
+/// A box of cubic cells, each the mirror image of its neighbours. Unlike in mesh::box, a node can move to the middle of
+/// an opposite face without inverting another tetrahedron.
 inline Mesh mirrored_box(Real size, int cells) {
     Mesh mesh;
     for (int z = 0; z <= cells; ++z)
@@ -41,9 +41,9 @@ inline Mesh mirrored_box(Real size, int cells) {
     return mesh;
 }
 
-/// Such a box with `share` of its tetrahedra made flat: a node inside is moved close to the middle of
-/// the opposite face of one of its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that some
-/// four to eight tetrahedra become flat at once. No two nodes of a tetrahedron are moved. Fewer than asked for where
+/// A mirrored_box with `share` of its tetrahedra made flat. An interior node moves close to the middle of the opposite
+/// face of one of its tetrahedra, to `flatness` of the altitude. Faces lie in common planes, so that four to eight
+/// tetrahedra become flat at once. No two nodes of a tetrahedron are moved. There are fewer slivers than requested if
 /// there is no room.
 inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uint64_t seed = 1) {
     Mesh mesh = mirrored_box(size, cells);
@@ -55,7 +55,7 @@ inline Mesh sliver_box(Real size, int cells, Real share, Real flatness, std::uin
         const auto& c = mesh.tetrahedra[t];
         return (node(c[1]) - node(c[0])).cross(node(c[2]) - node(c[0])).dot(node(c[3]) - node(c[0]));
     };
-    const Real regular = std::pow(size / cells, 3);  // six volumes of each tetrahedron before
+    const Real regular = std::pow(size / cells, 3);  // six volumes of each tetrahedron before any node moves
     std::vector<bool> taken(mesh.nodes.size(), false);
     std::mt19937_64 random(seed);
     const auto wanted = static_cast<std::size_t>(share * static_cast<Real>(mesh.tetrahedra.size()) + 0.5);

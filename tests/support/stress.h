@@ -1,4 +1,4 @@
-// The stress suite (docs/stress.md): what is asked of a scene, what it did, and whether that will do.
+// The stress suite (docs/stress.md): criterion of a scene, its result, and the verdict.
 #pragma once
 
 #include <source_location>
@@ -8,11 +8,11 @@
 
 namespace skerry::test::stress {
 
-/// One line of the table.
+/// One row of the table.
 struct Outcome {
-    int item = 0;           // of the list in docs/stress.md; 0: what users report elsewhere
-    std::string what;       // the scene, and what was looked at
-    std::string criterion;  // what is asked for
+    int item = 0;           // number in the list of docs/stress.md; 0: problems that users report elsewhere
+    std::string what;       // scene and tested quantity
+    std::string criterion;  // condition that must hold
     std::string found;
     bool held = false;
 };
@@ -20,43 +20,42 @@ struct Outcome {
 /// Records the line (tests/support/record.h), then checks that it held.
 void judge(const Outcome& outcome, const std::source_location& place = std::source_location::current());
 
-/// A number that must not be above its limit, nor be no number.
+/// Judges a number that must not exceed its limit and must not be NaN.
 void at_most(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
              const std::source_location& place = std::source_location::current());
-/// A number that must not be below its limit, nor be no number.
+/// Judges a number that must not be below its limit and must not be NaN.
 void at_least(int item, const std::string& what, const std::string& quantity, Real found, Real limit,
               const std::source_location& place = std::source_location::current());
 
-/// Four digits that say something.
+/// Formats a number with four significant digits.
 std::string text(Real value);
 
-/// What a run did, looked at now and then.
+/// Summary of a run, sampled now and then.
 struct Course {
-    bool ok = true;            // every step was taken
-    std::string message;       // of the step that was not
-    bool finite = true;        // every position and velocity, whenever looked at
-    Real gained = 0;           // J, kinetic, elastic and potential energy together: the most above the start
-    Real in_play = 0;          // J, the most kinetic and elastic energy
-    Real max_penetration = 0;  // m
+    bool ok = true;            // true if every step was taken
+    std::string message;       // message of the step that failed
+    bool finite = true;        // true if all positions and velocities were finite at every sample
+    Real gained = 0;           // largest rise of kinetic + elastic + potential energy above the start [J]
+    Real in_play = 0;          // largest kinetic + elastic energy [J]
+    Real max_penetration = 0;  // [m]
     Index unconverged = 0;     // regions
     int steps = 0, limited = 0, shortened = 0, retried = 0;
 
-    /// The most energy gained, of that in play.
+    /// Largest energy gain as a fraction of the energy in play.
     Real gain() const { return in_play > 0 ? gained / in_play : 0; }
 };
 
-/// Runs a world, looking `looks` times; stops at a step that cannot be taken.
+/// Advances a world and samples it `looks` times; stops at a step that fails.
 Course follow(World& world, Real seconds, int looks);
 
-/// Kinetic, elastic and potential energy, J.
+/// Sum of kinetic, elastic and potential energy [J].
 Real mechanical_energy(const World& world);
 bool all_finite(const World& world);
 
-/// Moves the nodes of a body to places of one's own, slowly and by attachments that are removed again; leaves them at
-/// rest.
+/// Moves the nodes of a body slowly to `places`, with attachments that are removed afterwards. The nodes end at rest.
 void deform(World& world, BodyHandle body, const std::vector<Vec3>& places, Real seconds);
 
-/// Share of the tetrahedra of a body that are turned inside out.
+/// Share of the tetrahedra of a body that are inverted.
 Real inverted_share(const World& world, BodyHandle body);
 
 }  // namespace skerry::test::stress

@@ -1,4 +1,4 @@
-// Whether surfaces go through each other: every edge against every triangle, nothing left out.
+// Brute-force test for intersecting surfaces: every edge against every triangle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,12 +17,12 @@ struct SurfaceView {
     const Vec3& at(Index node) const { return position[static_cast<std::size_t>(node)]; }
 };
 
-/// Six times the volume of a tetrahedron; its sign tells on which side of abc the point d is.
+/// Six times the volume of a tetrahedron; its sign tells on which side of abc the point d lies.
 inline Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a);
 }
 
-/// Whether the inside of segment pq goes through the inside of triangle abc; what only touches does not count.
+/// True if the interior of segment pq passes through the interior of triangle abc; touching does not count.
 inline bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     for (int i = 0; i < 3; ++i) {
         if (std::max(p[i], q[i]) < std::min({a[i], b[i], c[i]}) || std::min(p[i], q[i]) > std::max({a[i], b[i], c[i]}))
@@ -33,7 +33,7 @@ inline bool passes_through(const Vec3& p, const Vec3& q, const Vec3& a, const Ve
     return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-/// Number of pairs of an edge of one surface and a triangle of the other that go through each other, both ways round.
+/// Number of pairs of an edge of one surface and a triangle of the other that intersect, for both orders of surfaces.
 inline int crossings(const SurfaceView& first, const SurfaceView& second) {
     int count = 0;
     const auto edges_through = [&count](const SurfaceView& edges, const SurfaceView& faces) {
@@ -50,7 +50,8 @@ inline int crossings(const SurfaceView& first, const SurfaceView& second) {
     return count;
 }
 
-/// The same within one surface; an edge and a triangle that share a node cannot be told apart and are left out.
+/// Number of intersecting pairs of an edge and a triangle of one surface. Pairs that share a node are left out because
+/// their intersection cannot be told from the shared node.
 inline int self_crossings(const SurfaceView& surface) {
     int count = 0;
     for (const auto& e : surface.triangle)

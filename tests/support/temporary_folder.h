@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// A folder of its own for the files of one test, removed with all in it at the end. Tests of one program run side by
-/// side as processes: a fixed name would be theirs together.
+/// A unique folder for the files of one test, removed with its contents at the end. Tests of one program run side by
+/// side as processes, so they would share a folder with a fixed name.
 class TemporaryFolder {
 public:
     TemporaryFolder() {

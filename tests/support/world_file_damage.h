@@ -1,4 +1,4 @@
-// Saved worlds with wrong values in them: whole files, whose checksum is right, as no damage of a disk makes them.
+// Saved worlds with wrong values: whole files with a right checksum, as damage on a disk would not make them.
 #pragma once
 
 #include <hdf5.h>
@@ -16,14 +16,14 @@
 
 namespace skerry::test {
 
-/// Where the values of a data set are in a file.
+/// Location of the values of a data set in a file.
 struct ValuesInFile {
     std::string path;
     std::size_t begin, bytes, number_bytes;
     bool reals;
 };
 
-/// Of all data sets with values, in the order of their names.
+/// Locations of the values of all data sets that have any, in the order of the names.
 inline std::vector<ValuesInFile> values_in(const std::string& file) {
     std::vector<ValuesInFile> found;
     const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -43,7 +43,7 @@ inline std::vector<ValuesInFile> values_in(const std::string& file) {
     return found;
 }
 
-/// Writes one number of a data set over: at `place`, of all that are there, what `choice` says.
+/// Overwrites one number of a data set: `place` selects the number, `choice` the new value.
 inline void change_value(const ValuesInFile& values, std::size_t place, unsigned choice, std::span<char> file) {
     constexpr Real infinite = std::numeric_limits<Real>::infinity();
     constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
@@ -58,7 +58,7 @@ inline void change_value(const ValuesInFile& values, std::size_t place, unsigned
         std::memcpy(at, &integers[choice % integers.size()], values.number_bytes);
 }
 
-/// The checksum of what the file is now.
+/// Writes a head with the checksum of the present contents of the file.
 inline void renew_head(std::span<char> file) {
     const std::string head = head_of(file.subspan(head_bytes));
     std::copy(head.begin(), head.end(), file.begin());

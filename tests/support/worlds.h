@@ -9,7 +9,7 @@
 
 namespace skerry::test {
 
-inline constexpr Real standard_gravity = 9.81;  // m/s^2
+inline constexpr Real standard_gravity = 9.81;  // [m/s^2]
 
 /// Gravity on a plane tilted by `degrees` about y, seen from the plane: downhill is +x.
 inline Vec3 tilted_gravity(Real degrees) {
@@ -17,13 +17,14 @@ inline Vec3 tilted_gravity(Real degrees) {
     return standard_gravity * Vec3(std::sin(a), 0, -std::cos(a));
 }
 
-/// Loses nothing: what has energies, frequencies and orders in closed form.
+/// The material without losses, for tests of energies, frequencies and orders in closed form.
 inline MaterialSettings lossless(MaterialSettings material) {
     material.loss_factor = material.bulk_viscosity = 0;
     return material;
 }
 
-/// Contacts solved until the error of the step is all that is left: rest would leave a thousandth of what is static.
+/// Settings that solve contacts until only the error of the step is left. Sleep is off: a sleeping body may
+/// differ from its static state by a thousandth.
 inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real tolerance = 1e-8) {
     Settings settings;
     settings.gravity = gravity;
@@ -33,8 +34,8 @@ inline Settings accurate(const Vec3& gravity = {0, 0, -standard_gravity}, Real t
     return settings;
 }
 
-/// Momentum of one body, kg m/s. A world knows masses only as sums, so a test weighs nodes by the tetrahedra around
-/// them.
+/// Masses of the nodes of one body [kg]. A world reports masses only as sums, so a test computes them from the
+/// tetrahedra around each node.
 inline std::vector<Real> node_masses(const World& world, BodyHandle body, const Mesh& mesh, Real density) {
     std::vector<Real> mass(world.positions(body).size(), 0);
     for (const auto& t : mesh.tetrahedra) {
@@ -58,8 +59,8 @@ inline Vec3 mean_velocity(const World& world, BodyHandle body, std::span<const R
     return momentum / sum;
 }
 
-/// A block lying on the plane z = 0, shell to shell, in a world whose gravity is tilted. Its contact distance is a
-/// fiftieth of its height.
+/// A block lying on the plane z = 0, just at the contact distance, in a world with tilted gravity. The contact distance
+/// is a fiftieth of the block's height.
 struct BlockOnPlane {
     World world;
     BodyHandle block;
@@ -80,8 +81,8 @@ struct BlockOnPlane {
     }
 
     Vec3 velocity() const { return mean_velocity(world, block, mass); }
-    /// Lets the weight settle, then turns gravity to where it is asked to be, slowly and with a smooth beginning and
-    /// end: a sudden change of the tilt or of its speed would make the block sway and slip.
+    /// Lets the weight settle, then turns gravity to its target direction with a smooth start and end. A sudden change
+    /// of the tilt or of its rate would make the block sway and slip.
     void settle(Real seconds, Real ramp = 0.5) {
         const Vec3 tilted = world.settings().gravity;
         world.set_gravity({0, 0, tilted.z()});

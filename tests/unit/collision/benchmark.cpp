@@ -1,4 +1,4 @@
-// Figures of the collision stages: unit_collision [.benchmark]
+// Timings of the collision stages: unit_collision [.benchmark]
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -13,14 +13,14 @@ namespace {
 
 constexpr Real h = 2e-4;
 
-/// CPU time of this thread, s: the machine may be shared. Everything here runs on one worker.
+/// CPU time of this thread [s], because the machine may be shared. The benchmark runs on one worker.
 double cpu_time() {
     timespec t;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Least time of one call.
+/// Shortest time of one call.
 template <class F>
 double time_of(int repeats, F&& call) {
     double best = 1e9;

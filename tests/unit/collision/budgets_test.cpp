@@ -1,4 +1,4 @@
-// The budgets of contact_reach.h must not change what is found: against the twin that searches everything in each step.
+// Budgets of contact_reach.h must not change results: comparison with a twin that searches everything in each step.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr Real h = 2e-3;
 
-/// Balls and boxes in a room with a collider of every shape in it; they drift at random, through each other, too.
+/// Balls and boxes in a room with a collider of every shape. They drift at random, also through each other.
 struct Room {
     CollisionWorld w;
     test::Random random{41};
@@ -45,14 +45,14 @@ struct Room {
         spin.assign(w.body.slot.size(), Vec3::Zero());
     }
 
-    /// Rigid motion and a tremble of each node; now and then a new course, or a rest.
+    /// Sets a rigid motion and a tremble of each node; now and then a new course or a rest.
     void steer(int step) {
         for (std::size_t b = 0; b < w.body.slot.size(); ++b) {
             if ((step + 7 * static_cast<int>(b)) % 40 == 0) {
                 const bool rests = random.number() < -0.6;
                 aim[b] = rests ? Vec3(Vec3::Zero()) : Vec3(3 * random.vector());
                 spin[b] = rests ? Vec3(Vec3::Zero()) : Vec3(2 * random.vector());
-                // Back to the middle of the room.
+                // back to the middle of the room
                 aim[b] -= w.nodes.position[w.body.nodes[b].begin] - Vec3(0, 0, 1);
                 if (w.body.kind[b] == BodyKind::kinematic) aim[b] = Vec3(0, 0, 0.3 * random.number());
             }
@@ -67,7 +67,7 @@ struct Room {
     }
 };
 
-/// The bits of all that find_contacts writes.
+/// The bits of all columns that find_contacts writes.
 std::vector<std::uint64_t> bits(ContactTable& contacts) {
     std::vector<std::uint64_t> all;
     const auto take = [&](const auto& column) {
@@ -100,15 +100,15 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     CAPTURE(frames);
     Room thrifty, thorough;
     thorough.w.settings.use_budgets = false;
-    // Nothing keeps these bodies from going through each other: a pair that was apart once may not be now.
+    // Nothing keeps these bodies from passing through each other: a pair that was apart may overlap later.
     thrifty.w.settings.continuous = thorough.w.settings.continuous = false;
     std::size_t contacts = 0, pressed = 0, passed = 0, differing_steps = 0;
     std::array<std::size_t, 5> of_kind{};
     for (int step = 0; step < 600; ++step) {
         thrifty.steer(step);
         thorough.steer(step);
-        // A course may change at any moment: the speeds that count are those of the step. (In the engine forces are
-        // bounded, and what they add within one step has the factor speed_safety.)
+        // A course may change at any moment, so the speeds are those of the step. (In the engine forces are bounded,
+        // and the factor speed_safety covers the speed that they add within one step.)
         if (frames && step % 25 == 0) thrifty.w.follow_bodies();
         thrifty.w.measure_speed();
         thorough.w.measure_speed();
@@ -142,13 +142,13 @@ TEST_CASE("budgets find exactly the contacts that a search of everything finds, 
     CHECK(pressed > 5000);
     CHECK(passed > 1000);
     for (const std::size_t count : of_kind) CHECK(count > 500);
-    // They must have saved something, too.
+    // The budgets must also have saved searches.
     CHECK(thrifty.w.search.broad_searches < 300);
     CHECK(thrifty.w.search.pair_searches * 3 < thorough.w.search.pair_searches);
 }
 
 TEST_CASE("what is held apart is looked for less far, and all contacts are found", "[unit]") {
-    // Balls that swing above and below a plate thinner than the depth to which a point behind a face is looked at.
+    // Balls swing above and below a plate that is thinner than the search depth behind a face.
     struct Swing {
         CollisionWorld w;
         test::Random random{17};
@@ -179,7 +179,7 @@ TEST_CASE("what is held apart is looked for less far, and all contacts are found
     for (int step = 0; step < 300; ++step) {
         for (Swing* swing : {&held, &thorough, &deep}) swing->step(step);
         REQUIRE(bits(held.w.contacts) == bits(thorough.w.contacts));
-        // what a test for crossings rests on, of what is put to sleep again, too
+        // Bounds that the test for crossings relies on, also for candidates that are asleep again.
         for (std::size_t b = 0; b < held.w.pairs.block_nearest.size(); ++b)
             for (const NearCandidate& near : held.w.pairs.near[b]) {
                 REQUIRE(held.w.pairs.block_nearest[b] <= near.distance * (1 + 1e-12));

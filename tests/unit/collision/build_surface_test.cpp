@@ -71,7 +71,7 @@ TEST_CASE("each vertex and each edge is owned once, by the lowest triangle that 
 TEST_CASE("faces, nodes and edges stand as sorting by comparison has them", "[unit]") {
     std::mt19937_64 random(2);
     for (const std::size_t count : {0, 1, 40, 300}) {
-        // No mesh that a body may have: tetrahedra lie on each other, faces have more than two.
+        // Not a valid mesh of a body: tetrahedra overlap, and faces belong to more than two of them.
         std::vector<std::array<Index, 4>> tetrahedra(count);
         for (auto& tetrahedron : tetrahedra)
             for (std::size_t k = 0; k < 4; ++k) {

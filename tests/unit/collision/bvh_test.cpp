@@ -56,14 +56,14 @@ TEST_CASE("a tree holds each triangle of its body in one lane of one leaf", "[un
 
 namespace {
 
-/// Surface and trees of bodies of one mesh, one behind the other.
+/// Surfaces and trees of bodies with one mesh, appended one after the other.
 struct Outlines {
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable leaves;
     std::vector<Vec3> position;
 
-    /// The rows of all that names some, one after the other.
+    /// All row numbers that columns, tree nodes, leaves and features refer to, in one list.
     std::vector<Index> rows() {
         std::vector<Index> all;
         const auto add = [&](const auto& rows) { all.insert(all.end(), rows.begin(), rows.end()); };

@@ -1,4 +1,4 @@
-// Eight candidates side by side against their scalar twins.
+// Eight candidates side by side against the scalar functions.
 #include "systems/collision/narrow/candidate_lanes.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace skerry::test::candidate_lanes_test {
 
 namespace {
 
-/// Nodes of eight candidates, each of its own, in no order.
+/// Nodes of eight candidates in arbitrary order. No two candidates share a node.
 struct Eight {
     test::Random random{5};
     std::vector<Vec3> position, velocity, push_out;

@@ -26,7 +26,7 @@ const Named shapes[] = {
     {"bucket", {ColliderShape::bucket, {0.5, 0.6, 0.1}}},   {"thick bucket", {ColliderShape::bucket, {0.3, 0.3, 0.4}}},
 };
 
-/// The solid itself, by its definition.
+/// True if p is inside the solid, by the definition of the shape.
 bool is_inside(const ColliderGeometry& g, const Vec3& p) {
     const Vec3& s = g.size;
     const Real r = std::hypot(p[0], p[1]);
@@ -54,7 +54,7 @@ bool is_inside(const ColliderGeometry& g, const Vec3& p) {
 std::vector<Vec3> sample_surface(const ColliderGeometry& g, Real step) {
     const Vec3& s = g.size;
     std::vector<Vec3> points;
-    // Outline in the half plane (r, z) turned about z; box and plane on their own.
+    // The outline lies in the half plane (r, z) and is rotated about z; box and plane are separate.
     std::vector<std::array<Real, 2>> outline;
     const auto line = [&](Real r0, Real z0, Real r1, Real z1) {
         const int n = std::max(1, static_cast<int>(std::ceil(std::hypot(r1 - r0, z1 - z0) / step)));
@@ -159,10 +159,10 @@ TEST_CASE("normal and nearest point belong to the distance, and its gradient is 
                                distance_to_collider(shape.geometry, motion, p - e).distance) /
                               (2 * h);
             }
-            // Near a medial axis the difference straddles it and is no gradient.
+            // Near a medial axis the differences straddle it and give no gradient.
             if (std::abs(gradient.norm() - 1) > 1e-6) continue;
             ++compared;
-            // curvature at points near the axis of a body of revolution
+            // tolerance: curvature at points near the axis of a body of revolution
             CHECK((gradient - found.normal).norm() <= 1e-4);
         }
         CHECK(compared > draws(290));

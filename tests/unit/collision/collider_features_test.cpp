@@ -1,4 +1,4 @@
-// Edges and faces of bodies against colliders, between nodes: against looking at many of their points.
+// Edges and faces of bodies against colliders: contacts between the nodes, compared with dense sampling.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -27,8 +27,8 @@ const Named shapes[] = {
 constexpr int samples = 400;
 
 struct Sampled {
-    Real least = std::numeric_limits<Real>::infinity();  // m
-    Real at_ends = 0;                                    // m
+    Real least = std::numeric_limits<Real>::infinity();  // [m]
+    Real at_ends = 0;                                    // [m]
 };
 
 Sampled sample_edge(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b) {
@@ -69,7 +69,7 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
                 CHECK(contact.nearest <= sampled.least + 1e-12);
                 CHECK(contact.nearest >= edge_distance(shape.geometry, part, a, b));
                 const bool is_wall = shape.geometry.shape == ColliderShape::bucket && part == 1;
-                // between samples the distance is less by half of their spacing at most
+                // Between samples the distance is lower by at most half of their spacing.
                 if (!is_wall) CHECK(contact.nearest >= sampled.least - (2e-4 + 0.5 / samples) * length);
                 Real least = sampled.at_ends;
                 for (std::size_t i = 0; i < contact.count; ++i) {
@@ -79,19 +79,19 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
                     CHECK(point.on.distance ==
                           Approx(local_distance(shape.geometry, a + point.s * (b - a), part).distance).margin(1e-12));
                     CHECK(point.on.normal.norm() == Approx(1));
-                    // half way through the thinnest of the shapes one way out is as good as the other
+                    // Halfway through the thinnest shape two ways out are equally short.
                     const bool least_there = point.number % 4 < 2;
                     if (point.on.distance > -0.005 && least_there)
                         CHECK(std::abs(point.on.normal.dot(b - a)) <= 2e-3 * length);
-                    // the others are where the edge begins to rise by 0.05; seen from outside a convex shape has no
-                    // kinks
+                    // The other points are where the edge begins to rise by 0.05. Seen from outside, a convex shape has
+                    // no kinks.
                     if (!least_there && !is_wall && point.on.distance > 0)
                         CHECK(std::abs(point.on.normal.dot(b - a)) / length == Approx(0.05).margin(1e-5));
                     least = std::min(least, point.on.distance);
                     ++between;
                 }
-                // What is left out is flatter than a hundredth of the default contact distance over the edge. From far
-                // away a wall that is not convex may have minima that are missed.
+                // Minima that are left out are flatter than a hundredth of the default contact distance over the edge.
+                // Minima of a non-convex wall may be missed from far away.
                 if (sampled.least < 0.2) CHECK(least <= sampled.least + 2e-4 * length);
             }
         }
@@ -102,7 +102,7 @@ TEST_CASE("the points of an edge that touch have the least distance that any of 
 TEST_CASE("an edge that lies along a side and reaches beyond it is held where it leaves the side", "[unit]") {
     const ColliderGeometry box{ColliderShape::box, {0.5, 0.5, 0.5}};
     struct Case {
-        Real rise;  // m, of the end beyond the box over the one that is over its face
+        Real rise;  // height of the end beyond the box above the end over its face [m]
         Index number;
     };
     for (const Case& c : {Case{0, 1}, Case{0.01, 3}}) {
@@ -110,15 +110,15 @@ TEST_CASE("an edge that lies along a side and reaches beyond it is held where it
         const EdgeContact contact = edge_contact(box, 0, {0, 0, 0.51}, {1, 0, 0.51 + c.rise});
         REQUIRE(contact.count == 1);
         CHECK(contact.point[0].number == c.number);
-        // and where it has risen by the slope that counts, just beyond the corner
+        // The point is where the edge has risen by the slope that counts, just beyond the corner.
         CHECK(contact.point[0].s > 0.499);
         CHECK(contact.point[0].s < 0.502);
         CHECK(contact.point[0].on.normal[2] > 0.99);
     }
-    CHECK(edge_contact(box, 0, {0, 0, 0.51}, {1, 0, 0.71}).count == 0);  // it rises by more than that at once
+    CHECK(edge_contact(box, 0, {0, 0, 0.51}, {1, 0, 0.71}).count == 0);  // it rises by a larger slope from the start
     CHECK(edge_contact(box, 0, {-0.4, 0, 0.51}, {0.4, 0, 0.51}).count == 0);
 
-    // over all of the face: both ends of the stretch
+    // The edge spans the face: both ends of the stretch above it are found.
     const EdgeContact across = edge_contact(box, 0, {-1, 0, 0.51}, {1, 0, 0.51});
     REQUIRE(across.count == 2);
     CHECK(across.point[0].s == Approx(0.25).margin(1e-3));
@@ -139,10 +139,10 @@ TEST_CASE("where a collider is flat no place of a segment or triangle is nearer 
             ++flat;
             Real corners = std::numeric_limits<Real>::infinity();
             for (const Vec3& p : face) corners = std::min(corners, local_distance(shape.geometry, p).distance);
-            // deep in the corner of a bucket its floor and its wall are one solid, of which neither is the nearest
+            // Deep in the corner of a bucket the floor and the wall are one solid, and neither is the nearest.
             if (corners > -0.02) CHECK(sample_face(shape.geometry, face) >= corners - 1e-12);
 
-            // and stays so while no corner moves further
+            // The face stays flat while no corner moves further than the reach.
             LocalFace moved = face;
             for (Vec3& p : moved) p += 0.999 * reach * random.vector().normalized();
             CHECK(flat_reach(shape.geometry, moved) >= 0);
@@ -178,14 +178,14 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
     for (const Named& shape : shapes) {
         INFO(shape.name);
         if (shape.geometry.shape == ColliderShape::bucket)
-            continue;  // not convex: what is least may be inside its hollow
+            continue;  // not convex: the minimum may be inside its hollow
         int faces = 0;
         for (int trial = 0; trial < draws(3000); ++trial) {
             const Vec3 middle = 1.5 * random.vector();
             const LocalFace face{middle + 0.5 * random.vector(), middle + 0.5 * random.vector(),
                                  middle + 0.5 * random.vector()};
             const Real truth = sample_face(shape.geometry, face);
-            if (truth < 0.01) continue;  // overlap: other rules
+            if (truth < 0.01) continue;  // overlap follows other rules
             Real found = std::numeric_limits<Real>::infinity(), of_faces = found;
             for (std::size_t k = 0; k < 3; ++k) {
                 const Vec3 &a = face[k], &b = face[(k + 1) % 3];
@@ -194,7 +194,7 @@ TEST_CASE("a face meets the deepest point of a collider behind it, or an edge or
                 for (std::size_t i = 0; i < edge.count; ++i) found = std::min(found, edge.point[i].on.distance);
             }
             for (Index k = 0; k < collider_point_count(shape.geometry.shape); ++k) {
-                // the face's outside is where the collider is
+                // The face is oriented so that the collider is outside.
                 const FaceContact up = face_contact(shape.geometry, k, face);
                 const FaceContact contact = up.normal.dot(up.point.at - face[0]) >= 0
                                                 ? up

@@ -29,7 +29,7 @@ void check_rows(const CollisionWorld& w) {
         CHECK(weight_sum(c.stencil[i]) == Approx(c.kind[i] == ContactKind::point_collider ? 1 : 0).margin(1e-12));
         for (std::size_t a = 1; a < 4; ++a)
             if (c.stencil[i].weight[a] == 0) CHECK(c.stencil[i].node[a] == c.stencil[i].node[0]);
-        // The stencil applied to positions is the connection of the two surfaces.
+        // The stencil applied to positions gives the connection between the two surfaces.
         if (c.kind[i] != ContactKind::point_collider) {
             Vec3 connection = Vec3::Zero();
             for (std::size_t a = 0; a < 4; ++a)
@@ -82,7 +82,7 @@ TEST_CASE("a box resting on an equal box touches it at all points, along the axi
             CHECK(c.restitution[i] == 0.3);
         }
         CHECK(held.size() == 18);
-        if (trial == 0) CHECK(c.size() == 18);  // without rounding nothing is found twice
+        if (trial == 0) CHECK(c.size() == 18);  // without rounding no contact is found twice
     }
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("a turned box on a box has its crossing edges in contact", "[unit]") {
 }
 
 TEST_CASE("a box pressed into a box is pushed out through the face", "[unit]") {
-    // Second: points lie exactly behind the diagonals of the other box.
+    // With the second shift, points lie exactly behind the diagonals of the other box.
     for (const Vec3& shift : {Vec3(0.13, 0.07, 0), Vec3(0.25, 0.25, 0)}) {
         Stack s(-0.02, 0, shift);  // surfaces overlap by 0.01
         s.w.find(h);
@@ -119,7 +119,7 @@ TEST_CASE("a box pressed into a box is pushed out through the face", "[unit]") {
 
 TEST_CASE("a point on a thin plate is not pushed out through the plate's other side", "[unit]") {
     CollisionWorld w;
-    // Thinner than the depth at which overlap is looked for (a quarter of an edge).
+    // The plate is thinner than the depth of the search for overlap (a quarter of an edge).
     w.add_solid(test::box_mesh({4, 4, 1}, {4, 4, 0.1}), w.at(Vec3::Zero()), 0.01);
     const Index box = w.add_solid(test::box_mesh({1, 1, 1}, {1, 1, 1}), w.at({0.2, 0.1, 0.05 + 0.01 + 0.5}), 0.01);
     w.find(h);
@@ -132,7 +132,8 @@ TEST_CASE("a point on a thin plate is not pushed out through the plate's other s
 TEST_CASE("a corner pressed in beside an edge leaves through the nearest face only", "[unit]") {
     CollisionWorld w;
     w.add_solid(test::box_mesh({2, 2, 2}, {1, 1, 1}), w.at(Vec3::Zero()), 0.01);
-    // A corner points down into the top face, 0.03 deep and 0.05 from the side: both are shallow, one is nearer.
+    // A corner points down into the top face, 0.03 deep and 0.05 from the side. Both depths are small; the top is
+    // nearer.
     const Vec3 tip(0.45, 0.05, 0.47);
     std::vector<Vec3> points{tip, tip + Vec3(0.2, 0, 0.5), tip + Vec3(-0.1, 0.2, 0.5), tip + Vec3(-0.1, -0.2, 0.5)};
     const test::SolidMesh spike{points, {{0, 1, 2, 3}}};
@@ -204,7 +205,7 @@ TEST_CASE("a ball on a plane touches it below, with the plane's velocity and the
     CHECK(c.second_body[0] == no_index);
     CHECK(c.collider[0] == plane);
     CHECK((c.surface_velocity[0] - (Vec3(1, 2, 3) + Vec3(0, 0, 2).cross(c.point[0]))).norm() < 1e-12);
-    CHECK(c.static_friction[0] == Approx(0.9));  // the plane has no surface of its own
+    CHECK(c.static_friction[0] == Approx(0.9));  // the plane has no surface properties
     CHECK(c.restitution[0] == 0.1);
 
     w.collider.surface[plane] = {0.4, 0.1, 0.6};
@@ -213,7 +214,7 @@ TEST_CASE("a ball on a plane touches it below, with the plane's velocity and the
     CHECK(w.contacts.dynamic_friction[0] == Approx(0.2));
     CHECK(w.contacts.restitution[0] == 0.6);
 
-    w.collider.surface[plane] = {-1, -1, 0.6};  // friction left to the body
+    w.collider.surface[plane] = {-1, -1, 0.6};  // negative: the friction of the body is used
     w.find(h);
     CHECK(w.contacts.static_friction[0] == Approx(0.9));
     CHECK(w.contacts.restitution[0] == 0.6);
@@ -292,7 +293,7 @@ TEST_CASE("a position that is not a number makes no contact and stops nothing", 
         s.w.add_collider(ColliderShape::plane, Vec3::Zero(), s.w.at({0, 0, -0.505}));
         s.w.find(h);
         REQUIRE(s.w.contacts.size() == 27);
-        const Index broken = s.w.body.nodes[s.lower].begin + 4;  // below, in the middle
+        const Index broken = s.w.body.nodes[s.lower].begin + 4;  // bottom node in the middle
         s.w.nodes.position[broken][0] = bad;
         s.w.find(h);
         for (const bool budgets : {true, false}) {
@@ -319,7 +320,7 @@ TEST_CASE("a folded body touches itself, a thin one does not touch its own other
     constexpr Real pi = 3.14159265358979323846;
     for (Index n = w.body.nodes[b].begin; n < w.body.nodes[b].end; ++n) {
         const Vec3 rest = w.nodes.rest_position[n];
-        const Real half = 0.11;  // m, from the axis of the bend to the middle of the body
+        const Real half = 0.11;  // from the axis of the bend to the middle of the body [m]
         const Real angle = std::clamp(rest[0], -1.0, 1.0) * pi / 2;
         const Real arm = std::max(std::abs(rest[0]) - 1, 0.0);
         const Real radius = half - rest[2];
@@ -357,7 +358,8 @@ TEST_CASE("two ridges that have passed each other are pushed back, however flat 
     for (Real bend : {0.025, 0.05, 0.5, 2.0})
         for (Real height : {0.01, 0.0, -0.005, -0.015}) {
             INFO("bend " << bend << ", height " << height);
-            // A roof with its ridge along x that looks up, and one along y that looks down, `height` above it.
+            // A roof with a ridge along x that faces up, and one with a ridge along y that faces down, `height` above
+            // it.
             const Real fall = 0.5 * std::tan(bend / 2);
             std::vector<Vec3> x{{-0.5, 0, 0}, {0.5, 0, 0}, {0, 0.5, -fall}, {0, -0.5, -fall}};
             for (std::size_t i = 0; i < 4; ++i) x.push_back({x[i][1], x[i][0], height - x[i][2]});
@@ -385,14 +387,14 @@ TEST_CASE("an edge that lies on two edges of a face is held by the sharper, thou
     const PairScale scale{0.02, 0.02, 1, 0.25, 0.03, 0.25};
     constexpr Real near = 0.0201;
     const Vec3 a(0, 0, 0), common(1, 0, 0), b(0.4, 0.9, 0);
-    // What is beyond an edge of the face falls away by the bend.
+    // The surface beyond an edge of the face falls away by the bend.
     const auto beyond = [](const Vec3& from, const Vec3& to, Real bend) {
         const Vec3 outward = (to - from).cross(Vec3::UnitZ());
         return Vec3((from + to) / 2 + outward * std::cos(bend) - Vec3::UnitZ() * std::sin(bend) * outward.norm());
     };
     for (Real flat_bend : {0.0101, 0.012, 0.016, 0.0199})
         for (Real sharp_bend : {0.021, 0.1, 1.0})
-            for (Real on_flat : {0.05, 0.3, 0.5, 0.7, 0.95})  // from the common corner
+            for (Real on_flat : {0.05, 0.3, 0.5, 0.7, 0.95})  // measured from the common corner
                 for (Real on_sharp : {0.05, 0.5, 0.95}) {
                     INFO("bends " << flat_bend << ", " << sharp_bend << ", at " << on_flat << ", " << on_sharp);
                     const Vec3 first = common + on_flat * (a - common), second = common + on_sharp * (b - common);

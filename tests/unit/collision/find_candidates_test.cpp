@@ -20,7 +20,7 @@ namespace {
 
 constexpr Real h = 1e-4;
 
-/// Every feature of the pair nearer than `distance`, by looking at all of them.
+/// Every feature of the pair closer than `distance`, by brute force.
 std::set<std::uint64_t> all_features(const CollisionWorld& w, Index first, Index second, Real distance) {
     std::set<std::uint64_t> near;
     const auto& x = w.nodes.position;
@@ -81,7 +81,7 @@ TEST_CASE("the candidates of two bodies are all features within contact distance
         std::set<std::uint64_t> listed;
         for (const Candidate& c : w.pairs.candidates[0]) listed.insert(c.feature);
         CHECK(std::includes(listed.begin(), listed.end(), near.begin(), near.end()));
-        // Not much beyond: the depth that is looked at, and what a step may close.
+        // The list does not reach much further: search depth, plus the distance that a step may close.
         const std::set<std::uint64_t> far = all_features(w, a, b, 0.1 + (w.settings.pair_skin + 0.3) * edge);
         CHECK(std::includes(far.begin(), far.end(), listed.begin(), listed.end()));
     }
@@ -90,7 +90,7 @@ TEST_CASE("the candidates of two bodies are all features within contact distance
 
 TEST_CASE("candidate rows are the features that their numbers name", "[unit]") {
     CollisionWorld w;
-    w.add_solid(test::ball_mesh(1, 2), w.at({9, 9, 9}), 0.01);  // so that rows and local numbers differ
+    w.add_solid(test::ball_mesh(1, 2), w.at({9, 9, 9}), 0.01);  // makes rows and local numbers differ
     const Index a = w.add_solid(test::ball_mesh(1, 2), w.at(Vec3::Zero()), 0.01);
     const Index b = w.add_solid(test::ball_mesh(1, 2), w.at({0.1, 0.2, 2}), 0.01);
     search(w);
@@ -148,7 +148,7 @@ TEST_CASE("the broad search lists the pairs whose boxes meet, in key order, and 
             for (Vec3& x : mesh.nodes) x *= std::pow(2, 2 * random.number());
             w.add_solid(mesh, w.at((4 + trial) * random.vector(), random.rotation()), 0.05);
         }
-        // Handles are reused: slots are not in the order of rows.
+        // Handles are reused, so slots are not in the order of rows.
         for (std::size_t b = 1; b + 1 < w.body.slot.size(); b += 2) std::swap(w.body.slot[b + 1], w.body.slot[b]);
         auto& memory = w.search.memory;
         memory.body_travel_bound.resize(w.body.slot.size());
@@ -194,8 +194,8 @@ TEST_CASE("pairs without a deformable body are never looked at", "[unit]") {
 
     const Index b = w.add_solid(mesh, w.at({0, 0, 1}), 0.1);
     search(w);
-    // With both mesh colliders, the plane and the sphere; the body of a mesh collider is second, under the collider's
-    // name.
+    // The body has pairs with both mesh colliders, the plane and the sphere. The body of a mesh collider comes second,
+    // under the key of the collider.
     REQUIRE(w.pairs.size() == 4);
     for (std::size_t p = 0; p < 4; ++p) CHECK(w.pairs.first[p] == b);
     CHECK(w.pairs.key[0] == collider_pair_key(w.body.slot[b], w.body.slot[a]));
@@ -246,7 +246,7 @@ TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "
     CollisionWorld w;
     for (int i = 0; i < 4; ++i) w.add_solid(test::ball_mesh(1, 3), w.at({2.05 * i, 0, 1.02}), 0.02);
     w.add_collider(ColliderShape::plane, Vec3::Zero(), w.at(Vec3::Zero()));
-    // `concerned`: whether a row of PairTable is to be searched
+    // `concerned`: true for rows of PairTable that have to be searched
     const auto look = [&](std::uint64_t broad, auto&& concerned) {
         const auto broad_before = w.search.broad_searches, pairs_before = w.search.pair_searches;
         search(w);
@@ -282,7 +282,7 @@ TEST_CASE("all pairs of what is new or forgotten are searched, and no others", "
     CHECK(look(1, of_collider(ball)) == 0);
     w.search.forget_collider(0);
     CHECK(look(1, of_collider(0)) == 4);
-    // a pair that overlaps is taken to do so until one of the two is forgotten
+    // An overlapping pair counts as overlapping until one of its two bodies is forgotten.
     REQUIRE(w.pairs.key[0] == body_pair_key(w.body.slot[0], w.body.slot[1]));
     w.pairs.state[0] = PairState::overlapping;
     w.search.forget_body(3);
@@ -315,7 +315,7 @@ TEST_CASE("what is forgotten is looked at by velocities that it has now", "[unit
 TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer than the contact distance at rest",
           "[unit]") {
     CollisionWorld w;
-    // A flat body whose two faces are nearer than the skin.
+    // A flat body whose two faces are closer than the skin.
     const Index b = w.add_solid(test::box_mesh({6, 6, 1}, {6, 6, 0.3}), w.at(Vec3::Zero()), 0.1);
     w.body.self_contact[b] = 1;
     search(w);
@@ -331,7 +331,7 @@ TEST_CASE("a body's pair with itself leaves out neighbours and what is nearer th
             for (Index n : w.surface.triangles.node[c.second]) CHECK(n != w.surface.vertices.node[c.first]);
         }
     }
-    // Thicker contact than body: the other face is part of the same shell.
+    // The contact distance exceeds the thickness: the other face is part of the same shell.
     w.body.contact_distance[b] = 0.31;
     w.search.body_valid_until.clear();
     search(w);

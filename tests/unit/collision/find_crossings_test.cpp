@@ -14,7 +14,7 @@ using test::CollisionWorld;
 namespace {
 
 constexpr Real h = 1e-3;
-constexpr Real shell = 0.02;  // m
+constexpr Real shell = 0.02;  // contact distance [m]
 
 /// A plate of one layer with its top at z = 0, and a spike that points down at it from `height`.
 struct SpikeOverPlate {
@@ -36,7 +36,7 @@ struct SpikeOverPlate {
         const std::vector<Vec3> none(w.nodes.position.size(), Vec3::Zero());
         return find_crossings(*w.executor, w.inputs(), w.settings, h, w.nodes.velocity, none, w.pairs, w.crossings);
     }
-    /// The contact of the tip that is nearest to a place.
+    /// The contact of the tip that is nearest to `place`.
     const ContactRow* row_of_tip(const Vec3& place) const {
         const ContactRow* best = nullptr;
         for (const ContactRow& row : w.crossings.row) {
@@ -51,11 +51,11 @@ struct SpikeOverPlate {
 
 TEST_CASE("a point that would go through a face becomes a contact where it meets the face", "[unit]") {
     SpikeOverPlate s(0.03);
-    s.move_spike({200, 0, -50});  // 0.2 along and 0.05 down in the step
+    s.move_spike({200, 0, -50});  // 0.2 along and 0.05 down within the step
     s.w.find(h);
     REQUIRE(s.crossings() > 0);
-    // The way of the tip goes through the plane 0.12 further on. There it is noticed a tenth of its height above, at a
-    // slope of 1 to 4.
+    // The path of the tip crosses the plane 0.12 further on. There it is noticed a tenth of its height above the plane,
+    // at a slope of 1 to 4.
     const Vec3 through(0.13 + 0.12, 0.62, 0);
     const ContactRow* row = s.row_of_tip(through);
     REQUIRE(row);
@@ -63,7 +63,7 @@ TEST_CASE("a point that would go through a face becomes a contact where it meets
     CHECK(row->gap == Approx(0.03 - shell));
     CHECK((row->point - through).norm() <= 0.1 * 0.03 * 4 + 1e-9);
 
-    // The next try has it among its contacts, in key order, each key once.
+    // The next attempt has it among its contacts, in key order, each key once.
     s.w.find(h);
     const auto at = std::find(s.w.contacts.key.begin(), s.w.contacts.key.end(), row->key);
     REQUIRE(at != s.w.contacts.key.end());
@@ -119,7 +119,7 @@ TEST_CASE("on the last try a crossing is let through, counted, and its pair over
 TEST_CASE("a pair that moves further than its list of candidates is good for stands against the step", "[unit]") {
     SpikeOverPlate s(0.03);
     s.w.find(h);
-    s.move_spike({0, 0, 2000});  // away, but nobody has looked at what is there
+    s.move_spike({0, 0, 2000});  // away, into space that has not been searched
     CHECK(s.crossings() > 0);
     CHECK(s.w.crossings.beyond_lists);
 }
@@ -128,7 +128,7 @@ TEST_CASE("lists that were too short are made for the motion of the step, whatev
           "[unit]") {
     SpikeOverPlate s(0.03);
     s.w.find(h);
-    s.w.search.end_step(true);  // from now on speeds are those that are known
+    s.w.search.end_step(true);  // from now on speeds count as known
     s.move_spike({0, 0, 2000});
     REQUIRE(s.crossings() > 0);
     std::ranges::fill(s.w.body.max_speed, 0);
@@ -137,7 +137,7 @@ TEST_CASE("lists that were too short are made for the motion of the step, whatev
     s.w.measure_speed();
     CHECK(s.crossings() == 0);
     CHECK_FALSE(s.w.crossings.beyond_lists);
-    // once: the next step begins from the list that it finds
+    // This works once: the next step begins with the list that it finds.
     s.w.pairs.valid_until[0] = -1;
     std::ranges::fill(s.w.body.max_speed, 0);
     std::ranges::fill(s.w.body.frame_speed, 0);
@@ -149,7 +149,7 @@ TEST_CASE("lists that were too short are made for the motion of the step, whatev
 TEST_CASE("what the nodes of a body drifted before takes nothing from a list that was searched for this step",
           "[unit]") {
     SpikeOverPlate s(0.03);
-    s.w.body.displacement[s.plate] = 10;  // m: a body that flew with one velocity while its nodes swung
+    s.w.body.displacement[s.plate] = 10;  // after a flight at constant velocity while its nodes swung [m]
     s.w.find(h);
     s.move_spike({0, 0, -10});
     CHECK(s.crossings() == 0);
@@ -161,7 +161,7 @@ TEST_CASE("a plate turned inside out still holds a point on the side where it is
     for (const bool continuous : {true, false}) {
         SpikeOverPlate s(shell);
         s.w.settings.continuous = continuous;
-        // Top and bottom change places: the face that looks down is above.
+        // Top and bottom are exchanged: the face that looks down is above.
         for (Index n = s.w.body.nodes[s.plate].begin; n < s.w.body.nodes[s.plate].end; ++n) {
             Real& z = s.w.nodes.position[n][2];
             z = z < -0.05 ? 0 : -0.001;
@@ -175,8 +175,7 @@ TEST_CASE("a plate turned inside out still holds a point on the side where it is
             least = std::min(least, std::abs(s.w.contacts.gap[i]));
             normals = std::min(normals, s.w.contacts.normal[i][2]);
         }
-        // Without the knowledge that the surfaces are apart it is taken for a point inside, and pushed out to the other
-        // side.
+        // Unless the surfaces are known to be apart, the point counts as inside and is pushed out to the other side.
         CHECK(normals == Approx(continuous ? 1 : -1));
         if (continuous) CHECK(least < 1e-12);
     }
@@ -184,8 +183,8 @@ TEST_CASE("a plate turned inside out still holds a point on the side where it is
 
 TEST_CASE("two edges that would go through each other become a contact although the surface is hollow at one of them",
           "[unit]") {
-    // A valley along x whose bottom rises, and above it a short ridge across: no rule for close features has a valley
-    // touch.
+    // A valley along x with a rising bottom, and above it a short ridge across. No rule for close features lets a
+    // valley touch.
     CollisionWorld w;
     const auto roof = [&](const Vec3& along, const Vec3& across, Real z, Real apex) {
         const Vec3 at(0, 0, z), rise(0, 0, 0.05);
@@ -212,7 +211,7 @@ TEST_CASE("two edges that would go through each other become a contact although 
 }
 
 TEST_CASE("what find_contacts has looked at is all that a test of every feature finds to cross", "[unit][long]") {
-    // Balls near each other get a speed, and then another: less than find_contacts takes into account, or more.
+    // Balls near each other get a speed and then a change of it, smaller or larger than find_contacts accounts for.
     const Real change = GENERATE(Real(0.3), Real(120));
     CAPTURE(change);
     std::size_t crossings = 0;

@@ -1,4 +1,4 @@
-// Candidates of many pairs that are looked at together, against each alone.
+// Candidates of many pairs that are evaluated together, against each pair alone.
 #include "systems/collision/look_at_awake.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ Real distance_of(const CollisionInputs& inputs, const Candidate& candidate) {
                          : closest_point_on_triangle(at(0), at(1), at(2), at(3)).distance_squared);
 }
 
-/// Balls in a row that just touch, each turned its own way, with nodes that move at random: all candidates awake.
+/// A row of balls that just touch, rotated at random, with randomly moving nodes: all candidates are awake.
 struct Row : CollisionWorld {
     explicit Row(test::Random& random) {
         constexpr Real radius = 0.1;
@@ -91,7 +91,7 @@ TEST_CASE("candidates that are looked at together are found and sleep as each al
             }
         }
     }
-    // of each there were enough
+    // Each kind occurred often enough.
     CHECK(contacts > 10);
     CHECK(edges > 100);
     CHECK(points > 50);

@@ -1,4 +1,4 @@
-// Solids that share room: found, told apart from what only touches, and out of each other by the way that is said.
+// Overlapping solids: detected, told apart from touching ones, and separated along the reported direction.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -24,7 +24,7 @@ Solid solid_of(const SolidMesh& mesh, const Mat3& rotation = Mat3::Identity()) {
     return solid_of_tetrahedra(point, mesh.tetrahedra, std::move(surface));
 }
 
-/// The boundary as a surface; `inwards`: seen from inside, as that of a room.
+/// The boundary as a surface; `inwards` orients it as seen from inside, like that of a room.
 Solid surface_of(const SolidMesh& mesh, bool inwards = false) {
     std::vector<std::array<Index, 3>> triangles;
     for (const BoundaryTriangle& t : boundary_triangles(mesh.tetrahedra)) {
@@ -52,7 +52,7 @@ std::vector<std::array<Index, 3>> triangles_of(const Solid& solid) {
     return triangles;
 }
 
-/// Without a tree and without separating axes: surfaces that cross, or a corner of one in the other.
+/// Reference without a tree and separating axes: surfaces that cross, or a corner of one solid in the other.
 bool overlap_by_force(const Solid& first, const Solid& second, const Vec3& shift) {
     std::vector<Vec3> moved = first.point;
     for (Vec3& x : moved) x += shift;
@@ -247,7 +247,7 @@ TEST_CASE("a box in every collider is found, outside by nothing it is not", "[un
     const RigidMotion still{Vec3(1, 2, 3), Mat3::Identity(), Vec3::Zero(), Vec3::Zero()};
     struct Case {
         ColliderGeometry geometry;
-        Real touching;  // m, along z, from the origin of the shape
+        Real touching;  // height of the box above the origin of the shape at which they touch [m]
     };
     const std::vector<Case> cases{
         {{ColliderShape::plane, Vec3::Zero()}, 0.1},         {{ColliderShape::sphere, Vec3(0.5, 0, 0)}, 0.6},

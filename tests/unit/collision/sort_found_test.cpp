@@ -11,13 +11,13 @@ namespace skerry::test::sort_found_test {
 
 namespace {
 
-/// Features of all kinds, none twice, each with its own number to tell it by.
+/// Distinct features of all kinds, each with its own number as a label.
 Column<FoundCandidate> random_features(test::Random& random, std::size_t count) {
     std::set<std::uint64_t> seen;
     Column<FoundCandidate> found;
     const auto local = [&](Real below) { return static_cast<Index>((random.number() + 1) / 2 * below); };
     while (found.size() < count) {
-        const Index first = local(50), second = local(2e9);  // many of one point
+        const Index first = local(50), second = local(2e9);  // many features of one point
         const int kind = static_cast<int>(local(3));
         const std::uint64_t feature =
             kind == 2 ? edge_edge_feature(first, second) : point_triangle_feature(kind == 1, first, second);

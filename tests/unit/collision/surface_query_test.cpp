@@ -16,7 +16,7 @@ namespace {
 
 constexpr Real far = std::numeric_limits<Real>::infinity();
 
-/// A closed surface of a grid of a ball, pressed out of shape, with its tree.
+/// A closed surface from the grid of a deformed ball, with its tree.
 struct Surface {
     Column<Vec3> position;
     Column<std::array<Index, 3>> triangle;
@@ -47,7 +47,7 @@ struct Surface {
         }
         const Range all{0, static_cast<Index>(triangle.size())};
         const BvhRanges ranges = append_bvh(all, triangle, position, bvh, leaves);
-        for (Vec3& x : position) x += 0.05 * random.vector();  // it deforms, the tree stays
+        for (Vec3& x : position) x += 0.05 * random.vector();  // the surface deforms, the structure of the tree stays
         refit_bvh(ranges.nodes, bvh.node, leaves.nodes, position, bvh.box.span());
         tree = {ranges.nodes, all, bvh.node, leaves.triangle, bvh.box, triangle, position};
     }
@@ -134,13 +134,13 @@ TEST_CASE("a ray meets an analytic shape where its distance is first zero, with 
             const auto found = cast_ray(geometry, pose, ray, 8);
             const Real side = distance(0).distance > 0 ? 1 : -1;
             const Real end = found ? found->distance : 8;
-            for (int k = 0; k < 200; ++k)  // up to there it is on one side
+            for (int k = 0; k < 200; ++k)  // up to the hit the ray is on one side
                 REQUIRE(side * distance(k / 200.0 * end).distance > -1e-12);
             if (!found) continue;
             ++hits;
             inside += side < 0;
             CHECK(std::abs(distance(found->distance).distance) < 1e-12);
-            constexpr Real step = 1e-6;  // beside an edge the normal is that of the side that was met
+            constexpr Real step = 1e-6;  // near an edge the normal is that of the side that was hit
             const Vec3 out = ray.origin + found->distance * ray.direction + step * found->normal;
             CHECK(distance_to_collider(geometry, pose, out).distance == Approx(step).epsilon(1e-3));
             CHECK_FALSE(cast_ray(geometry, pose, ray, found->distance * 0.999));

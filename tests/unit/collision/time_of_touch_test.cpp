@@ -1,4 +1,4 @@
-// When moving nodes, edges and faces touch moving colliders: against looking at many times and places.
+// Times at which moving nodes, edges and faces touch moving colliders, against sampling of many times and places.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -19,7 +19,7 @@ using Kind = TouchingFeature::Kind;
 
 namespace {
 
-constexpr Real h = 0.01;  // s
+constexpr Real h = 0.01;  // [s]
 constexpr int times = 100, places = 30;
 
 struct Named {
@@ -38,7 +38,7 @@ struct Scene {
     RigidMotion motion;
     TouchingFeature feature;
 
-    /// In the frame of the collider, at a fraction of the step.
+    /// Positions of the feature's nodes in the frame of the collider, at a fraction of the step.
     std::array<Vec3, 3> at(Real time) const {
         const Mat3 rotation = rotation_matrix(time * h * motion.angular_velocity) * motion.rotation;
         std::array<Vec3, 3> local;
@@ -49,7 +49,7 @@ struct Scene {
     }
 };
 
-/// Flies past about `aim` (m, of the collider).
+/// A scene whose feature passes near `aim`, a point in the frame of the collider [m].
 Scene random_scene(Random& random, Kind kind, Index of_collider, const Vec3& aim, bool turning) {
     Scene scene;
     scene.motion = {random.vector(), random.rotation(), 30 * random.vector(), Vec3::Zero()};
@@ -65,7 +65,7 @@ Scene random_scene(Random& random, Kind kind, Index of_collider, const Vec3& aim
     return scene;
 }
 
-/// A point of the collider.
+/// A random point of the collider, or at most 0.02 m outside.
 Vec3 inside(Random& random, const ColliderGeometry& geometry) {
     for (;;) {
         const Vec3 point = 0.6 * random.vector();
@@ -73,7 +73,7 @@ Vec3 inside(Random& random, const ColliderGeometry& geometry) {
     }
 }
 
-/// Signed, of a node or an edge to the part, m.
+/// Signed distance of a node or an edge to the part [m].
 Real sampled_distance(const ColliderGeometry& geometry, Index part, const std::array<Vec3, 3>& nodes, Kind kind) {
     if (kind == Kind::node) return local_distance(geometry, nodes[0], part).distance;
     Real least = std::numeric_limits<Real>::infinity();
@@ -84,11 +84,11 @@ Real sampled_distance(const ColliderGeometry& geometry, Index part, const std::a
     return least;
 }
 
-/// Of a point of a collider as seen from a face.
+/// Position of a collider point relative to a face.
 struct Side {
-    Real height;    // m, in front of it
-    bool above;     // its inside
-    Real distance;  // m, to the face
+    Real height;    // height in front of the face [m]
+    bool above;     // its projection is inside the face
+    Real distance;  // distance to the face [m]
 };
 
 Side side_of(const Vec3& point, const std::array<Vec3, 3>& corner) {
@@ -97,7 +97,7 @@ Side side_of(const Vec3& point, const std::array<Vec3, 3>& corner) {
     return {normal.dot(point - corner[0]), closest.region == TriangleRegion::face, std::sqrt(closest.distance_squared)};
 }
 
-/// Places of the collider that point k stands for.
+/// Positions on the collider that point k represents.
 std::vector<Vec3> places_of_point(const ColliderGeometry& geometry, Index k) {
     if (!collider_point_follows(geometry.shape, k)) return {collider_point(geometry, k, Vec3::Zero()).at};
     std::vector<Vec3> rim;
@@ -109,8 +109,8 @@ std::vector<Vec3> places_of_point(const ColliderGeometry& geometry, Index k) {
 }
 
 struct Seen {
-    bool enters = false;                                   // between two times, while no edge is near
-    Real nearest = std::numeric_limits<Real>::infinity();  // m
+    bool enters = false;                                   // a point enters between two times while no edge is near
+    Real nearest = std::numeric_limits<Real>::infinity();  // smallest distance [m]
 };
 
 Seen look_at_face(const ColliderGeometry& geometry, const Scene& scene, Real near_edges) {
@@ -164,7 +164,7 @@ TEST_CASE("nodes and edges that come to touch a collider are found, and no other
                     nearest = std::min(
                         nearest, sampled_distance(shape.geometry, part, scene.at(static_cast<Real>(t) / times), kind));
                 if (nearest <= 0) REQUIRE(touch);
-                // samples may miss as much as the way between two times and two places
+                // Samples may miss as much as the motion between two times and the distance between two places.
                 const Real missed = greatest_approach(scene.motion, h, scene.feature) / times + 1.0 / places;
                 const bool is_wall = shape.geometry.shape == ColliderShape::bucket && part == 1;
                 if (nearest > (is_wall ? 4 : 1) * contact_slack * start + missed) CHECK(!touch);

@@ -1,4 +1,4 @@
-// Tables and columns whose types the caller does not know: they behave like the typed ones.
+// Tables and columns of types unknown to the caller behave like the typed ones.
 #include "components/any_table.h"
 
 #include <catch2/catch.hpp>

@@ -11,7 +11,7 @@ namespace skerry::test::box_grid_test {
 
 namespace {
 
-using Visits = std::map<std::pair<Index, Index>, int>;  // of pairs of rows, the lesser first
+using Visits = std::map<std::pair<Index, Index>, int>;  // by pair of rows, the smaller first
 
 bool meet(const Aabb& a, const Aabb& b) {
     return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
@@ -30,7 +30,7 @@ Visits visits_of(const BoxGrid& grid, const std::vector<Index>& rows) {
     return visits;
 }
 
-/// Each pair of rows at most once, and those that meet for sure. Returns how many meet.
+/// Checks that pairs of rows are visited at most once, and overlapping pairs always. Returns the number of these.
 std::size_t check_visits(const std::vector<Aabb>& boxes, const std::vector<Index>& rows, const Visits& visits) {
     for (const auto& [pair, count] : visits) {
         CHECK(count == 1);
@@ -50,7 +50,7 @@ std::size_t check_visits(const std::vector<Aabb>& boxes, const std::vector<Index
 
 TEST_CASE("of boxes of all sizes each two that meet are told of each other once", "[unit]") {
     test::Random random(5);
-    BoxGrid grid;  // one for all: nothing of the boxes before is left
+    BoxGrid grid;  // one grid for all trials: nothing of earlier boxes may remain
     std::size_t meeting = 0;
     for (const int count : {0, 1, 2, 40, 400})
         for (const Real offset : {0.0, -3e3, 1e15}) {
@@ -100,7 +100,7 @@ TEST_CASE("of boxes as large as their distance few are told that do not meet", "
     const std::vector<Index> rows = all_rows(boxes);
     BoxGrid grid;
     grid.build(boxes, rows);
-    CHECK(visits_of(grid, rows).size() < 100 * boxes.size());  // all pairs: 864 for each
+    CHECK(visits_of(grid, rows).size() < 100 * boxes.size());  // all pairs: 864 per box
 }
 
 }  // namespace skerry::test::box_grid_test

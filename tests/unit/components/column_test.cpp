@@ -34,7 +34,7 @@ TEMPLATE_TEST_CASE("a column starts on a cache line, whatever its rows and howev
 #ifdef __linux__
 namespace {
 
-/// Of the memory at an address, as the kernel lists it.
+/// Flags of the memory at an address, as the kernel lists them.
 std::string flags_of_memory(const void* at) {
     const auto address = reinterpret_cast<std::uintptr_t>(at);
     std::ifstream maps("/proc/self/smaps");
@@ -141,7 +141,7 @@ TEST_CASE("spans of a column show its rows", "[unit]") {
     REQUIRE(Column<int>().span().empty());
 }
 
-// The point of const: a system that was given a column to read cannot write it.
+// Purpose of const: a system that gets a column to read cannot write it.
 static_assert(!std::is_convertible_v<const Column<int>&, std::span<int>>);
 // A column of vectors is a flat array of reals, which output and snapshots rely on.
 static_assert(sizeof(Vec3) == 3 * sizeof(Real) && sizeof(Mat3) == 9 * sizeof(Real));

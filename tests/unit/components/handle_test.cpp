@@ -8,7 +8,7 @@ namespace skerry::test::handle_test {
 
 namespace {
 
-/// Forgets a handle and takes its row out of `count`.
+/// Removes a handle, and its row from `count` rows.
 void erase(HandleMap<BodyHandle>& map, BodyHandle handle, std::size_t count) {
     const Index row = map.row(handle);
     std::vector<Index> row_now;
@@ -80,7 +80,7 @@ TEST_CASE("handles agree with a plain list of rows over random insertions and er
     CAPTURE(seed);
     std::mt19937 random(seed);
     HandleMap<BodyHandle> map;
-    std::vector<BodyHandle> rows, dead;  // the twin: rows[r] is the handle of row r
+    std::vector<BodyHandle> rows, dead;  // reference: rows[r] is the handle of row r
     for (int i = 0; i < 500; ++i) {
         if (rows.empty() || random() % 5 < 3) {
             rows.push_back(map.insert(static_cast<Index>(rows.size())));

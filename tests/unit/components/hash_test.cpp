@@ -25,7 +25,7 @@ std::vector<unsigned char> some_bytes(std::size_t count) {
 }  // namespace
 
 TEST_CASE("the hash is the published XXH3", "[unit]") {
-    CHECK(Hash().value() == 0x2d06800538d394c2ull);  // of nothing, seed 0
+    CHECK(Hash().value() == 0x2d06800538d394c2ull);  // empty input, seed 0
     CHECK(hash_of({'a'}) == 0xe6c632b61e964e1full);
 }
 

@@ -7,7 +7,7 @@ namespace skerry::test::options_test {
 
 namespace {
 
-// Each name leads back to its choice, and no two choices share one.
+// Checks that each name leads back to its value, and that no two values share a name.
 template <class Enum>
 void require_names_to_be_unique() {
     std::set<std::string_view> names;
@@ -43,7 +43,7 @@ TEST_CASE("a name that was removed is no choice, and has a hint that names one",
 TEST_CASE("names are those that scenes are written with", "[unit]") {
     REQUIRE(name_of(MaterialModel::stable_neo_hookean) == "stable_neo_hookean");
     REQUIRE(name_of(SolverMethod::pcg_pgs) == "pcg_pgs");
-    REQUIRE(from_name<Friction>("Cone") == std::nullopt);  // case counts
+    REQUIRE(from_name<Friction>("Cone") == std::nullopt);  // case matters
 }
 
 }  // namespace skerry::test::options_test

@@ -12,11 +12,11 @@ namespace skerry::test::shared_union_find_test {
 TEST_CASE("sets that threads join at the same time are those of one thread", "[unit]") {
     constexpr Index count = 300;
     constexpr int threads = 4;
-    SharedUnionFind shared;  // one memory for all: what an earlier start left must not be seen
+    SharedUnionFind shared;  // one object for all seeds: contents of an earlier start must not be visible
     UnionFind twin;
     for (unsigned seed = 0; seed < 60; ++seed) {
         INFO("seed " << seed);
-        if (seed == 30) shared.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+        if (seed == 30) shared.now = std::numeric_limits<std::uint32_t>::max();  // all stamps are used
         std::mt19937 random(seed);
         std::vector<std::pair<Index, Index>> joins(random() % 400);
         for (auto& [a, b] : joins) {

@@ -1,4 +1,4 @@
-// What is kept in tables: listed once, and found by the list.
+// Columns of tables: each is listed once and found by the list.
 #include <catch2/catch.hpp>
 #include <set>
 #include <string>
@@ -15,8 +15,8 @@
 
 namespace skerry::test::tables_test {
 
-// A column that is missing from the list would be lost by a snapshot. All columns have the same size in memory, so the
-// table's size says how many there are; a flag or two beside them (RegionTable) is less than one column more.
+// A snapshot would lose a column that is missing from the list. All columns have equal size in memory, so the size of
+// the table gives their number. A flag or two beside them (RegionTable) take less space than a column.
 TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]", NodeTable, ElementBlockTable,
                    BodyTable, BvhTable, MaterialTable, NodeBlockTable, ColliderTable, AttachmentTable, ContactTable,
                    WarmStartTable, RestingContactTable, RegionTable, RegionHistoryTable, TriangleTable, EdgeTable,
@@ -32,7 +32,7 @@ TEMPLATE_TEST_CASE("the list of a table names every column of it once", "[unit]"
     });
     REQUIRE(columns.size() == visits);
     REQUIRE(sizeof(TestType) / sizeof(Column<Real>) == visits);
-    // its parts have columns of the same name
+    // The parts of SurfaceTables have columns with equal names.
     if constexpr (!std::is_same_v<TestType, SurfaceTables>) REQUIRE(names.size() == visits);
 }
 

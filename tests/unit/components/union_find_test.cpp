@@ -9,7 +9,7 @@ namespace skerry::test::union_find_test {
 
 namespace {
 
-/// The slow twin: every index knows the smallest one of its set.
+/// Slow reference: every index stores the smallest index of its set.
 struct Labels {
     std::vector<Index> smallest;
 
@@ -27,7 +27,7 @@ struct Labels {
 
 TEST_CASE("the root of a set is its smallest index, whatever was joined in which order", "[unit]") {
     constexpr Index count = 60;
-    UnionFind sets;  // one memory for all: what an earlier start left must not be seen
+    UnionFind sets;  // one object for all seeds: contents of an earlier start must not be visible
     for (unsigned seed = 0; seed < 50; ++seed) {
         INFO("seed " << seed);
         std::mt19937 random(seed);

@@ -7,8 +7,8 @@ namespace skerry::test::keep_resting_contacts_test {
 
 namespace {
 
-/// Bodies 0, 1 and 2, the kinematic body 3 of collider 1, and collider 0, a plane. The pair of two bodies has the key
-/// 10 a + b, that with a collider 100 + its number.
+/// Bodies 0, 1 and 2, the kinematic body 3 of collider 1, and collider 0, a plane. A pair of bodies a and b has the key
+/// 10 a + b, a pair with a collider the key 100 + its number.
 struct World {
     std::vector<std::uint8_t> asleep{0, 0, 0, 0};
     std::vector<BodyKind> kind{BodyKind::deformable, BodyKind::deformable, BodyKind::deformable, BodyKind::kinematic};
@@ -60,7 +60,7 @@ TEST_CASE("contacts are kept when all of their sides rest or stand still", "[uni
     CHECK(world.kept.contact.region[0] == no_index);
     CHECK(std::vector(world.kept.step.begin(), world.kept.step.end()) == std::vector<Real>(3, 0.1));
 
-    // what moves is looked for again, and its contacts are not those of rest
+    // Contacts with a moving side are searched again and are not kept.
     world.motion[1].velocity = Vec3(0.1, 0, 0);
     CHECK(world.step(0.1));
     CHECK(world.pairs_kept() == std::vector<std::uint64_t>{12, 100});
@@ -82,15 +82,15 @@ TEST_CASE("contacts are kept until a step looks at their pair", "[unit][contact]
     world.contacts.resize(1);
     CHECK_FALSE(world.step(0.2));  // nothing changes
     CHECK(world.kept.size() == 3);
-    world.asleep = {0, 1, 0, 0};  // 2 was woken by this step, which did not look at 12: the next one starts from it
+    world.asleep = {0, 1, 0, 0};  // this step woke 2 but did not search pair 12: the next step starts from its contacts
     CHECK_FALSE(world.step(0.2));
     world.idle = {0, 0, 1};
-    world.asleep = {1, 1, 0, 0};  // 0 has come to rest on 1
+    world.asleep = {1, 1, 0, 0};  // body 0 has come to rest on body 1
     CHECK(world.step(0.2));
     CHECK(world.pairs_kept() == std::vector<std::uint64_t>{1, 100});
     CHECK(world.kept.step[0] == 0.2);
     CHECK(world.kept.step[1] == 0.1);
-    world.pair = {1};  // no more a pair that is close
+    world.pair = {1};  // the other pairs are no longer close
     world.idle = {1};
     world.contacts.resize(0);
     CHECK(world.step(0.2));

@@ -25,7 +25,7 @@ TEST_CASE("impulses follow their contacts when others appear and vanish", "[unit
     WarmStartTable last;
     store_warm_start(*serial, {before, normal, impulse}, 0.1, last);
 
-    const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // 20 and 40 gone, 5, 25 and 50 new
+    const std::vector<ContactKey> now{key(5), key(10), key(25), key(30), key(50)};  // no 20, 40; new 5, 25, 50
     std::vector<Vec3> matched(5, Vec3::Ones());
     CHECK(match_warm_start(*serial, now, std::vector<Vec3>(5, Vec3::UnitZ()), last, {}, 0.1, matched));
     CHECK(matched == std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 3}, {0, 0, 0}});
@@ -50,7 +50,7 @@ TEST_CASE("a contact that was not in the last step starts from what it came to r
         *serial, {std::vector<ContactKey>{{1, 1}, {4, 1}}, ups(2), std::vector<Vec3>{{1, 0, 0}, {4, 0, 0}}}, 1, last);
     RestingContactTable resting;
     resting.contact.resize(3);
-    const std::vector<ContactKey> rest{{1, 1}, {2, 1}, {2, 2}};  // the first has been looked for again since
+    const std::vector<ContactKey> rest{{1, 1}, {2, 1}, {2, 2}};  // the pair of the first has been searched again since
     for (std::size_t row = 0; row < rest.size(); ++row) {
         resting.contact.key[row] = rest[row];
         resting.contact.normal[row] = Vec3::UnitZ();
@@ -122,7 +122,7 @@ TEST_CASE("matching many contacts gives the same on any number of workers", "[un
 
 namespace {
 
-/// Contacts of one kind of pair: body 0 with body 1, which is rigid unless it is said to move node by node.
+/// Contacts of one pair: body 0 with body 1, which is rigid unless a test makes its nodes move independently.
 struct Stacked {
     std::vector<ContactKey> key;
     std::vector<Vec3> normal, point;
@@ -151,8 +151,8 @@ TEST_CASE("what a contact that is gone carried goes to the nearest one of its pa
     store_warm_start(*serial, {before.key, before.normal, impulse, before.point}, 0.2, last);
 
     after.add(key(1), {0.1, 0, 0});
-    after.add(key(6), {0.205, 0, 0});                // in place of 2, and nearer to it than 8
-    after.add(key(7), {0.3, 0, 0}, -Vec3::UnitZ());  // at 3, but from the other side
+    after.add(key(6), {0.205, 0, 0});                // replaces 2, and is nearer to it than 8
+    after.add(key(7), {0.3, 0, 0}, -Vec3::UnitZ());  // at the place of 3, but on the other side
     after.add(key(8), {0.21, 0, 0});
     after.add(key(9), {0.421, 0, 0});                    // further from 4 than twice the contact distance
     after.add(key(10), {0.5, 0.001, 0}, {0, 0.6, 0.8});  // about where 5 was, but turned by too much
@@ -206,7 +206,7 @@ TEST_CASE("handing on gives the same on any number of workers", "[unit][contact]
         CHECK(hand_on_impulses(*executor, after.now(), last, 1, matched));
         if (workers == 1) {
             expected = matched;
-            // beyond one block, and most of what is gone has found a neighbour
+            // The contacts fill more than one block, and most of the vanished ones have found a neighbour.
             REQUIRE(before.key.size() > 5000);
             Real carried = 0;
             for (const Vec3& r : matched) carried += r.z();

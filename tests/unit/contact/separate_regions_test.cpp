@@ -15,7 +15,7 @@ namespace skerry::test::separate_regions_test {
 
 namespace {
 
-/// One worker.
+/// An executor with one worker.
 Executor& in_order() {
     static const std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
     return *executor;
@@ -53,7 +53,7 @@ std::vector<Index> areas_of_the_paper(const std::vector<Stencil>& stencil, const
     return area;
 }
 
-/// Flood fill over pairs of contacts, numbered by the first contact: the definition, O(K^2).
+/// Flood fill over pairs of contacts, numbered by the first contact: the definition of regions, in O(K^2).
 std::vector<Index> flood_fill(const std::vector<Stencil>& stencil, const std::vector<Real>& inverse_mass) {
     const auto moving = [&](const Stencil& s) {
         std::set<Index> nodes;
@@ -127,13 +127,13 @@ TEST_CASE("the memory of one step does not leak into the next", "[unit][contact]
     CHECK(regions.size() == 1);
     separate_regions(in_order(), apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
-    memory.sets.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+    memory.sets.now = std::numeric_limits<std::uint32_t>::max();  // all stamps are used
     separate_regions(in_order(), apart, inverse_mass, NodeGroups{}, ContactRegions::separate, memory, regions, region);
     CHECK(region == std::vector<Index>{0, 1});
 }
 
-/// A pile: pairs of bodies with some contacts each between nodes near each other, in the order of the pairs; some nodes
-/// held, some contacts without a node that moves, now and then a chain through many bodies.
+/// A pile: pairs of bodies with some contacts each between neighbouring nodes, in the order of the pairs. Some nodes
+/// are held, some contacts have no moving node, and now and then a chain passes through many bodies.
 struct PileOfContacts {
     static constexpr Index nodes_per_body = 40;
     std::vector<Stencil> stencil;
@@ -157,8 +157,8 @@ struct PileOfContacts {
     }
 };
 
-/// What groups such nodes: nothing, or some bodies that are rigid, and joints between them and to the world, or some
-/// nodes of other bodies in clusters.
+/// Groups for the nodes of a pile: none; or some rigid bodies with joints between them and to the world; or clusters of
+/// some nodes of other bodies.
 struct GroupsOfPile {
     std::vector<Index> node_body;
     std::vector<Range> body_nodes, body_rigid;
@@ -211,7 +211,7 @@ void check_same(const RegionTable& regions, const RegionTable& twin) {
 
 TEST_CASE("many contacts are separated in blocks as in order", "[unit][contact][determinism][long]") {
     std::mt19937 random(14);
-    SeparationMemory in_order_memory, memory;  // of all: nothing may be left of the step before
+    SeparationMemory in_order_memory, memory;  // one for all trials: nothing of the previous step may remain
     RegionTable regions, twin;
     std::uint32_t in_blocks = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -224,7 +224,7 @@ TEST_CASE("many contacts are separated in blocks as in order", "[unit][contact][
         std::vector<Index> region(pile.stencil.size()), twin_region(pile.stencil.size());
         separate_regions(in_order(), pile.stencil, pile.inverse_mass, groups, ContactRegions::separate, in_order_memory,
                          twin, twin_region);
-        if (trial == 30) memory.labels.sets.now = std::numeric_limits<std::uint32_t>::max();  // the stamps are used up
+        if (trial == 30) memory.labels.sets.now = std::numeric_limits<std::uint32_t>::max();  // all stamps are used
         for (const ExecutorChoice& choice : executor_choices({4, 7})) {
             CAPTURE(choice.text());
             const auto executor = choice.make();
@@ -323,7 +323,7 @@ TEST_CASE("the paper's Algorithm 1 goes wrong more often the more contacts there
 }
 
 TEST_CASE("what a joint joins is one region, and what no contact touches one of its own", "[unit][regions]") {
-    // bodies of two nodes each, 0 1, 2 3, ... of which joints name the first
+    // Bodies have two nodes each (0 1, 2 3, ...); joints name the first node of a body.
     const auto joining = [](Index first, Index second) {
         JointBlock block{};
         block.first_node = first;
@@ -351,7 +351,7 @@ TEST_CASE("what a joint joins is one region, and what no contact touches one of 
         separate_regions(in_order(), stencil, inverse_mass, groups, ContactRegions::global, memory, regions, region));
     CHECK(regions.size() == 1);
     CHECK(list(regions.joints_of(0)) == std::vector<Index>{0, 1, 2, 3});
-    // none of contacts alone, and none of joints that are gone
+    // Without contacts only regions of joints exist. Joints that are gone are in no region.
     std::vector<Index> none;
     REQUIRE(separate_regions(in_order(), {}, inverse_mass, groups, ContactRegions::separate, memory, regions, none));
     CHECK(regions.size() == 3);

@@ -83,7 +83,7 @@ TEST_CASE("a sliver has next to no volume beside what is around it: flat cells a
         if (six_volumes(mesh.tetrahedra[t], mesh.nodes) < 0.021 * std::pow(0.2 / 6, 3)) flat.push_back(t);
     REQUIRE(flat.size() > 8);
     CHECK(slivers(mesh) == flat);
-    for (Vec3& x : mesh.nodes) x.z() *= 0.01;  // none of it depends on the shape of the body
+    for (Vec3& x : mesh.nodes) x.z() *= 0.01;  // the result is independent of the shape of the body
     CHECK(slivers(mesh) == flat);
     CHECK(slivers(test::sliver_box(0.2, 6, 0.01, 0.1)).empty());
     CHECK(slivers(test::mirrored_box(0.2, 6)).empty());
@@ -137,7 +137,7 @@ TEST_CASE("a patch has every node of its elements once, and a node its patches i
         }
         CHECK(elements <= elements_per_patch);
         CHECK(elements >= elements_per_patch / 2);
-        // compact: neighbours share their nodes
+        // The patch is compact: neighbours share their nodes.
         CHECK(own.size() < elements);
     }
     for (std::size_t n = 0; n < body.position.size(); ++n) {

@@ -14,7 +14,7 @@ namespace {
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real unbounded = std::numeric_limits<Real>::infinity();
 
-/// Two bodies of 300 nodes in two blocks each; a tetrahedron for every four neighbours.
+/// Two bodies of 300 nodes in two blocks each, with one tetrahedron for every four consecutive nodes.
 struct State {
     std::vector<Index> begin{0, 256, 300, 556}, end{256, 300, 556, 600}, body{0, 0, 1, 1};
     std::vector<Range> node_blocks{{0, 2}, {2, 4}}, element_blocks{{0, 10}, {10, 20}};
@@ -42,7 +42,7 @@ struct State {
         }
         for (std::size_t first = 0; first < 600; first += 4) put_corner(first, 0.1);
     }
-    /// Three edges of that length at right angles, m.
+    /// Gives tetrahedron corners three orthogonal edges of length `edge` [m].
     void put_corner(std::size_t first, Real edge) {
         for (std::size_t a = 1; a < 4; ++a)
             rest[first + a] = rest[first] + edge * Vec3::Unit(static_cast<Index>(a) - 1);
@@ -72,7 +72,7 @@ TEST_CASE("a sound step has no fault and its speeds are written", "[unit]") {
     CHECK(state.block_speed[0] == 1);
     CHECK(state.block_speed[1] == 2.25);
     CHECK(state.body_speed[0] == 1.5);
-    CHECK(state.body_speed[1] == 1.5);  // with the push-out
+    CHECK(state.body_speed[1] == 1.5);  // includes the push-out velocity
 }
 
 TEST_CASE("speeds in a frame are those of nodes less its own", "[unit]") {
@@ -96,7 +96,7 @@ TEST_CASE("what is not finite is found, the first body first", "[unit]") {
         CHECK(verdict.body == 0);
         CHECK(verdict.node == 270);
         CHECK(std::isnan(state.block_speed[1]));
-        CHECK(std::isnan(state.body_speed[1]));  // later speeds are written, too
+        CHECK(std::isnan(state.body_speed[1]));  // later speeds are written even after a NaN
         CHECK(state.block_speed[0] == 1);
     }
 }
@@ -131,7 +131,7 @@ TEST_CASE("corners that part by more than the limit are too fast, by just less t
         CHECK(verdict.body == 1);
         CHECK(verdict.node == 402);
         CHECK(verdict.tetrahedron == (with_elements ? 105 : no_index));  // nodes 400 to 403: lane 1 of block 13
-        CHECK(verdict.value == Approx(0.21).epsilon(0.01));              // 1 %: the mean moves with it
+        CHECK(verdict.value == Approx(0.21).epsilon(0.01));              // 1 %: the mean moves with the node
     }
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("corners of a sliver that slide along its flat side strain nothing", "
     state.rest[79] = state.rest[76] + Vec3(0.03, 0.03, 0.001);
     for (std::size_t n = 76; n < 80; ++n) state.next[n] = Vec3(1 + 5 * (state.rest[n] - state.rest[76]).y(), 0, 0);
     CHECK(state.check().fault == StepFault::none);
-    state.next[79].z() = 0.03;  // 3e-4 m in the step
+    state.next[79].z() = 0.03;  // 3e-4 m per step
     const StepVerdict verdict = state.check();
     CHECK(verdict.fault == StepFault::too_fast);
     CHECK(verdict.tetrahedron == 19);
@@ -188,7 +188,7 @@ TEST_CASE("the verdict is the same on any number of workers", "[unit][determinis
         const StepVerdict verdict = state.check(workers);
         CHECK(verdict.fault == StepFault::too_fast);
         CHECK(verdict.body == 0);
-        CHECK(verdict.node == 101);  // a corner of the first of the equally bad elements: the base is the fast node 100
+        CHECK(verdict.node == 101);  // a corner of the first of the equally fast elements; its base is node 100
     }
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("a world without bodies and a body without nodes are sound", "[unit]")
 
 namespace {
 
-/// A box whose nodes move at random, so that tetrahedra deform faster than the means of them.
+/// A box with randomly moving nodes, so that tetrahedra deform faster than their averages in smoothed elements.
 struct TrembleState {
     test::ElasticBody body;
     std::vector<Index> begin{0}, end, of_body{0};
@@ -229,17 +229,17 @@ struct TrembleState {
           rest(body.position) {
         std::mt19937_64 random(2);
         for (Vec3& v : body.velocity) v = test::random_vector(random);
-        body.position = body.velocity;  // of which deformation() makes F'
+        body.position = body.velocity;  // so that deformation() returns F'
     }
     Real rate_of(std::size_t element) const { return body.deformation(element).norm(); }
-    /// 1/s, and the element.
+    /// Largest deformation rate of an element [1/s], and that element.
     std::pair<Real, std::size_t> fastest() const {
         std::pair<Real, std::size_t> found{0, 0};
         for (std::size_t e = 0; e < element_lanes * body.elements.first.size(); ++e)
             if (body.volume(e) > 0) found = std::max(found, std::pair(rate_of(e), e));
         return found;
     }
-    /// 1/s, of tetrahedra one by one: as |F'|, but not faster than two corners part, over the altitude.
+    /// Largest deformation rate of a tetrahedron [1/s]: |F'|, limited by the corners' relative speed over the altitude.
     Real fastest_tetrahedron() const {
         Real highest = 0;
         for (std::size_t t = 0; t < element_lanes * body.tetrahedra.node.size(); ++t) {
@@ -250,14 +250,14 @@ struct TrembleState {
                 edge.col(static_cast<Index>(a) - 1) = rest[node(a)] - rest[node(0)];
                 parting.col(static_cast<Index>(a) - 1) = body.velocity[node(a)] - body.velocity[node(0)];
             }
-            if (!(edge.determinant() > 0)) continue;  // a lane left over
+            if (!(edge.determinant() > 0)) continue;  // unused lane
             const Real by_corners =
                 parting.colwise().norm().maxCoeff() / body.tetrahedra.altitude[t / element_lanes][t % element_lanes];
             highest = std::max(highest, std::min(by_corners, (parting * edge.inverse()).norm()));
         }
         return highest;
     }
-    /// In steps of 1 s, with steps of `longest` in view.
+    /// Checks a step of 1 s if steps up to `longest` are considered [s].
     StepVerdict check(Real rate, Real longest = 1) {
         const auto executor = make_executor(Backend::serial, 1);
         CheckInputs inputs{begin, end, of_body, node_blocks, altitude, body.velocity, body.velocity, {}};
@@ -288,7 +288,7 @@ TEST_CASE("what deforms too fast is an element, and the fastest tetrahedron is b
     const StepVerdict too_fast = tetrahedra.check(0.5 * of_tetrahedra);
     CHECK(too_fast.fault == StepFault::too_fast);
     CHECK(too_fast.value == Approx(of_tetrahedra));
-    CHECK(edges.check(1.01 * of_edges).fault == StepFault::none);  // though tetrahedra are faster
+    CHECK(edges.check(1.01 * of_edges).fault == StepFault::none);  // although tetrahedra are faster
     const StepVerdict of_smoothed = edges.check(0.5 * of_edges);
     CHECK(of_smoothed.fault == StepFault::too_fast);
     CHECK(of_smoothed.value == Approx(of_tetrahedra));
@@ -299,7 +299,7 @@ TEST_CASE("an implicit element may deform five times as fast", "[unit]") {
     TrembleState state(ElementKind::edge_smoothed);
     for (ElementLane& of : state.body.tetrahedra.leeway) of = {{5, 5, 5, 5, 5, 5, 5, 5}};
     const auto [rate, fastest] = state.fastest();
-    CHECK(state.check(0.3 * rate).fault == StepFault::none);  // tetrahedra do not: nothing is asked of elements
+    CHECK(state.check(0.3 * rate).fault == StepFault::none);  // no tetrahedron is too fast: elements are not tested
     for (ElementLane& of : state.body.tetrahedra.leeway) of = {{1, 1, 1, 1, 1, 1, 1, 1}};
     REQUIRE(state.check(0.99 * rate).fault == StepFault::too_fast);
     state.body.elements.implicit_modulus[fastest / element_lanes][fastest % element_lanes] = 1;

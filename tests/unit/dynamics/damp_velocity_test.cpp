@@ -13,7 +13,7 @@ namespace skerry::test::damp_velocity_test {
 
 namespace {
 
-/// Bodies of loose nodes.
+/// Bodies of unconnected nodes.
 struct Cloud {
     std::vector<Index> block_begin, block_end, block_body, body_material, pinned;
     std::vector<std::uint8_t> asleep;
@@ -99,7 +99,7 @@ std::vector<Vec3> random_vectors(std::size_t count, Real size, const Vec3& centr
 TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
-    cloud.lag = GENERATE(0.0, 0.02);  // s: a tenth of the body's size
+    cloud.lag = GENERATE(0.0, 0.02);  // a tenth of the body's size [s]
     cloud.add(random_vectors(1000, 0.5, Vec3(10, -20, 5), 1), random_vectors(1000, 2, Vec3(3, 1, 0), 2), 1);
     const Momenta before = momenta(cloud);
     Real dissipated = 0;
@@ -117,10 +117,10 @@ TEST_CASE("damping keeps momentum and angular momentum and takes energy", "[unit
 TEST_CASE("damping has the bits of one sum after the other", "[unit]") {
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
-    cloud.lag = 0.02;  // s
+    cloud.lag = 0.02;  // [s]
     cloud.add(random_vectors(200, 0.5, Vec3(10, -20, 5), 1), random_vectors(200, 2, Vec3(3, 1, 0), 2), 1);
     const std::vector<Vec3> x = cloud.position, v = cloud.velocity;
-    // about the first node, then about the centre of mass
+    // momentum and inertia about the first node, then about the centre of mass
     Real mass = 0;
     Vec3 momentum = Vec3::Zero(), first = Vec3::Zero(), angular = Vec3::Zero();
     Mat3 second = Mat3::Zero();
@@ -151,7 +151,7 @@ TEST_CASE("damping has the bits of one sum after the other", "[unit]") {
 }
 
 TEST_CASE("a body at rest under load does not feel its damping", "[unit]") {
-    // What the forces of this step add is not damped: else a body would not rest in the shape that balances them.
+    // Velocity that the forces of this step add is not damped. Otherwise a body would not rest in its balanced shape.
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
     cloud.add(random_vectors(50, 0.5, Vec3::Zero(), 1), std::vector<Vec3>(50, Vec3::Zero()), 1);
@@ -174,7 +174,7 @@ TEST_CASE("rigid motion is not damped", "[unit]") {
 }
 
 TEST_CASE("places that turn on while velocities lag behind are rigid motion", "[unit]") {
-    // A body that turns by a finite angle a step: each velocity is along the chord that led to the place of now.
+    // The body turns by a finite angle per step: each velocity is along the chord that led to the present position.
     const auto executor = make_executor(Backend::serial, 1);
     const Real h = 0.02;
     const auto excess_with_lag = [&](Real lag) {
@@ -194,7 +194,7 @@ TEST_CASE("places that turn on while velocities lag behind are rigid motion", "[
         return largest;
     };
     CHECK(excess_with_lag(h / 2) <= 1e-12);
-    CHECK(excess_with_lag(0) > 0.1);  // omega^2 r h / 2 outwards, of which damping took its part
+    CHECK(excess_with_lag(0) > 0.1);  // outward velocity omega^2 r h / 2, of which damping removed a part
 }
 
 TEST_CASE("what is not rigid motion decays at the given rate", "[unit]") {
@@ -210,9 +210,9 @@ TEST_CASE("nodes in a point and on a line are damped without a rotation they can
     const auto executor = make_executor(Backend::serial, 1);
     Cloud cloud;
     cloud.lag = GENERATE(0.0, 0.02);
-    cloud.add({Vec3(1, 1, 1)}, {Vec3(1, 2, 3)}, 1);                                 // one node: all of it is rigid
-    cloud.add({Vec3(2, 2, 2), Vec3(2, 2, 2)}, {Vec3(1, 0, 0), Vec3(-1, 0, 0)}, 1);  // one place
-    // a line
+    cloud.add({Vec3(1, 1, 1)}, {Vec3(1, 2, 3)}, 1);                                 // one node: all motion is rigid
+    cloud.add({Vec3(2, 2, 2), Vec3(2, 2, 2)}, {Vec3(1, 0, 0), Vec3(-1, 0, 0)}, 1);  // two nodes at one position
+    // three nodes on a line
     cloud.add({Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.6, 0.9)}, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)},
               1);
     const Momenta before = momenta(cloud);

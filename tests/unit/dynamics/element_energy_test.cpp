@@ -43,7 +43,7 @@ TEST_CASE("von Mises stress of uniaxial strain is 2 mu strain", "[unit]") {
         cauchy_stress(body.inputs(), body.blocks, body.position, stress);
         for (std::size_t e = 0; e < 6; ++e)
             CHECK(von_mises(stress[e]) == Approx(2 * body.constants[0].shear_modulus * strain).epsilon(1e-5));
-        CHECK(stress[6] == Mat3::Zero());  // a lane that is left over
+        CHECK(stress[6] == Mat3::Zero());  // unused lane
     }
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("the worst volume ratio names the tetrahedron that is pressed most", "
         return tetrahedron_volume_ratios(body.tetrahedra.node, body.tetrahedra.volume, body.blocks, body.position);
     };
     CHECK(ratios().smallest == Approx(1).epsilon(1e-13));
-    body.position[0].x() += 0.15;  // through its neighbours
+    body.position[0].x() += 0.15;  // moves through its neighbours
     const VolumeRatios worst = ratios(), of_elements = element_volume_ratios(body.inputs(), body.blocks, body.position);
     CHECK(worst.smallest < 0);
     REQUIRE(worst.item >= 0);

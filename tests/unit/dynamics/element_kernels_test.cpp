@@ -33,7 +33,7 @@ TEST_CASE("forces are those of the textbook, summed element by element", "[unit]
     const auto executor = make_executor(Backend::serial, 1);
     const ElementKind kind = GENERATE(ElementKind::linear, ElementKind::edge_smoothed, ElementKind::edge_node_smoothed);
     for (MaterialModel model : test::material_models) {
-        for (Real size : {0.01, 0.08}) {  // the second inverts some
+        for (Real size : {0.01, 0.08}) {  // the second size inverts some elements
             ElasticBody body(jittered_box({4, 4, 4}, 0.1, 0.2, 1), rubber(model), Mat3::Identity(), kind);
             deform(body, size, 2);
             body.compute_elements(*executor);
@@ -45,7 +45,7 @@ TEST_CASE("forces are those of the textbook, summed element by element", "[unit]
                 const Mat3 F = body.deformation(e);
                 const MaterialConstants material = part_of(body.constants[0], body.elements.part[e / element_lanes]);
                 const Mat3 P = stress(material, F);
-                // of a frame that is about to jump anything can come out
+                // A frame that is about to jump can give any force.
                 const bool jumps = model == MaterialModel::corotational && stiffness_bound(body.constants[0], F) > 1e8;
                 const Real scale = jumps ? std::numeric_limits<Real>::infinity() : 1e3 * std::pow(1 + F.norm(), 5);
                 for (std::size_t k = 0; k < body.node_count(e); ++k) {
@@ -68,12 +68,12 @@ TEST_CASE("a single tetrahedron has as many nodes as a register lanes", "[unit]"
     const auto executor = make_executor(Backend::serial, 1);
     const test::TetMesh one{{Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1)}, {{0, 1, 2, 3}}};
     ElasticBody body(one, rubber(MaterialModel::linear));
-    // Exactly: an address sanitizer would see a read past the last node, by a stage of forces or of energies.
+    // Exact allocation: an address sanitizer sees a read past the last node by a force or energy kernel.
     body.position.shrink_to_fit();
     body.position[3].z() = 0.11;  // e_zz = 0.1
     body.compute_forces(*executor);
     const MaterialConstants m = body.constants[0];
-    const Real area = 0.005 / 3;  // m^2, of the face, a third for each corner
+    const Real area = 0.005 / 3;  // area of the face, a third for each corner [m^2]
     CHECK(body.force[3].z() == Approx(-area * 0.1 * (2 * m.shear_modulus + m.lame_lambda)));
     CHECK(body.force[1].x() == Approx(-area * 0.1 * m.lame_lambda));
     CHECK(body.force[0].y() == Approx(area * 0.1 * m.lame_lambda));
@@ -99,7 +99,7 @@ TEST_CASE("a position that is not a number reaches the nodes of its elements onl
         body.position[0].x() = std::numeric_limits<Real>::quiet_NaN();
         body.compute_forces(*executor);
         CHECK(!body.force[0].allFinite());
-        CHECK(body.force[3].allFinite());  // three cells away
+        CHECK(body.force[3].allFinite());  // three cells away from the bad node
     }
 }
 

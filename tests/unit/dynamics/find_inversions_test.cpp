@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real h = 0.01;
 
-/// Bodies of loose tetrahedra, each with corners of its own; lanes that are left over have no volume.
+/// Bodies of separate tetrahedra, each with its own corners. Unused lanes have no volume.
 struct Loose {
     std::vector<TetrahedronNodes> node;
     std::vector<ElementLane> volume;
@@ -67,7 +67,7 @@ struct Loose {
             *executor, {node, volume, {}, sliver, blocks, max_speed, travel, displacement, position, velocity, push}, h,
             memory, {block_uninverted_until, uninverted_until});
     }
-    /// The same by looking at every element.
+    /// Reference result: finds inversions by testing every element.
     Inversions by_hand() const {
         Inversions found;
         const std::vector<Vec3> after = next();
@@ -103,7 +103,7 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
         std::vector<Vec3> start = loose.position;
         for (int step = 0; step < 200; ++step) {
             for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
-                const Real speed = (step / 50) % 2 ? 0.002 : 0.2;  // m/s, of a node: slow times and quick ones
+                const Real speed = (step / 50) % 2 ? 0.002 : 0.2;  // speed of a node in slow and fast periods [m/s]
                 for (Index b = loose.blocks[body].begin; b < loose.blocks[body].end; ++b)
                     for (std::size_t l = 0; l < element_lanes; ++l)
                         for (std::size_t a = 0; a < 4; ++a) {
@@ -123,7 +123,7 @@ TEST_CASE("what turns inside out is found, as by looking at every element in eve
             with += found.count > 0;
             for (std::size_t b = 0; b < before.size(); ++b) skipped += before[b] == loose.block_uninverted_until[b];
             loose.position = loose.next();
-            // as measure_displacement does, without its origins
+            // updates as in measure_displacement, without its origins
             for (std::size_t body = 0; body < loose.blocks.size(); ++body) {
                 loose.travel[body] += h * loose.max_speed[body];
                 loose.max_speed[body] = 0;
@@ -139,12 +139,12 @@ TEST_CASE("an element is safe until its corners have moved by half of its width"
     Loose loose(random, {1});
     loose.position = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     REQUIRE(loose.find().count == 0);
-    CHECK(loose.uninverted_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // from the corner to the slanting face
+    CHECK(loose.uninverted_until[0] == Approx(std::sqrt(1.0 / 3) / 2));  // half the distance to the slanted face
     loose.travel[0] = 5;
     loose.displacement[0] = 0.1;
     REQUIRE(loose.find().count == 0);
     CHECK(loose.uninverted_until[0] == Approx(5 - 0.2 + std::sqrt(1.0 / 3) / 2));
-    // A flat tetrahedron whose two crossing edges are nearest: no corner is as near to its face.
+    // A flat tetrahedron whose two crossing edges are its closest pair: no corner is as close to the opposite face.
     loose.position = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}};
     if (loose.determinant(loose.position, 0, 0) < 0) std::swap(loose.position[0], loose.position[1]);
     loose.uninverted_until[0] = loose.block_uninverted_until[0] = -1;
@@ -178,7 +178,7 @@ TEST_CASE("a sliver that turns over is counted, but no step is shortened for it"
     CHECK(found.count == 2);
     CHECK(found.first);
 
-    loose.position[3].z() = -0.02;  // turned over long ago: the body counts as sound
+    loose.position[3].z() = -0.02;  // inverted long ago: the body counts as sound
     let_fall(0, 0);
     found = loose.find();
     CHECK(found.count == 1);

@@ -12,7 +12,7 @@ namespace skerry::test::find_unstrained_test {
 
 namespace {
 
-/// One body that flies.
+/// One body in free flight.
 struct Flight : ElasticBody {
     std::unique_ptr<Executor> executor = make_executor(Backend::serial, 1);
     std::vector<Range> body_nodes{{0, static_cast<Index>(position.size())}}, body_blocks{blocks};
@@ -100,7 +100,7 @@ TEST_CASE("what is strained, turned, mirrored or not a number is not unstrained"
 TEST_CASE("what is taken to be unstrained is looked at again in the end", "[unit]") {
     Flight body;
     REQUIRE(body.find());
-    body.position[20].y() += 1e-3;  // nobody said so
+    body.position[20].y() += 1e-3;  // this change is not announced
     for (int step = 1; step < unstrained_steps; ++step) CHECK(body.find());
     CHECK_FALSE(body.find());
 }

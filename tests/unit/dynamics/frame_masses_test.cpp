@@ -35,7 +35,7 @@ Real b_of(const ElasticBody& body, std::size_t element) {
     return body.elements.frame_mass[element / element_lanes][1][element % element_lanes];
 }
 
-/// The greatest eigenvalue of M^-1/2 (what all elements take, in a body turned by R) M^-1/2.
+/// Largest eigenvalue of M^-1/2 S M^-1/2, where S sums the masses taken by all elements of a body turned by R.
 Real part_of_mass_taken(const ElasticBody& body, const Mat3& R) {
     const auto size = 3 * static_cast<Eigen::Index>(body.position.size());
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
@@ -54,7 +54,7 @@ Real part_of_mass_taken(const ElasticBody& body, const Mat3& R) {
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum, Eigen::EigenvaluesOnly).eigenvalues()[size - 1];
 }
 
-/// omega^2 of the body by these masses alone, in a frame turned by R, 1/s^2.
+/// Bound of omega^2 of the body from the frame masses alone, in a frame turned by R [1/s^2].
 Real bound_in_frame(const ElasticBody& body, const Mat3& R) {
     Real highest = 0;
     for (auto b = static_cast<std::size_t>(body.blocks.begin); b < static_cast<std::size_t>(body.blocks.end); ++b) {
@@ -70,7 +70,7 @@ Mat3 turned(Real angle, const Vec3& axis) {
     return Eigen::AngleAxis<Real>(angle, axis.normalized()).toRotationMatrix();
 }
 
-/// Turns each cross-section of a box along x by an angle that grows along it: elements turn against each other.
+/// Turns each cross-section of a box by an angle proportional to x, so that elements turn against each other.
 void twist(ElasticBody& body, Real radians_per_metre) {
     for (Vec3& x : body.position) x = turned(radians_per_metre * x.x(), {1, 0, 0}) * x;
 }
@@ -105,12 +105,12 @@ TEST_CASE("the step in the frame of a body is below the limit and within an eigh
                     const Real limit = test::exact_limit(body), step = test::stable_step_of(body);
                     INFO(name_of(kind) << ", " << name_of(model) << ", jitter " << jitter << ", nu " << nu << ": "
                                        << step / limit);
-                    CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+                    CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: error of the differences
                     CHECK(step >= 0.87 * 0.9 * limit);
                     if (model == MaterialModel::linear) continue;
                     const Mat3 turn = turned(2.5, {1, -2, 0.5});
                     for (Vec3& x : body.position) x = turn * x + Vec3(1, 2, 3);
-                    CHECK(test::stable_step_of(body) == Approx(step).epsilon(0.003));  // what bisection leaves
+                    CHECK(test::stable_step_of(body) == Approx(step).epsilon(0.003));  // tolerance of the bisection
                 }
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("the bound in a frame is the highest eigenvalue of stiffness over mass
     const MaterialConstants& material = body.constants[0];
     Eigen::Matrix<double, 9, 9> H = Eigen::Matrix<double, 9, 9>::Zero();
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {  // of X: entry 3 column + row
+        for (int j = 0; j < 3; ++j) {  // by entries of X: index 3 column + row
             H(3 * j + i, 3 * j + i) += material.shear_modulus;
             H(3 * j + i, 3 * i + j) += material.shear_modulus;
             H(4 * i, 4 * j) += material.lame_lambda;
@@ -162,7 +162,7 @@ TEST_CASE("the bound in a frame is the highest eigenvalue of stiffness over mass
                         .eigenvalues()[8];
                 INFO(angle << ": " << bound[l] / exact);
                 CHECK(bound[l] >= exact * (1 - 1e-9));
-                CHECK(bound[l] <= exact * 1.004);  // what bisection leaves
+                CHECK(bound[l] <= exact * 1.004);  // tolerance of the bisection
             }
         }
     }
@@ -176,7 +176,7 @@ TEST_CASE("a body whose elements turn against each other goes by forms", "[unit]
     find_masses(body);
     const Real at_rest = test::stable_step_of(body);
     CHECK(at_rest > 1.2 * forms_at_rest);
-    twist(body, 2.5);  // the ends by three radians
+    twist(body, 2.5);  // the ends turn by three radians against each other
     const Real twisted = test::stable_step_of(body);
     CHECK(0.9 * 2 / std::sqrt(bound_in_frame(body, Mat3::Identity())) < 0.8 * twisted);
     std::ranges::fill(body.elements.frame_bound, Real(0));
@@ -188,7 +188,7 @@ TEST_CASE("what relaxes counts in the step in a frame", "[unit]") {
     material.loss_factor = 0.1;
     for (const ElementKind kind : test::element_kinds) {
         ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 5), material, Mat3::Identity(), kind);
-        for (Real& share : body.elements.relaxing_share) share = 0.5;  // at no rate: the springs push in full
+        for (Real& share : body.elements.relaxing_share) share = 0.5;  // relaxation rate 0: the springs act in full
         find_masses(body);
         const Real limit = test::exact_limit(body), step = test::stable_step_of(body);
         INFO(name_of(kind) << ": " << step / limit);

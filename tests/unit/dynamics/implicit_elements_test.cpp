@@ -1,4 +1,4 @@
-// Implicit elements and their matrices against dense ones made by the textbook (docs/methods/clusters.md 2, 3).
+// Implicit elements and their matrices against dense textbook matrices (docs/methods/clusters.md 2, 3).
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -24,9 +24,9 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-constexpr Real anything = std::numeric_limits<Real>::infinity();  // of a moment
+constexpr Real anything = std::numeric_limits<Real>::infinity();  // no limit on the moment
 
-/// A box with slivers, the implicit elements of which are found for a step that it does not stand.
+/// A box with slivers. Its implicit elements are found for a step at which the explicit box would be unstable.
 struct SliverBox {
     test::ElasticBody body;
     std::vector<Range> body_blocks;
@@ -54,11 +54,11 @@ struct SliverBox {
                        {body_blocks, cluster_step, body.elements.implicit_modulus, body.mass, body.inverse_mass},
                        clusters);
     }
-    /// What explicit elements stand now.
+    /// Present stable step of the explicit elements [s].
     Real explicit_step() {
         return stable_step(body.inputs(), body.blocks, body.position, body.mass, stiffness_sum).step;
     }
-    /// A of all nodes, by its definition.
+    /// Inertia matrix A over all nodes, by its definition.
     Matrix inertia() const {
         const auto n = static_cast<Eigen::Index>(body.position.size());
         Matrix A = Matrix::Zero(n, n);
@@ -73,7 +73,7 @@ struct SliverBox {
         }
         return A;
     }
-    /// The same, by node and component, with the clusters' inverses and the masses of all others.
+    /// Inverse of A by node and component, from the inverse matrices of clusters and the masses of all other nodes.
     Matrix inverse_inertia() const {
         const auto n = static_cast<Eigen::Index>(body.position.size());
         Matrix inverse = Matrix::Zero(n, n);
@@ -89,7 +89,7 @@ struct SliverBox {
         }
         return inverse;
     }
-    /// K at rest by differences of the forces, which are linear there to a part in 1e-6.
+    /// K at rest by differences of the forces, which are linear there to 1e-6.
     Matrix stiffness() {
         const auto executor = make_executor(Backend::serial, 1);
         const auto n = static_cast<Eigen::Index>(body.position.size());
@@ -140,7 +140,7 @@ TEST_CASE("with clusters the exact highest frequency stands the step", "[unit][c
             .eigenvalues()
             .maxCoeff();
     CHECK(step * std::sqrt(highest) <= 1.8);
-    // what the clusters are for
+    // purpose of the clusters: with plain masses the frequency is higher
     const Matrix M = by_component(
         Matrix(Eigen::Map<const Eigen::VectorXd>(box.body.mass.data(), static_cast<Eigen::Index>(box.body.mass.size()))
                    .asDiagonal()));
@@ -201,9 +201,9 @@ TEST_CASE("an element that stiffens raises its part of the inverse, and what is 
         }
         return energy;
     };
-    CHECK(stiffen(asleep) == 0);  // at rest they have what they need
+    CHECK(stiffen(asleep) == 0);  // at rest the moduli are sufficient
     CHECK(box.body.elements.implicit_modulus[0][0] == before[0][0]);
-    // two and a half times as long one way: the law's Hessian grows with the square
+    // stretched to 2.5 times in one direction: the law's Hessian grows with the square
     for (Vec3& x : box.body.position) x.z() *= 2.5;
     CHECK(worst_stiffening(box.body.inputs(), box.body.blocks, box.body.position, box.body.elements.implicit_modulus) >
           1);
@@ -223,7 +223,7 @@ TEST_CASE("an element that stiffens raises its part of the inverse, and what is 
     CHECK(booked == Approx(kinetic() - energy).epsilon(1e-9));
     for (std::size_t c = 0; c < box.clusters.size(); ++c)
         for (Index i = 0; i < static_cast<Index>(box.clusters.nodes[c].size()); ++i)
-            for (Index j = 0; j < i; ++j)  // what two contacts do to each other is the same
+            for (Index j = 0; j < i; ++j)  // the matrix is symmetric
                 CHECK(box.clusters.row(static_cast<Index>(c), i)[static_cast<std::size_t>(j)] ==
                       box.clusters.row(static_cast<Index>(c), j)[static_cast<std::size_t>(i)]);
     const Matrix product = box.inertia() * box.inverse_inertia();
@@ -238,14 +238,14 @@ TEST_CASE("few elements are implicit but those that need the most", "[unit][clus
     int implicit = 0;
     for (const ElementLane& modulus : box.body.elements.implicit_modulus)
         for (std::size_t l = 0; l < element_lanes; ++l) implicit += modulus[l] > 0;
-    // of 2,197. Giving up what is left shortest, whoever starves it, took 73 and 0.01
+    // of 2,197 elements. Giving up the elements with the shortest step instead takes 73 and a moment of 0.01.
     CHECK(implicit < 30);
     CHECK(box.share.moment < 0.003);
 }
 
 namespace {
 
-/// The search as docs/methods/clusters.md 3 tells it, and nothing kept from one step to the next.
+/// Plain version of the search in docs/methods/clusters.md 3, without state carried from step to step.
 class SimpleSearch {
 public:
     SimpleSearch(SliverBox& box, Real step) : box_(box), in_(box.body.inputs()), step_(step), own_(in_.blocks()) {
@@ -289,7 +289,7 @@ private:
         for_each_element([&](std::size_t e) { shortest = std::min(shortest, own(e)); });
         return started_ && shortest >= step_;
     }
-    /// sum_k S_k/m_k over the share.
+    /// sum_k S_k/m_k over the nodes k of an element, divided by its share.
     Real trace(std::size_t e) {
         Real sum = 0;
         for_each_node(e, [&](std::size_t n, Real) { sum += box_.stiffness_sum[n] / box_.body.mass[n]; });
@@ -369,7 +369,7 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
                 CHECK((box.body.elements.implicit_modulus[b][l] > 0) == (share == 0));
             }
         CHECK(std::min(box.explicit_step(), longer * box.plain_step) == longer * box.plain_step);
-        // what adds too much to the moment is not looked for to the end, and just as much is found
+        // A search that exceeds the moment limit stops early. A limit equal to the result does not change the result.
         REQUIRE(found.moment > 0);
         goal.most_moment = 0.99 * found.moment;
         CHECK(search.find(goal).moment > goal.most_moment);
@@ -383,7 +383,7 @@ TEST_CASE("masses at the nodes add to a moment of inertia as the square of an ed
         const test::ElasticBody body(mesh, material_constants(MaterialModel::linear, 1e5, 0.4, 1000));
         return moment_of_lumping(body.tetrahedra.node, body.tetrahedra.volume, body.position);
     };
-    // of one tetrahedron about its centre a fifth is right: sum x x^T/4 for sum x x^T/20
+    // One tetrahedron about its centre: lumping gives sum x x^T/4 instead of sum x x^T/20, a fifth of it.
     CHECK(of({{{1, 2, 3}, {2, 2, 3}, {1, 4, 3}, {1, 2, 6}}, {{0, 1, 2, 3}}}) == Approx(4));
     const auto of_box = [&](int cells) {
         const Mesh box = test::mirrored_box(0.3, cells);
@@ -391,7 +391,7 @@ TEST_CASE("masses at the nodes add to a moment of inertia as the square of an ed
     };
     const Real coarse = of_box(4), fine = of_box(8);
     CHECK(coarse / fine == Approx(4).epsilon(0.01));
-    // each cell of an even box: masses at the corners, c^2/4 along each axis, for c^2/12 of it
+    // Each cell of an even box has masses at its corners: c^2/4 along each axis instead of c^2/12.
     CHECK(fine == Approx(2.0 / 64).epsilon(0.01));
     CHECK(moment_of_lumping({}, {}, {}) == 0);
 }
@@ -401,7 +401,7 @@ TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][cluster
     for (const Index at : {0, 2, 4, 6, 7}) covered.offset.push_back(at);
     for (const Index t : {0, 1, 1, 2, 2, 9, 9}) covered.item.push_back(t);
     std::vector<ElementLane> modulus(1), leeway(2);
-    modulus[0][0] = modulus[0][1] = modulus[0][3] = 1e5;  // the third, of 2 and 9, is explicit
+    modulus[0][0] = modulus[0][1] = modulus[0][3] = 1e5;  // the third element (tetrahedra 2, 9) is explicit
     find_leeway(covered, modulus, implicit_leeway, leeway);
     for (std::size_t t = 0; t < 2 * element_lanes; ++t) {
         CAPTURE(t);
@@ -411,7 +411,7 @@ TEST_CASE("tetrahedra have leeway that implicit elements cover", "[unit][cluster
 
 namespace {
 
-/// What viscosity adds to the forces of a box: those of moving nodes less those of nodes at rest.
+/// Viscous forces of a box: forces of moving nodes minus forces of nodes at rest.
 std::vector<Vec3> viscous_forces(SliverBox& box, std::vector<std::uint8_t>& viscous) {
     const auto executor = make_executor(Backend::serial, 1);
     ElementInputs inputs = box.body.inputs();

@@ -1,4 +1,4 @@
-// The kick of nodes that one matrix couples, from one triangle of it, against one sum after the other.
+// The kick of nodes coupled by one matrix, computed from one triangle of it, against a row-by-row sum.
 #include "systems/dynamics/clusters/kick_clusters.h"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@ namespace skerry::test::kick_clusters_test {
 
 namespace {
 
-/// Clusters of these widths, of every other node, with any symmetric matrices.
+/// Clusters with these widths of every other node, with arbitrary symmetric matrices.
 struct KickedNodes {
     NodeClusters clusters;
     std::vector<Real> mass;
@@ -23,7 +23,7 @@ struct KickedNodes {
             const auto width = static_cast<std::size_t>(widths[c]);
             for (std::size_t k = 0; k < width; ++k) {
                 clusters.nodes.item.push_back(static_cast<Index>(mass.size()));
-                for (int neighbour = 0; neighbour < 2; ++neighbour) {  // one that is in the cluster, one that is not
+                for (int neighbour = 0; neighbour < 2; ++neighbour) {  // the first is in the cluster, the second is not
                     mass.push_back(1 + entry(random) / 2);
                     velocity.push_back(test::random_vector(random));
                     predicted.push_back(test::random_vector(random));
@@ -45,12 +45,12 @@ struct KickedNodes {
         Column<Vec3> impulse;
         Column<Real> work;
         CHECK(kick_clusters(*executor, {clusters, mass, asleep}, velocity, false, impulse, work, next));
-        std::vector<Vec3> again = predicted;  // with what the kick has left
+        std::vector<Vec3> again = predicted;  // with the impulse from the first kick
         CHECK(kick_clusters(*executor, {clusters, mass, asleep}, velocity, true, impulse, work, again));
         CHECK(again == next);
         return next;
     }
-    /// Row by row, node by node.
+    /// Reference result: row by row, node by node.
     std::vector<Vec3> kick_one_by_one() const {
         std::vector<Vec3> next = predicted;
         for (std::size_t c = 0; c < clusters.size(); ++c)
@@ -76,7 +76,7 @@ TEST_CASE("clusters of any width are kicked as row by row", "[unit][clusters]") 
     const KickedNodes nodes(widths);
     const std::vector<Vec3> next = nodes.kick({}), one_by_one = nodes.kick_one_by_one();
     for (std::size_t n = 0; n < next.size(); ++n) {
-        CHECK((next[n] - one_by_one[n]).norm() < 1e-13);  // of sums of up to 71 products of size 1
+        CHECK((next[n] - one_by_one[n]).norm() < 1e-13);  // rounding of sums of up to 71 products of size 1
         if (n % 2 == 1) CHECK(next[n] == nodes.predicted[n]);
     }
 }

@@ -1,5 +1,5 @@
-// Implicit bodies of large strain: elements by their laws against explicit bodies and differences, and steps by
-// Newton's method (docs/methods/implicit_bodies.md 8).
+// Implicit bodies of large strain: elements with their material laws against explicit bodies and differences, and steps
+// by Newton's method (docs/methods/implicit_bodies.md 8).
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -38,7 +38,7 @@ std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {
     return vectors;
 }
 
-/// m, by place: a bend of some ten degrees and a stretch, and noise.
+/// Displacements by place [m]: a bend of some ten degrees, a stretch, and noise.
 std::vector<Vec3> bent(const StiffBody& stiff, const ElasticBody& body, Real noise) {
     const std::vector<Vec3> by_node = random_vectors(stiff.size(), noise, 7);
     std::vector<Vec3> placed(stiff.size());
@@ -56,7 +56,7 @@ void hold_some(StiffBody& stiff) {
     stiff.hold(inverse_mass);
 }
 
-/// A step thrown from rest: nodes have velocities that would strain elements by some tenths.
+/// Prepares a step from `displacement`, with velocities that would strain elements by some tenths.
 void begin_step(StiffBody& stiff, const std::vector<Vec3>& displacement, const std::vector<Vec3>& velocity) {
     LargeStep& step = stiff.large_step;
     step.resize(stiff.size());
@@ -107,8 +107,8 @@ TEST_CASE("the tangent of an implicit body is the slope of its forces", "[dynami
     const ElasticBody body = rubber(model, kind);
     StiffBody stiff = stiff_body_of(body);
     hold_some(stiff);
-    // Stretched, so that nothing of it is negative; but not where an element has only the volumetric part, in which
-    // something is.
+    // The stretch keeps the Hessian without negative eigenvalues. An element with only the volumetric part would have
+    // some even then, so then the body is not stretched.
     const bool parted =
         std::ranges::any_of(body.list.part, [](ElementPart part) { return part == ElementPart::volume; });
     const Real stretch = parted && model == MaterialModel::stable_neo_hookean ? 0 : 1;
@@ -123,7 +123,7 @@ TEST_CASE("the tangent of an implicit body is the slope of its forces", "[dynami
     }
     constexpr Real inertia = 1.1, stiffness = 1e-4;
     REQUIRE(stiff.prepare_tangent(inertia, stiffness, u));
-    // A A^-1 r = r, with A by differences
+    // tests A A^-1 r = r, with A by differences
     std::vector<Vec3> impulse = random_vectors(stiff.size(), 1, 11);
     for (std::size_t k = 0; k < stiff.size(); ++k)
         if (stiff.holds(k)) impulse[k].setZero();
@@ -170,7 +170,7 @@ TEST_CASE("a free implicit body of large strain answers without rigid motion, an
         back += impulse[k].dot(other_velocity[k]);
         work += impulse[k].dot(velocity[k]);
     }
-    // of the solid, whose velocities go linearly from node to node
+    // angular momentum of the solid, whose velocity is linear between nodes
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
         Vec3 places = Vec3::Zero(), velocities = Vec3::Zero();
         for (const Index n : body.mesh.tetrahedra[t]) {
@@ -186,7 +186,7 @@ TEST_CASE("a free implicit body of large strain answers without rigid motion, an
     CHECK(moment.norm() < 1e-13 * sum.norm());
     CHECK(there == Approx(back).epsilon(1e-10));
     CHECK(work > 0);
-    // after it the matrix of small strain is what it was
+    // Afterwards the matrix of small strain is unchanged.
     StiffBody small = stiff_body_of(body);
     REQUIRE(small.prepare(1, 1e-3));
     REQUIRE(stiff.prepare(1, 1e-3));
@@ -201,16 +201,16 @@ TEST_CASE("the solid of an implicit body turns as its tetrahedra do, and its fra
     const std::vector<Vec3> by_place = bent(stiff, body, 0.01);
     BodyShape shape;
     stiff.find_shape(by_place, shape);
-    // arms are those of a body that turns: sum arm x (w x y) = I w, and their energy w I w / 2
+    // Arms are those of a rotating body: sum arm x (w x y) = I w, with energy w I w / 2.
     const Vec3 spin(0.3, -1, 2);
     std::vector<Vec3> turning(stiff.size());
     for (std::size_t k = 0; k < stiff.size(); ++k) turning[k] = spin.cross(shape.position[k]);
     CHECK((shape.angular_momentum(turning) - shape.inertia() * spin).norm() < 1e-13 * shape.inertia().norm());
-    // what it turns less by than lumped masses: those lie at the corners
+    // The inertia is smaller than that of lumped masses, which lie at the corners.
     Real lumped = 0;
     for (std::size_t k = 0; k < stiff.size(); ++k) lumped += stiff.mass(k) * turning[k].squaredNorm();
     CHECK(spin.dot(shape.inertia() * spin) < 0.95 * lumped);
-    // turned by much, and back
+    // turned by a large angle, and back
     const Mat3 turn = Eigen::AngleAxis<Real>(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     std::vector<Vec3> plain(stiff.size()), turned(stiff.size());
     Vec3 center = Vec3::Zero();
@@ -229,7 +229,7 @@ TEST_CASE("the solid of an implicit body turns as its tetrahedra do, and its fra
 TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dynamics][implicit]") {
     const auto model = GENERATE(MaterialModel::corotational, MaterialModel::stable_neo_hookean);
     const bool held = GENERATE(true, false);
-    const Real noise = GENERATE(0.0, 0.03);  // m, of cells of 0.1 m: some are inside out
+    const Real noise = GENERATE(0.0, 0.03);  // for cells of 0.1 m: some elements are inverted [m]
     CAPTURE(model, held, noise);
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);
@@ -250,17 +250,17 @@ TEST_CASE("a step of large strain is solved, held or free, crushed or not", "[dy
     CHECK(step.counts.steps > 1);
     CHECK(step.counts.factors >= 1);
     CHECK(step.counts.factors <= step.counts.steps + 1);
-    // what is left of the equation, as what A^-1 makes of it, against the whole kick
+    // residual of the equation, multiplied by A^-1, relative to the whole kick
     std::vector<Vec3> left(stiff.size()), at_end(stiff.size()), force(stiff.size());
     for (std::size_t k = 0; k < stiff.size(); ++k) at_end[k] = step.carried[k] + within * step.velocity[k];
     stiff.elements().forces(at_end, force);
-    if (!held) {  // what drives nodes out is the slope of the energy of the spin
+    if (!held) {  // the centrifugal force is the slope of the spin's energy
         BodyShape shape;
         const auto of_spin = [&] {
             stiff.find_shape(at_end, shape);
             return step.angular_momentum.dot(shape.inertia().inverse() * step.angular_momentum) / 2;
         };
-        constexpr Real along = 1e-5;  // m
+        constexpr Real along = 1e-5;  // [m]
         for (std::size_t k = 0; k < stiff.size(); ++k)
             for (Index axis = 0; axis < 3; ++axis) {
                 at_end[k][axis] += along;
@@ -299,8 +299,8 @@ TEST_CASE("that strain becomes large is seen by bounds as by looking each time",
     const auto model = GENERATE(from_range(std::begin(test::material_models), std::end(test::material_models)));
     const ElasticBody body = rubber(model);
     StiffBody stiff = stiff_body_of(body);
-    const std::vector<Vec3> shape = random_vectors(stiff.size(), 0.02, 17);  // rough: bounds are near
-    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);                  // kg m^2/s
+    const std::vector<Vec3> shape = random_vectors(stiff.size(), 0.02, 17);  // rough, so that bounds are nearly reached
+    const Vec3 spin = GENERATE(0.0, 0.4) * Vec3(1, 0.5, 2);                  // [kg m^2/s]
     int large = 0;
     for (int k = 0; k < 600; ++k) {
         const Real size = 0.2 * std::pow(std::sin(0.01 * k), 2);

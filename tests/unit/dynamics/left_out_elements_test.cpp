@@ -1,4 +1,4 @@
-// Elements of bodies that do nothing in a step, and the kick by the forces of the others.
+// Skipped elements of bodies that are inactive in a step, and the kick by the forces of the others.
 #include <catch2/catch.hpp>
 
 #include "systems/dynamics/elements/keep_memory.h"
@@ -23,7 +23,7 @@ struct SliverBody : ElasticBody {
         compute_element_forces(*executor, inputs, position, velocity, 1e-3, 0, elements.rotation,
                                {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
     }
-    /// Gives the patches to two bodies in turns, as if they were of two.
+    /// Assigns the patches alternately to two bodies.
     std::vector<Index> bodies_in_turns() const {
         std::vector<Index> body(elements.first.size());
         for (std::size_t p = 0; p < patches.blocks.size(); ++p)

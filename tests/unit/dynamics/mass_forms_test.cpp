@@ -24,7 +24,7 @@ void find_forms(ElasticBody& body, Real most_products = products_of_group) {
                     body.elements.mass_form.span());
 }
 
-/// The greatest eigenvalue of M^-1/2 sum_e G Q^-1 G^T M^-1/2.
+/// Largest eigenvalue of M^-1/2 sum_e G Q^-1 G^T M^-1/2.
 Real part_of_mass_taken(const ElasticBody& body) {
     const auto size = static_cast<Eigen::Index>(body.position.size());
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
@@ -57,7 +57,7 @@ TEST_CASE("elements take no more mass than there is, and nearly all", "[unit]") 
             INFO(name_of(kind) << ", jitter " << jitter << ": " << whole);
             CHECK(whole <= 1 + 1e-9);
             CHECK(whole >= 0.97);
-            find_forms(body, 2e4);  // in groups, of which each has its part of the nodes between them
+            find_forms(body, 2e4);  // in groups, each with a part of the masses of shared nodes
             const Real in_groups = part_of_mass_taken(body);
             INFO("in groups: " << in_groups);
             CHECK(in_groups <= 1 + 1e-9);
@@ -67,7 +67,8 @@ TEST_CASE("elements take no more mass than there is, and nearly all", "[unit]") 
 }
 
 TEST_CASE("the step by mass forms is below the limit and near it", "[unit][long]") {
-    // docs/methods/stable_step.md 2.3: linear elements 0.7 to 0.9 of the limit at rest, smoothed ones 0.8 and more
+    // docs/methods/stable_step.md 2.3: linear elements reach 0.7 to 0.9 of the limit at rest, smoothed ones at least
+    // 0.8.
     for (const ElementKind kind : test::element_kinds)
         for (const MaterialModel model : test::material_models)
             for (const Real jitter : {0.0, 0.3})
@@ -79,7 +80,7 @@ TEST_CASE("the step by mass forms is below the limit and near it", "[unit][long]
                     const Real limit = test::exact_limit(body), step = test::stable_step_of(body);
                     INFO(name_of(kind) << ", " << name_of(model) << ", jitter " << jitter << ", nu " << nu << ": "
                                        << step / limit);
-                    CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+                    CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: error of the differences
                     CHECK(step >= (kind == ElementKind::linear ? 0.6 : 0.75) * 0.9 * limit);
                 }
 }
@@ -115,22 +116,22 @@ TEST_CASE("mass forms turn with nothing and make the step of smoothed elements a
     CHECK(by_forms > 1.25 * by_shares);
     const Eigen::AngleAxis<Real> turn(1.1, Vec3(3, 1, -2).normalized());
     for (Vec3& x : body.position) x = turn * x;
-    CHECK(test::stable_step_of(body) == Approx(by_forms).epsilon(0.003));  // what bisection leaves
+    CHECK(test::stable_step_of(body) == Approx(by_forms).epsilon(0.003));  // tolerance of the bisection
 }
 
 TEST_CASE("what relaxes counts in the step by mass forms", "[unit]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
     ElasticBody body(jittered_box({4, 3, 3}, 0.1, 0.1, 5), material, Mat3::Identity(), ElementKind::edge_node_smoothed);
-    for (Real& share : body.elements.relaxing_share) share = 0.5;  // at no rate: the springs push in full
+    for (Real& share : body.elements.relaxing_share) share = 0.5;  // relaxation rate 0: the springs act in full
     find_forms(body);
     const Real limit = test::exact_limit(body), step = test::stable_step_of(body);
     CHECK(step <= 0.9 * limit * (1 + 1e-6));
     CHECK(step >= 0.75 * 0.9 * limit);
 }
 
-// Springs count by 2 / (2 + h r). Most elements are compared with the step that others allow, and no more is known of
-// them: none that does not stand it may pass.
+// Springs count by 2 / (2 + h r). Most elements are only compared with the step that others allow. No element that is
+// unstable at that step may pass.
 TEST_CASE("the step that is found is one that all elements stand as they relax in it", "[unit][long]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
@@ -147,7 +148,7 @@ TEST_CASE("the step that is found is one that all elements stand as they relax i
             const Real step = test::stable_step_of(body);
             INFO(name_of(kind) << (by_forms ? ", forms" : ", shares"));
 
-            // each element looked at by itself, with the same sharpness
+            // each element evaluated by itself, with equal sharpness
             std::vector<Real> sums(body.position.size());
             Real shortest = std::numeric_limits<Real>::infinity();
             std::vector<ElementLane> steps(body.elements.volume.size());
@@ -161,13 +162,13 @@ TEST_CASE("the step that is found is one that all elements stand as they relax i
                         shortest =
                             std::min(shortest, by_forms ? step_times_frequency / std::sqrt(squared[l]) : steps[b][l]);
             }
-            CHECK(step >= shortest * (1 - 0.003));  // what bisection leaves
-            // springs count at the step that is found, not at the shorter one of springs in full; the bound by the
-            // trace is 7 % short at most, that of forms 0.3 %
+            CHECK(step >= shortest * (1 - 0.003));  // tolerance of the bisection
+            // Springs count at the step that is found, not at the shorter step of full springs. The bound by the trace
+            // is at most 7 % too short, that of forms 0.3 %.
             CHECK(step <= shortest * (by_forms ? 1.01 : 1.08));
             INFO("of the shortest: " << step / shortest);
 
-            // the whole body, with what counts in a step of this length
+            // the whole body, with the part of the springs that counts in a step of this length
             for (std::size_t b = 0; b < body.elements.relaxing_share.size(); ++b)
                 body.elements.relaxing_share[b] *= 2 / (2 + step * body.elements.relaxation_rate[b][0]);
             const Real limit = test::exact_limit(body);

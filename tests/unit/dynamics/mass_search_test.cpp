@@ -11,7 +11,7 @@ namespace skerry::test::mass_search_test {
 
 namespace {
 
-/// A symmetric matrix: of each row the band from the diagonal on.
+/// A symmetric band matrix. Each row stores its entries from the diagonal on.
 struct Band {
     std::size_t size, width, group;
     std::vector<Real> entry;
@@ -24,7 +24,7 @@ struct Band {
         };
         return decomposition.is_below({size, width, group, add_rows}, limit);
     }
-    /// The same all at once, pivot by pivot.
+    /// Reference result: eliminates the whole matrix at once, pivot by pivot.
     bool is_plainly_below(Real limit) const {
         std::vector<Real> rest = entry;
         for (std::size_t k = 0; k < size; ++k)
@@ -43,7 +43,7 @@ struct Band {
     }
 };
 
-/// Rows reach as far as the band goes or, often, less far; some have nothing beside the diagonal.
+/// Rows fill the band or, often, less of it; some have only the diagonal.
 Band random_band(std::size_t size, std::size_t width, std::size_t group, SplitMix& random) {
     Band band{size, width, group, std::vector<Real>(size * width)};
     for (std::size_t k = 0; k < size; ++k) {
@@ -66,7 +66,7 @@ TEST_CASE("a band is decomposed in a window to the bit as all at once", "[unit]"
                 if (width > group * groups) continue;
                 const Band band = random_band(group * groups, width, group, random);
                 INFO(group << " rows, " << groups << " times, " << width << " wide");
-                // between the last limit that is too low and the first that is not, which are neighbours
+                // bisects to the two neighbouring numbers between which the answer changes
                 Real low = 0, high = 1;
                 while (!band.is_plainly_below(high)) high *= 2;
                 CHECK(band.is_below(high, decomposition));

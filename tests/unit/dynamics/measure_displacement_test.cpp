@@ -10,7 +10,7 @@ namespace skerry::test::measure_displacement_test {
 
 namespace {
 
-/// One body of some nodes in blocks of its own.
+/// One body of some nodes in its own blocks.
 struct Cloud {
     std::vector<Range> node_blocks{{0, 2}};
     std::vector<Index> block_begin{0, 256}, block_end{256, 300};
@@ -79,7 +79,7 @@ TEST_CASE("a body that flies does not travel in its frame, whose way is that of 
     const Vec3 speed(3, -1, 2);
     std::ranges::fill(cloud.velocity, speed);
     cloud.rebase[0] = 1;
-    cloud.measure(0);  // the frame learns of it
+    cloud.measure(0);  // the frame takes its new velocity
     CHECK(cloud.frame[0].velocity == speed);
     for (int i = 0; i < 100; ++i) {
         for (Vec3& x : cloud.position) x += 0.01 * speed;
@@ -125,7 +125,7 @@ TEST_CASE(
         if (i % 20 == 0)
             moments.push_back({a.position, b.position, travel - 2 * (a.displacement[0] + b.displacement[0])});
     }
-    CHECK(path < 3);  // each went three metres
+    CHECK(path < 3);  // each node went three metres
 }
 
 TEST_CASE("a request sets the displacement to zero and is taken back", "[unit]") {
@@ -142,10 +142,10 @@ TEST_CASE("a request sets the displacement to zero and is taken back", "[unit]")
 TEST_CASE("the speed in a new frame is that of the nodes in it", "[unit]") {
     Cloud cloud;
     cloud.velocity[7].x() = 2;
-    cloud.frame[0].velocity.x() = 1;  // halfway: no node is faster than 1 m/s in it
+    cloud.frame[0].velocity.x() = 1;  // halfway: relative to it no node is faster than 1 m/s
     cloud.frame_speed[0] = 1;
     cloud.measure(1e-3);
-    CHECK(cloud.frame_speed[0] == 1);  // that of the step
+    CHECK(cloud.frame_speed[0] == 1);  // frame speed of this step
     cloud.rebase[0] = 1;
     cloud.measure(1e-3);
     REQUIRE(cloud.frame[0].velocity.x() == Approx(2.0 / 300));

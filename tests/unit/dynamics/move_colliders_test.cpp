@@ -31,7 +31,7 @@ TEST_CASE("constant velocities move and turn it from its initial pose", "[unit]"
     const RigidPose pose = pose_at(script, {}, start, 0.5);
     CHECK((pose.position - Vec3(1.5, 2, 3)).norm() <= 1e-15);
     CHECK((pose.rotation - rotation_matrix(Vec3(0, 0, 1)) * start.rotation).norm() <= 1e-15);
-    // even when a step is many turns
+    // also if a step contains many turns
     CHECK(motion_of_step(script, {}, start, 0.5, 10).angular_velocity == Vec3(0, 0, 2));
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("two keys about one axis may be several turns apart", "[unit]") {
 TEST_CASE("the velocities of a step lead to the pose at its end", "[unit]") {
     const std::vector<Keyframe> keys{
         {0, Vec3(0, 0, 0), Vec3(0.4, 0, 0)}, {1, Vec3(2, 4, 0), Vec3(0, 0.9, 0.2)}, {2, Vec3(0, 0, 1), Vec3(1, 1, 0)}};
-    const Real t = 0.95, h = 0.1;  // across a key
+    const Real t = 0.95, h = 0.1;  // the step crosses a key
     const RigidMotion motion = motion_of_step(keys_of(keys), keys, start, t, h);
     const RigidPose end = pose_at(keys_of(keys), keys, start, t + h);
     CHECK((motion.position + h * motion.velocity - end.position).norm() <= 1e-15);

@@ -33,7 +33,7 @@ struct Nodes {
         for (std::size_t n = 0; n < count; n += 3) {
             begin.push_back(static_cast<Index>(n));
             end.push_back(static_cast<Index>(std::min(n + 3, count)));
-            body.push_back(n >= 3);  // the first block is a body of its own
+            body.push_back(n >= 3);  // the first block is a separate body
         }
         displacement_squared.resize(begin.size());
     }
@@ -59,7 +59,7 @@ TEST_CASE("a kick adds h force over mass, and nothing to a pinned node", "[unit]
     nodes.predict(0.25);
     CHECK(nodes.next[0] == Vec3(1.125, 0.25, 0.375));
     CHECK(nodes.next[1] == Vec3(0, 1, 0));
-    CHECK(nodes.next[2] == Vec3(0, 0, 1));  // a pinned node stays put even under a force that is no number
+    CHECK(nodes.next[2] == Vec3(0, 0, 1));  // a pinned node stays in place even under a NaN force
     CHECK(nodes.force[1] == Vec3(1, 2, 3));
     predict_velocity(*nodes.executor, {}, {}, 0.25, {}, {});
 }

@@ -1,4 +1,4 @@
-// Rigid bodies that turn freely (docs/methods/rigid_bodies.md 2).
+// Free rotation of rigid bodies (docs/methods/rigid_bodies.md 2).
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@ namespace skerry::test::rigid_motion_test {
 
 namespace {
 
-const Vec3 moments(1, 2, 3);  // kg m^2
+const Vec3 moments(1, 2, 3);  // [kg m^2]
 
 Mat3 turned_for(Mat3 rotation, const Vec3& angular_momentum, Real seconds, int steps) {
     for (int k = 0; k < steps; ++k)
@@ -25,7 +25,7 @@ Real energy(const Mat3& rotation, const Vec3& angular_momentum) {
 }  // namespace
 
 TEST_CASE("a free top keeps its energy to second order, for ever", "[dynamics][rigid]") {
-    const Vec3 angular_momentum = moments.cwiseProduct(Vec3(0.3, 5, 0.2));  // near the middle axis: it tumbles
+    const Vec3 angular_momentum = moments.cwiseProduct(Vec3(0.3, 5, 0.2));  // near the middle axis: the body tumbles
     const auto worst = [&](Real h) {
         Mat3 rotation = Mat3::Identity();
         const Real start = energy(rotation, angular_momentum);
@@ -69,7 +69,7 @@ TEST_CASE("a wing nut turns over in the time that elliptic functions give", "[dy
     const Real period = 4 * std::comp_ellint_1(k) / std::abs(p);
     Mat3 rotation = Mat3::Identity();
     const Real h = 1e-3;
-    std::vector<Real> turns;  // s, at which the momentum passes from one side of the middle axis to the other
+    std::vector<Real> turns;  // times when the momentum changes its side of the middle axis [s]
     Real before = (rotation.transpose() * angular_momentum)[1];
     for (int step = 1; step * h < 3 * period; ++step) {
         rotation = turned_freely(rotation, moments, angular_momentum, h);

@@ -16,14 +16,14 @@ using test::jittered_box;
 namespace {
 
 StableStep step_of(const ElasticBody& body) {
-    std::vector<Real> scratch(body.position.size(), 1e300);  // what was there before must not matter
+    std::vector<Real> scratch(body.position.size(), 1e300);  // old contents must not matter
     return stable_step(body.inputs(), body.blocks, body.position, body.mass, scratch);
 }
 
 }  // namespace
 
 TEST_CASE("the stable step is never above the limit and not far below it", "[unit]") {
-    // docs/methods/stable_step.md 2: 0.60 to 0.83 of the exact limit, of which 0.9 are used here.
+    // docs/methods/stable_step.md 2: 0.60 to 0.83 of the exact limit; the step uses 0.9 of that.
     for (MaterialModel model : test::material_models) {
         for (Real jitter : {0.0, 0.1, 0.3}) {
             for (Real nu : {0.0, 0.3, 0.45, 0.499}) {
@@ -32,7 +32,7 @@ TEST_CASE("the stable step is never above the limit and not far below it", "[uni
                 const Real limit = 2 / std::sqrt(exact_frequency_squared(body));
                 const Real step = step_of(body).step;
                 INFO("model " << name_of(model) << " jitter " << jitter << " nu " << nu << ": " << step / limit);
-                CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: the differences
+                CHECK(step <= 0.9 * limit * (1 + 1e-6));  // 1e-6: error of the differences
                 CHECK(step >= 0.6 * 0.9 * limit);
             }
         }
@@ -67,17 +67,17 @@ TEST_CASE(
                              material_constants(MaterialModel::stable_neo_hookean, 1e5, nu, 1000));
             std::mt19937_64 random(15);
             for (Vec3& x : body.position) x = stretch.cwiseProduct(x) + 0.002 * test::random_vector(random);
-            const Real limit = test::exact_limit(body);  // not a number where nothing pushes back
+            const Real limit = test::exact_limit(body);  // NaN if no force is restoring
             const Real step = step_of(body).step;
             INFO("nu " << nu << " stretch " << stretch.transpose() << ": " << step / limit);
             CHECK(!(step > 0.9 * limit * (1 + 1e-5)));
-            CHECK(std::isfinite(step));  // pressed to a point it is soft, but counts as no softer in shear than at rest
+            CHECK(std::isfinite(step));  // compressed to a point: soft, but no softer in shear than at rest
         }
 }
 
 TEST_CASE("a sliver does not ruin the step", "[unit]") {
-    // A free node almost in the plane of its neighbours' faces: the usual element bound drops with the altitude, the
-    // shared mass does not.
+    // A free node lies almost in the plane of its neighbours' faces. The usual element bound drops with the altitude,
+    // the bound with shared masses does not.
     const MaterialConstants material = material_constants(MaterialModel::linear, 1e5, 0.3, 1000);
     ElasticBody even(jittered_box({4, 4, 4}, 0.1, 0, 1), material),
         slivers(jittered_box({4, 4, 4}, 0.1, 0.35, 3, 1e-3), material);

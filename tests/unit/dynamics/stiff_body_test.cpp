@@ -1,4 +1,4 @@
-// The elasticity of implicit bodies against the forces of explicit ones, and against dense algebra
+// Elasticity of implicit bodies against the forces of explicit bodies and against dense algebra
 // (docs/methods/implicit_bodies.md 2, 3).
 #include "systems/dynamics/implicit/stiff_body.h"
 
@@ -33,14 +33,14 @@ std::vector<Vec3> random_vectors(std::size_t count, Real size, unsigned seed) {
     return vectors;
 }
 
-/// By place, from by node.
+/// Reorders values from node order to place order.
 std::vector<Vec3> in_places(const StiffBody& stiff, const std::vector<Vec3>& by_node) {
     std::vector<Vec3> placed(by_node.size());
     for (std::size_t n = 0; n < by_node.size(); ++n) placed[static_cast<std::size_t>(stiff.place(n))] = by_node[n];
     return placed;
 }
 
-/// A = inertia M + stiffness K by columns of K.
+/// A = inertia M + stiffness K, from the columns of K.
 Eigen::MatrixXd dense_matrix(const StiffBody& stiff, Real inertia, Real stiffness) {
     const std::size_t n = stiff.size();
     Eigen::MatrixXd matrix(3 * n, 3 * n);
@@ -90,12 +90,12 @@ TEST_CASE("an implicit body answers impulses by A^-1, without rigid motion", "[d
     const Eigen::MatrixXd matrix = dense_matrix(stiff, 1.2, h * h);
     const std::size_t n = stiff.size();
     std::vector<Vec3> impulse = random_vectors(n, 1, 5);
-    // momentum and moment out of it first, so that A^-1 gives no rigid motion
+    // Momentum and angular momentum are removed first, so that A^-1 gives no rigid motion.
     std::vector<Vec3> velocity = impulse;
     stiff.respond(velocity);
     Eigen::VectorXd elastic(3 * n);
     for (std::size_t k = 0; k < n; ++k) elastic.segment<3>(static_cast<Eigen::Index>(3 * k)) = velocity[k];
-    const Eigen::VectorXd given = matrix * elastic;  // what of the impulse is elastic
+    const Eigen::VectorXd given = matrix * elastic;  // elastic part of the impulse
     Vec3 momentum = Vec3::Zero(), sum = Vec3::Zero(), moment = Vec3::Zero();
     const std::vector<Vec3> position = in_places(stiff, body.position);
     Vec3 center = Vec3::Zero();
@@ -111,7 +111,7 @@ TEST_CASE("an implicit body answers impulses by A^-1, without rigid motion", "[d
     CHECK(momentum.norm() < 1e-12);
     CHECK(sum.norm() < 1e-11);
     CHECK(moment.norm() < 1e-11);
-    // the rest of the impulse is a rigid motion of the masses
+    // The rest of the impulse is a rigid motion of the masses.
     Vec3 left = Vec3::Zero();
     std::vector<Vec3> rest(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -139,7 +139,7 @@ TEST_CASE("columns are answers to unit impulses, kept or calculated again", "[dy
     CHECK(!std::ranges::equal(stiff.column(7), column));
     REQUIRE(stiff.prepare(1, 1e-4));
     CHECK(std::ranges::equal(stiff.column(7), column));
-    // symmetric: what 7 gives 3 is what 3 gives 7
+    // symmetric: the response at 3 to an impulse at 7 is the transpose of the response at 7 to one at 3
     const Mat3 there = stiff.column(7)[static_cast<std::size_t>(stiff.place(3))],
                back = stiff.column(3)[static_cast<std::size_t>(stiff.place(7))];
     CHECK((there - back.transpose()).norm() < 1e-12 * there.norm());
@@ -168,7 +168,7 @@ TEST_CASE("an implicit body that is held responds as the matrix of its free node
     const Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXd>(impulse.data()->data(), matrix.rows());
     CHECK((found - expected).norm() < 1e-12 * expected.norm());
     CHECK(std::ranges::all_of(stiff.column(5), [](const Mat3& of_node) { return of_node.isZero(0); }));
-    // let go it is what it was
+    // After its release the body equals one that was never held.
     stiff.hold(std::vector<Real>(stiff.size(), 1));
     REQUIRE(stiff.prepare(1, 1e-4));
     StiffBody never = stiff_body_of(body);
@@ -205,7 +205,7 @@ TEST_CASE("responses of touched nodes are the columns of those nodes, whatever w
     const std::vector<Index> some{first + 1, first + 7, first + 20}, others{first, first + 7},
         more{first, first + 1, first + 7, first + 26};
     for (const std::vector<Index>* nodes : {&some, &some, &others, &more, &some}) check(*nodes);
-    REQUIRE(stiff.prepare(1, 1e-6));  // another factor: nothing of the old one
+    REQUIRE(stiff.prepare(1, 1e-6));  // another factor: no old column may be used
     check(some);
     std::vector<Real> inverse_mass(stiff.size(), 1);
     for (const std::size_t node : {2u, 5u, 7u}) inverse_mass[node] = 0;
@@ -226,7 +226,7 @@ TEST_CASE("columns of all nodes that a step touches are kept, however many", "[d
     others.back() = static_cast<Index>(count - 1);
     stiff.responses(most, 0);
     CHECK(stiff.columns_made() == most.size());
-    stiff.responses(others, 0);  // one more, in the place of the one that is left out
+    stiff.responses(others, 0);  // one more column, in the place of the unused one
     CHECK(stiff.columns_made() == most.size() + 1);
     stiff.responses(most, 0);
     CHECK(stiff.columns_made() == most.size() + 2);

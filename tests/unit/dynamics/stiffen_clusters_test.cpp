@@ -1,4 +1,5 @@
-// Which clusters follow their elements, against a look at every element (docs/methods/clusters.md 3).
+// Selection of the clusters that stiffen with their elements, against a test of every element (docs/methods/clusters.md
+// 3).
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -19,7 +20,7 @@ namespace skerry::test::stiffen_clusters_test {
 
 namespace {
 
-/// A box with slivers and the clusters that let it stand three times its step.
+/// A box with slivers and the clusters that keep it stable at three times its step.
 struct SliverBox {
     test::ElasticBody body;
     std::vector<Range> body_blocks;
@@ -62,7 +63,7 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
     int quiet = 0, raised = 0;
     std::size_t fewest = stiffening.size();
     for (const Real stretch : {1.0, 1.1, 1.25, 1.3, 1.35, 1.6, 1.3, 2.4, 3.0}) {
-        // more on one side of the body than on the other
+        // more strain on one side of the body than on the other
         for (std::size_t n = 0; n < rest.size(); ++n)
             box.body.position[n].x() = rest[n].x() * (1 + (stretch - 1) * (1 + 3 * rest[n].x()));
         ElementInputs inputs = box.body.inputs();
@@ -92,8 +93,8 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
     CHECK(fewest < stiffening.size() / 2);
 }
 
-// Found in thrown meshes: with the velocity that it had an element got twice the energy each time that it stiffened,
-// and knots of a mesh came to 1e5 times their inertia.
+// If a stiffening element kept its velocity, its energy would double each time, and knots of a mesh would reach 1e5
+// times their inertia. Therefore the momentum is kept.
 TEST_CASE("elements that stiffen are deformed with the momentum that they had, and what that takes is booked",
           "[unit][clusters]") {
     constexpr Real kick = 1e-4;
@@ -104,7 +105,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
     for (std::size_t n = 0; n < box.body.position.size(); ++n) {
         box.body.velocity[n] = test::random_vector(random);
         Real& x = box.body.position[n].x();
-        x *= 1 + 1.4 * (1 + 3 * x);  // more on one side of the body than on the other
+        x *= 1 + 1.4 * (1 + 3 * x);  // more strain on one side of the body than on the other
     }
     const std::vector<std::uint8_t> asleep{0};
     const StiffenInputs bodies{box.body_blocks,   box.cluster_step,  asleep,
@@ -131,7 +132,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
         stiffen_clusters(box.body.inputs(), bodies, kick, patches, {box.body.elements.implicit_modulus, box.clusters});
     REQUIRE(brought > 0);
 
-    std::vector<Vec3> given(box.body.position.size(), Vec3::Zero());  // N s
+    std::vector<Vec3> given(box.body.position.size(), Vec3::Zero());  // [N s]
     Vec3 sum = Vec3::Zero();
     for (std::size_t s = 0; s < patches.node.size(); ++s) {
         Vec3 more;
@@ -141,7 +142,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
         sum += more;
     }
     std::vector<Vec3> velocity_next(box.body.velocity.begin(), box.body.velocity.end());
-    Real before = 0, after = 0, largest = 0;  // J, J, N s
+    Real before = 0, after = 0, largest = 0;  // [J], [J], [N s]
     for (std::size_t c = 0; c < box.clusters.size(); ++c) {
         const auto nodes = box.clusters.nodes[c];
         const auto count = static_cast<Eigen::Index>(nodes.size());
@@ -166,7 +167,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
             velocity_next[static_cast<std::size_t>(nodes[static_cast<std::size_t>(k)])] = next.row(k).transpose();
     }
     CHECK(sum.norm() < 1e-12 * largest);
-    Real taken = 0;  // J
+    Real taken = 0;  // [J]
     for (std::size_t b = 0; b < blocks; ++b) {
         const LaneMat3<Real8> rate = deformation_of(inputs, b, box.body.velocity),
                               rate_next = deformation_of(inputs, b, velocity_next);
@@ -184,7 +185,7 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
 
 TEST_CASE("whether elements are less stiff than they are taken to be is what the bound on their stiffness says",
           "[unit][clusters]") {
-    constexpr Real looseness = 1.16;  // of the bound: 9^(1/16)
+    constexpr Real looseness = 1.16;  // ratio to the bound: 9^(1/16)
     SliverBox box(ElementKind::edge_node_smoothed);
     const ElementInputs inputs = box.body.inputs();
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
@@ -196,8 +197,8 @@ TEST_CASE("whether elements are less stiff than they are taken to be is what the
         const Real8 bound = stiffness_of(inputs, b, F, q);
         CHECK(less_stiff_than(inputs, b, F, bound, 1.001, q));
         CHECK(less_stiff_than(inputs, b, F, Real8(2.0 * bound), 0.501, q));
-        CHECK(less_stiff_than(inputs, b, F, Real8{}, 0.9, q));  // none is asked for
-        // one lane decides
+        CHECK(less_stiff_than(inputs, b, F, Real8{}, 0.9, q));  // modulus 0: not implicit, nothing to test
+        // a single lane decides
         for (std::size_t l = 0; l < element_lanes; ++l) {
             if (!(inputs.volume[b][l] > 0)) continue;
             Real8 modulus = 2.0 * bound;

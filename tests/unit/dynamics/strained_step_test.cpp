@@ -1,4 +1,4 @@
-// The bound for bodies that are strained in places, beside the exact limit (docs/methods/stable_step.md 2.5).
+// The step bound for locally strained bodies, against the exact limit (docs/methods/stable_step.md 2.5).
 #include "systems/dynamics/stability/strained_step.h"
 
 #include <catch2/catch.hpp>
@@ -36,10 +36,10 @@ Range nodes_of(const ElasticBody& body) {
     return {0, static_cast<Index>(body.position.size())};
 }
 
-/// What is known when the body stands `stands` for certain.
+/// Step bound of a body that is known to be stable at `stands`.
 Real strained_step_of(const ElasticBody& body, Real asked, Real stands) {
     std::vector<Real> memory(strained_step_memory(nodes_of(body), body.blocks),
-                             std::numeric_limits<Real>::quiet_NaN());  // is written before it is read
+                             std::numeric_limits<Real>::quiet_NaN());  // contents must be written before they are read
     return strained_step(inputs_of(body), body.blocks, nodes_of(body), body.position, body.mass, {asked, stands},
                          memory);
 }
@@ -82,7 +82,7 @@ TEST_CASE("a few elements that are pressed make no step as short as the worst of
                      ElementKind::edge_node_smoothed);
     find_forms(body);
     const Real at_rest = test::stable_step_of(body);
-    // nothing is strained: all of what is asked for, but for the part that is left free for strain
+    // nothing is strained: the full requested step, reduced only by the margin for strain
     CHECK(strained_step_of(body, at_rest, 0.9 * at_rest) == Approx(at_rest / std::sqrt(1.1)));
     body.position[body.position.size() / 2] += Vec3(0.07, 0.04, 0.06);
     const Real stands = test::stable_step_of(body), step = strained_step_of(body, at_rest, stands);
@@ -91,7 +91,7 @@ TEST_CASE("a few elements that are pressed make no step as short as the worst of
     CHECK(step > 1.2 * stands);
 }
 
-// Springs count by 2 / (2 + h r): the less the longer the step.
+// Springs count by 2 / (2 + h r): the longer the step, the less they count.
 TEST_CASE("the step of a body that is strained in places is one in which it relaxes enough", "[unit]") {
     MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, 0.4, 1000);
     material.loss_factor = 0.1;
@@ -108,7 +108,7 @@ TEST_CASE("the step of a body that is strained in places is one in which it rela
     const Real stands = test::stable_step_of(body), step = strained_step_of(body, at_rest, stands);
     INFO("of the step at rest: " << stands / at_rest << " by the worst, " << step / at_rest);
     CHECK(step > 1.1 * stands);
-    // the shorter the step that is certain, the more springs may still push by its end
+    // The shorter the certain step, the more springs may still act at its end.
     CHECK(strained_step_of(body, at_rest, 1e-6 * stands) < step);
     for (std::size_t b = 0; b < body.elements.relaxing_share.size(); ++b)
         body.elements.relaxing_share[b] *= 2 / (2 + step * body.elements.relaxation_rate[b][0]);

@@ -1,4 +1,4 @@
-// When one body counts as still, by motions that are given (docs/methods/skipping.md 3.1).
+// Conditions for one body to count as still, with prescribed motions (docs/methods/skipping.md 3.1).
 #include "systems/dynamics/motion/update_sleep.h"
 
 #include "systems/dynamics/motion/stillness.h"
@@ -15,12 +15,12 @@ namespace skerry::test::update_sleep_test {
 
 namespace {
 
-constexpr Real h = 1e-3, time_still = 0.5;  // s
+constexpr Real h = 1e-3, time_still = 0.5;  // [s]
 
-constexpr Real deflection = 0.1;  // edges, of each end from the middle
+constexpr Real deflection = 0.1;  // deflection of each end from the middle [edges]
 
-/// One free body of two nodes, a tenth of an edge longer on either side than at rest, that moves along x as it is told:
-/// as a whole, or so that both ends go apart by as much.
+/// One free body of two nodes, a tenth of an edge longer on either side than at rest. It moves along x as prescribed,
+/// as a whole or with both ends moving apart by equal distances.
 class Alone {
 public:
     Alone(SleepSettings settings, Real edge, bool stretches = false, Real damping = 0)
@@ -29,7 +29,7 @@ public:
         start_[1].x() = (1 + 2 * deflection) * edge;
     }
 
-    /// s, when it was put to rest, or nothing within this time.
+    /// Time at which the body is put to rest [s]; nothing if it is not within `seconds`.
     std::optional<Real> rests(Real seconds, const std::function<Real(Real)>& way) {
         for (int step = 1; step * h <= seconds; ++step) {
             const Real now = step * h;
@@ -99,43 +99,43 @@ TEST_CASE("what does not move rests after the time that is asked for, what swing
 }
 
 TEST_CASE("what is fast, or comes far slowly, is not still", "[unit]") {
-    // 3 um to and fro at 6 mm/s, where 4.4 are allowed
+    // oscillates with amplitude 3 um at 6 mm/s, where 4.4 mm/s are allowed
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 3e-6 * std::sin(2000 * t); }));
-    // as a whole by 5e-3 edges in half of the time, at 0.4 mm/s
+    // moves as a whole by 5e-3 edges in half of the time, at 0.4 mm/s
     CHECK_FALSE(rests(0.02, 3, [](Real t) { return 4e-4 * t; }));
 }
 
 TEST_CASE("what goes on at one speed is not still down to the noise, whether it trembles or not", "[unit]") {
-    constexpr Real edge = 0.02;                         // m
-    for (const Real speed : {12e-3, 1e-3, 1e-4}) {      // edges a second
-        for (const Real tremble : {0.0, speed / 80}) {  // edges; it comes two and a half times as far between two looks
+    constexpr Real edge = 0.02;                         // [m]
+    for (const Real speed : {12e-3, 1e-3, 1e-4}) {      // speeds [edges/s]
+        for (const Real tremble : {0.0, speed / 80}) {  // amplitude [edges]; the motion between samples is 2.5 times it
             CAPTURE(speed, tremble);
             CHECK_FALSE(
                 rests(edge, 10, [&](Real t) { return edge * (0.9 * speed * t + tremble * std::sin(300 * t)); }));
         }
     }
-    // the error that the page states
+    // error stated in docs/methods/skipping.md
     CHECK(rests(edge, 3, [](Real t) { return 0.9 * 8e-5 * edge * t; }));
 }
 
 TEST_CASE("what begins to slide is not still though it has hardly moved", "[unit]") {
-    const Real edge = 1;  // m: in the second quarter of a second it comes two thirds as far as is allowed
+    const Real edge = 1;  // the motion in the second quarter of a second is two thirds of the limit [m]
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 0.02 * t * t / 2; }));
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 1e-5 * (std::exp(4 * t) - 1); }));
-    // the error that the page states: 2e-5 edges in the second quarter of a second
+    // error stated in docs/methods/skipping.md: 2e-5 edges in the second quarter of a second
     CHECK_FALSE(rests(edge, 5, [](Real t) { return 2.3e-4 * t * t / 2; }));
     CHECK(rests(edge, 5, [](Real t) { return 1.9e-4 * t * t / 2; }));
 }
 
 TEST_CASE("an oscillation that is back at evenly spread looks is seen", "[unit]") {
     const Real edge = 0.002, period = time_still / 2 / own_sleep_limits::looks;
-    // 8 um from side to side, where 6 are allowed; 0.8 mm/s, where 1.4 are
+    // 8 um peak to peak, where 6 are allowed; speed 0.8 mm/s, where 1.4 are allowed
     CHECK_FALSE(rests(edge, 3, [&](Real t) { return 4e-6 * std::cos(2 * std::numbers::pi * t / period); }));
 }
 
 namespace {
 
-/// m, each end from where it will come to stand, when it was put to rest, or nothing within twenty seconds.
+/// Distance of each end from its equilibrium when it is put to rest [m]; nothing if it is not within twenty seconds.
 std::optional<Real> left_at_rest(Real gravity, const std::function<Real(Real)>& stretch) {
     SleepSettings settings = own_limits;
     settings.gravity = gravity;
@@ -147,37 +147,37 @@ std::optional<Real> left_at_rest(Real gravity, const std::function<Real(Real)>& 
 
 TEST_CASE("a shape rests near to its place: half a percent of its deflection where it sinks, 0.8 where it swings",
           "[unit]") {
-    constexpr Real shape = deflection * 0.02;        // m
-    for (const Real rate : {0.3, 1.0, 3.0, 10.0}) {  // 1/s
+    constexpr Real shape = deflection * 0.02;        // [m]
+    for (const Real rate : {0.3, 1.0, 3.0, 10.0}) {  // [1/s]
         CAPTURE(rate);
         const auto left = left_at_rest(9.81, [&](Real t) { return 0.1 * shape * std::exp(-rate * t); });
         REQUIRE(left);
         CHECK(*left < 5e-3 * shape);
     }
-    for (const Real frequency : {1.0, 2.0, 3.7, 5.0, 8.0, 12.6, 20.0, 60.0}) {  // rad/s
+    for (const Real frequency : {1.0, 2.0, 3.7, 5.0, 8.0, 12.6, 20.0, 60.0}) {  // [rad/s]
         for (const Real phase : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8}) {
             CAPTURE(frequency, phase);
-            const Real gravity = frequency * frequency * shape;  // under which it has this deflection
+            const Real gravity = frequency * frequency * shape;  // gravity that causes this deflection
             const auto left = left_at_rest(gravity, [&](Real t) {
                 return 0.1 * shape * std::exp(-frequency * t / 30) * std::sin(frequency * t + phase);
             });
-            if (frequency > 7) REQUIRE(left);  // else it swings on for longer
+            if (frequency > 7) REQUIRE(left);  // slower ones oscillate for longer
             if (left) CHECK(*left < 8e-3 * shape);
         }
     }
-    // for ever, 2 % up and down
+    // oscillates forever, by 2 % up and down
     CHECK_FALSE(left_at_rest(9.81, [](Real t) { return 0.02 * shape * std::sin(40 * t); }));
 }
 
 TEST_CASE("what is slow since it is damped is not at rest", "[unit]") {
-    const auto way = [](Real t) { return 4e-6 * std::sin(40 * t); };  // m; 8e-6 in a half
+    const auto way = [](Real t) { return 4e-6 * std::sin(40 * t); };  // motion of 8e-6 m in a half of the time
     CHECK(Alone(own_limits, 0.1, true, 40).rests(3, way));
     CHECK_FALSE(Alone(own_limits, 0.1, true, 2500).rests(3, way));  // 2500/s 8e-6 m/0.25 s is 8e-3 of gravity
-    CHECK(Alone(own_limits, 0.1, false, 2500).rests(3, way));       // a motion of the whole is not damped
+    CHECK(Alone(own_limits, 0.1, false, 2500).rests(3, way));       // motion of the whole body is not damped
 }
 
 TEST_CASE("a swing of the whole is not caught where it turns", "[unit]") {
-    const Real edge = 2;  // m: drift and growth do not see it, the second half repeats the first
+    const Real edge = 2;  // drift and growth do not detect it because the second half repeats the first [m]
     const auto swing = [](Real t) { return 0.03 * std::cos(t - time_still / 2); };
     CHECK_FALSE(rests(edge, 0.8, swing));
     CHECK_FALSE(rests(edge, 8, [](Real t) { return 0.03 * std::cos(t); }));

@@ -1,4 +1,4 @@
-// Damaged files: cut at many lengths, bytes changed. They load or are refused; nothing else may happen.
+// Damaged files: truncated, or with changed bytes. They load or are refused; nothing else may happen.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include "skerry/error.h"
 
 namespace {
-std::atomic<std::size_t> largest_request{0};  // bytes, since it was last set to 0
+std::atomic<std::size_t> largest_request{0};  // since the last reset to 0 [bytes]
 
 void* counted(std::size_t size) {
     if (size > largest_request) largest_request = size;
@@ -53,8 +53,8 @@ Mesh small_mesh() {
     return mesh;
 }
 
-/// The name under which this file is to be damaged. A .node and a .ele are read together: writes a good pair of that
-/// name.
+/// Returns the name under which the damaged file is to be written. Also writes an intact .node and .ele of that name,
+/// because these two are read together.
 std::string write_partners(const TemporaryFolder& folder, const SampleFile& file) {
     const int first_number = file.name.starts_with("one") ? 1 : 0;
     folder.write("hit.node", node_file(small_mesh(), first_number));
@@ -62,7 +62,7 @@ std::string write_partners(const TemporaryFolder& folder, const SampleFile& file
     return "hit" + file.name.substr(file.name.find('.'));
 }
 
-/// Reads a damaged file. True when it loads; SceneError is the only way out besides.
+/// Reads a damaged file. Returns true if it loads, false after SceneError; no other exception may occur.
 bool loads(const std::string& path, std::size_t size) {
     largest_request = 0;
     bool loaded = false;
@@ -75,8 +75,8 @@ bool loads(const std::string& path, std::size_t size) {
     } catch (const SceneError& error) {
         REQUIRE(std::string(error.what()).size() > path.size());
     }
-    // Nothing in a file may ask for more than rows that its bytes could hold: 24 bytes of position for 3 of text, faces
-    // of a tetrahedron.
+    // The rows that a file's bytes can hold limit the memory that it may request: 24 bytes of position for 3 bytes of
+    // text, and the faces of a tetrahedron.
     REQUIRE(largest_request <= 64 * size + 65536);
     return loaded;
 }
@@ -109,7 +109,7 @@ TEST_CASE("a file with changed bytes loads or is refused", "[unit]") {
             const int hits = 1 + static_cast<int>(random() % 4);
             for (int h = 0; h < hits; ++h) {
                 const std::size_t at = random() % content.size();
-                // Digits and signs every other time: they survive the parser and reach the checks behind it.
+                // Every other time a digit or sign: these survive the parser and reach the later checks.
                 content[at] = round % 2 == 0 ? static_cast<char>(random() % 256) : "0123456789-. \n\xff"[random() % 15];
             }
             loads(folder.write(name, content), content.size());

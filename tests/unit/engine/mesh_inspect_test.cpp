@@ -13,7 +13,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Edge 1.
+/// A regular tetrahedron with edges of length 1.
 Mesh regular() {
     const Real h = std::sqrt(Real{3}) / 2;
     return {{{0, 0, 0}, {1, 0, 0}, {0.5, h, 0}, {0.5, h / 3, std::sqrt(Real{2} / 3)}}, {{0, 1, 2, 3}}};
@@ -39,7 +39,7 @@ TEST_CASE("a regular tetrahedron has quality 1 and its closed form measures", "[
 
 TEST_CASE("inverted and flat tetrahedra are counted apart", "[unit]") {
     Mesh mesh = regular();
-    mesh.nodes.push_back({0.5, 0.3, 0});  // in the plane of 0, 1, 2
+    mesh.nodes.push_back({0.5, 0.3, 0});  // in the plane of nodes 0, 1, 2
     mesh.nodes.push_back({0.5, 0.3, -1});
     mesh.tetrahedra.push_back({0, 1, 2, 4});
     mesh.tetrahedra.push_back({0, 1, 2, 5});

@@ -17,7 +17,7 @@ Mesh sample() {
     return mesh::box({0.1, 0.2, 0.3}, {1, 1, 2});
 }
 
-/// The same with labels that come back, one of them below zero.
+/// The mesh of sample() with labels that formats preserve, one of them negative.
 Mesh labelled_sample() {
     Mesh mesh = sample();
     mesh.label = {1, 1, 1, 1, 1, -3, -3, 20, 20, 20, 20, 20};
@@ -34,7 +34,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// What reading this text is refused with.
+/// Error message when this text is read.
 std::string refusal(const std::string& name, const std::string& content) {
     const TemporaryFolder folder;
     const std::string path = folder.write(name, content);
@@ -51,8 +51,8 @@ bool is_surface_file(const std::string& name) {
     return name.ends_with(".obj") || name.ends_with(".stl");
 }
 
-/// Meshes of other programs are not ours to ship: the folder `meshes` of the one that the environment names, if it
-/// does.
+/// Folder with meshes of other programs, which this project cannot distribute: `meshes` inside the folder named by the
+/// environment variable SKERRY_TEST_DATA; nothing if that is not set.
 std::optional<std::filesystem::path> meshes_of_others() {
     const char* folder = std::getenv("SKERRY_TEST_DATA");
     if (folder == nullptr) return std::nullopt;
@@ -83,7 +83,7 @@ TEST_CASE("every format of tetrahedra gives back the labels that were written", 
         const std::string path = folder.write(file.name, file.content);
         if (is_surface_file(file.name) || file.name.ends_with(".node")) continue;
         std::vector<int> expected = mesh.label;
-        if (file.name.ends_with(".msh"))  // where the sign of a group is that of an orientation
+        if (file.name.ends_with(".msh"))  // in this format the sign of a group is an orientation
             for (int& label : expected) label = std::abs(label);
         CHECK(mesh::read(path).label == expected);
     }
@@ -104,7 +104,7 @@ TEST_CASE("labels are left out where a file has no whole numbers that are known 
     CHECK(labels("a.vtk", replaced(vtk, "int 1\nLOOKUP_TABLE default\n78", "float 1\nLOOKUP_TABLE default\n7.5"))
               .empty());
     CHECK(labels("a.vtk", replaced(binary, "gmsh:physical", "gmsh:geometry")).empty());
-    // what is not known ends the search, and is no reason to refuse a mesh
+    // An unknown entry ends the search for labels; the mesh is still accepted.
     CHECK(labels("a.vtk", replaced(vtk, "TENSORS stress double", "SPINORS spin double")).empty());
     CHECK(labels("a.vtk", replaced(vtk, "TENSORS stress double", "TENSORS stress bit")).empty());
 
@@ -124,9 +124,9 @@ TEST_CASE("a Gmsh file without physical groups has the numbers of its volumes fo
     CHECK(labels(gmsh1_file(mesh)) == volume);
     CHECK(labels(gmsh2_file(mesh, Bytes::text)) == volume);
     CHECK(labels(gmsh2_file(mesh, Bytes::foreign)) == volume);
-    mesh.label.clear();  // no section of entities
+    mesh.label.clear();  // without a section of entities
     CHECK(labels(gmsh41_file(mesh, Bytes::text)) == std::vector<int>(mesh.tetrahedra.size(), 10));
-    // some in a group: the others have 0
+    // Some tetrahedra are in a group; the others get label 0.
     mesh.label.assign(mesh.tetrahedra.size(), 0);
     mesh.label.back() = 4;
     CHECK(labels(gmsh2_file(mesh, Bytes::text)) == mesh.label);
@@ -158,7 +158,7 @@ TEST_CASE("every format gives the boundary as a surface", "[unit]") {
         CHECK(surface.nodes.size() == boundary.nodes.size());
         REQUIRE(surface.triangles.size() == boundary.triangles.size());
         for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-            for (std::size_t a = 0; a < 3; ++a) {  // STL numbers its nodes anew, and keeps floats only in binary
+            for (std::size_t a = 0; a < 3; ++a) {  // STL renumbers nodes; binary STL has single precision
                 const Vec3& x = surface.nodes[static_cast<std::size_t>(surface.triangles[t][a])];
                 CHECK((x - boundary.nodes[static_cast<std::size_t>(boundary.triangles[t][a])]).norm() < 1e-7);
             }

@@ -47,7 +47,7 @@ Real smallest_altitude_of(const SurfaceMesh& surface) {
     return smallest;
 }
 
-/// Every edge once in each direction: closed, and turned to one side.
+/// True if every edge occurs once in each direction: the surface is closed and consistently oriented.
 bool is_closed(const SurfaceMesh& surface) {
     std::map<std::pair<Index, Index>, int> count;
     for (const auto& t : surface.triangles)
@@ -63,7 +63,7 @@ SurfaceMesh unit_box(int cells) {
     return mesh::boundary(test::mirrored_box(1, cells));
 }
 
-/// The row of the node nearest to a place.
+/// Row of the node nearest to `place`.
 std::size_t node_at(const SurfaceMesh& surface, const Vec3& place) {
     std::size_t nearest = 0;
     for (std::size_t n = 0; n < surface.nodes.size(); ++n)
@@ -111,15 +111,15 @@ TEST_CASE("the distance of surfaces is measured both ways", "[unit]") {
     SurfaceMesh spike = box;
     spike.nodes[node_at(spike, {0, 0, 0.5})] = {0, 0, 0.8};
     const mesh::SurfaceDistance distance = mesh::surface_distance(box, spike);
-    CHECK(distance.from_second == Approx(0.3));  // the tip, to the face below it
-    CHECK(distance.from_first < 0.25);           // the face, to the side of the spike
+    CHECK(distance.from_second == Approx(0.3));  // from the tip to the face below it
+    CHECK(distance.from_first < 0.25);           // from the face to the side of the spike
     CHECK(distance.from_first > 0.1);
     CHECK(distance.greatest() == distance.from_second);
 }
 
 TEST_CASE("a needle of a flat face goes, and the surface stays where it was", "[unit]") {
     SurfaceMesh box = unit_box(4);
-    box.nodes[node_at(box, {0, 0, 0.5})] = {0.24, 0, 0.5};  // 1 % of a cell from the next node
+    box.nodes[node_at(box, {0, 0, 0.5})] = {0.24, 0, 0.5};  // 1 % of a cell away from the next node
     const Real before = smallest_altitude_of(box);
     const mesh::ThinnedSurface thinned = mesh::thin_knots(box, {.tolerance = 1e-3, .altitude = 0.1});
     CHECK(before < 0.011);
@@ -128,7 +128,7 @@ TEST_CASE("a needle of a flat face goes, and the surface stays where it was", "[
     CHECK(is_closed(thinned.surface));
     CHECK(volume_of(thinned.surface) == Approx(1));
     CHECK(mesh::surface_distance(box, thinned.surface).greatest() < 1e-12);
-    // The corners of the box are where they were.
+    // The corners of the box have not moved.
     for (const Real x : {-0.5, 0.5})
         for (const Real y : {-0.5, 0.5}) {
             const Vec3 corner(x, y, 0.5);
@@ -138,7 +138,7 @@ TEST_CASE("a needle of a flat face goes, and the surface stays where it was", "[
 
 TEST_CASE("knots of a ball go within the tolerance, and no further", "[unit]") {
     SurfaceMesh ball = mesh::boundary(mesh::ball(0.5, 8));
-    // Every seventh node is moved to the sphere beside one of its neighbours.
+    // For every seventh triangle one node moves next to its neighbour, on the sphere.
     std::vector<bool> taken(ball.nodes.size(), false);
     for (std::size_t t = 0; t < ball.triangles.size(); t += 7) {
         const auto [a, b, c] = ball.triangles[t];
@@ -178,14 +178,14 @@ TEST_CASE("the tetrahedra that allow the least step are the slivers", "[unit]") 
     const Mesh mesh = test::sliver_box(1, 4, 0.01, 1e-2);
     for (const ElementKind element : {ElementKind::linear, ElementKind::edge_smoothed, ElementKind::smoothed}) {
         Settings settings;
-        settings.clusters = false;  // implicit elements allow any
+        settings.clusters = false;  // implicit elements allow any step
         World world(settings);
         const BodyHandle body = world.add_body(mesh, {.material = world.add_material({}), .element = element});
         const std::vector<Real> step = world.tetrahedron_steps(body);
         REQUIRE(step.size() == mesh.tetrahedra.size());
         const auto least = std::min_element(step.begin(), step.end());
         CHECK(*least == Approx(world.stable_step()).epsilon(1e-12));
-        // It is one of those around a node that was moved.
+        // The worst tetrahedron touches a node that was moved.
         const auto& worst = mesh.tetrahedra[static_cast<std::size_t>(least - step.begin())];
         bool beside = false;
         for (std::size_t t = 0; t < step.size(); ++t) {
@@ -201,7 +201,7 @@ TEST_CASE("the tetrahedra that allow the least step are the slivers", "[unit]") 
 
 namespace {
 
-/// A chain of cubic cells, each of which shares a face with the one before it.
+/// A chain of cubic cells, each of which shares a face with the previous one.
 Mesh chain_of_cells(const std::vector<Vec3>& cells) {
     Mesh mesh = test::mirrored_box(1, 4);
     std::erase_if(mesh.tetrahedra, [&](const std::array<Index, 4>& t) {

@@ -100,9 +100,9 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
     const auto end_line = [&] { binary ? void() : void(file += '\n'); };
     if (binary) put<std::int32_t>(file, 1, swap);
     file += binary ? "\n$EndMeshFormat\n" : "$EndMeshFormat\n";
-    // Volumes 10, 11, ... in one group each, but for the first, which is in two; before them a point, a curve and a
-    // surface in groups of their own
-    std::vector<std::uint64_t> first{0};  // tetrahedron of each volume; one more than volumes
+    // Volumes 10, 11, ... are in one group each, except the first, which is in two. Before them come a point, a curve
+    // and a surface in their own groups.
+    std::vector<std::uint64_t> first{0};  // first tetrahedron of each volume, then the end
     for (std::size_t e = 1; e < mesh.tetrahedra.size(); ++e)
         if (label_of(mesh, e) != label_of(mesh, e - 1)) first.push_back(e);
     first.push_back(mesh.tetrahedra.size());
@@ -157,7 +157,7 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes) {
 
 std::string vtk_file(const Mesh& mesh, bool offsets, bool binary) {
     constexpr bool swap = std::endian::native == std::endian::little;
-    const std::size_t cells = mesh.tetrahedra.size() + 1;  // and a triangle
+    const std::size_t cells = mesh.tetrahedra.size() + 1;  // tetrahedra and one triangle
     std::string file = std::string("# vtk DataFile Version ") + (offsets ? "5.1" : "3.0") + "\na title\n" +
                        (binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\n";
     const auto reals = [&](const Vec3& x) {

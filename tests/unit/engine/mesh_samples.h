@@ -1,4 +1,4 @@
-// Mesh files as other programs write them, for the tests of the readers.
+// Mesh files in the formats of other programs, for the tests of the readers.
 #pragma once
 
 #include <array>
@@ -12,13 +12,12 @@ namespace skerry::test {
 
 enum class Bytes { text, native, foreign };  // foreign: the other byte order
 
-/// With a triangle, a line and a point among the elements, which readers of tetrahedra pass over, and a node nobody
-/// uses.
+/// Gmsh files that also contain a triangle, a line and a point, which readers of tetrahedra skip, and an unused node.
 std::string gmsh1_file(const Mesh& mesh);
 std::string gmsh2_file(const Mesh& mesh, Bytes bytes);
 std::string gmsh41_file(const Mesh& mesh, Bytes bytes);
 
-/// Cells as counts and nodes (before version 5), or as offsets and connectivity. Binary is big-endian.
+/// VTK file with cells as counts and nodes (before version 5), or as offsets and connectivity. Binary is big-endian.
 std::string vtk_file(const Mesh& mesh, bool offsets, bool binary);
 
 std::string node_file(const Mesh& mesh, int first_number);
@@ -31,8 +30,8 @@ struct SampleFile {
     std::string name;
     std::string content;
 };
-/// One file of each kind, of the same small mesh; .obj and .stl of its boundary. A .ele needs the .node before it
-/// beside it.
+/// One file of each kind with one small mesh; .obj and .stl with its boundary. A .ele file needs the preceding .node
+/// file beside it.
 std::vector<SampleFile> all_sample_files(const Mesh& mesh);
 
 }  // namespace skerry::test

@@ -14,14 +14,14 @@ namespace {
 
 const Real pi = std::acos(Real{-1});
 
-/// What every built-in mesh promises.
+/// Checks the properties that every built-in mesh must have.
 void check_sound(const Mesh& mesh) {
     CHECK_NOTHROW(mesh::require_positive(mesh, "mesh"));
     const MeshReport report = inspect(mesh);
     CHECK(report.closed_manifold);
     CHECK(report.components == 1);
-    // Conforming: a face belongs to two tetrahedra at most. And no holes: the boundary has V - E + F = 2 with E = 3 F /
-    // 2.
+    // The mesh is conforming: a face belongs to at most two tetrahedra. It has no holes: the boundary has V - E + F = 2
+    // with E = 3 F / 2.
     std::map<std::array<Index, 3>, int> faces;
     for (const auto& t : mesh.tetrahedra)
         for (std::size_t skip = 0; skip < 4; ++skip) {
@@ -131,7 +131,7 @@ TEST_CASE("the outline of a lathe bounds its nodes, and its volume converges", "
         const Real error = std::abs(inspect(mesh).volume / exact - 1);
         CHECK(error < 0.5 * error_prev);
         error_prev = error;
-        // Kinks that leave room for layers between them have a layer of their own.
+        // A kink of the outline has its own layer if there is room for layers between the kinks.
         CHECK(inspect(mesh).upper[0] == Approx(0.1));
     }
     CHECK(error_prev < 0.01);
@@ -213,7 +213,7 @@ TEST_CASE("what draws a sphere begins with its middle and corners around it, and
     Vec3 sum = Vec3::Zero();
     for (std::size_t n = 1; n <= 12; ++n) sum += picture.nodes[n];
     CHECK(sum.norm() < 1e-12);
-    // of any direction some corner is near
+    // Every direction has a corner near it.
     for (const Vec3& x : picture.nodes) {
         Real most = 0;
         for (std::size_t n = 1; n <= 12; ++n) most = std::max(most, x.dot(picture.nodes[n]));

@@ -1,4 +1,4 @@
-// What the choice of a method, a friction law and a relaxation means for worlds and problems.
+// Effect of the chosen method, friction law and relaxation on worlds and problems.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -13,7 +13,7 @@ namespace skerry::test::method_settings_test {
 
 namespace {
 
-/// Two contacts pressed together, coupled, both with the same friction.
+/// Two coupled contacts that are pressed together, both with friction `mu`.
 ContactProblem pair_problem(Real mu) {
     ContactProblem problem;
     problem.name = "pair";

@@ -98,7 +98,7 @@ TEST_CASE("colliders are written again only when one of them came, went or moved
     CHECK(count_files(folder, "run.pvd") == 0);
     series.write_index();
     const std::string index = content(folder.path() / "run.pvd");
-    // Every time names all three parts, the second one the colliders of the first.
+    // Every time step names all three parts. The second step refers to the colliders of the first.
     CHECK(index.find("timestep=\"1\" group=\"\" part=\"2\" name=\"colliders\" file=\"run_colliders_0000.vtp\"") !=
           std::string::npos);
 }

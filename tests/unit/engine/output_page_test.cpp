@@ -29,7 +29,7 @@ std::string page_of(const PageData& data, const PageSummary& summary) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The text of the script element with that id.
+/// Text of the script element with this id.
 std::string text_of(const std::string& page, const std::string& id) {
     const std::string opening = "id=\"" + id + "\">";
     const std::size_t begin = page.find(opening) + opening.size();
@@ -40,7 +40,7 @@ nlohmann::json run_of(const std::string& page) {
     return nlohmann::json::parse(text_of(page, "run"));
 }
 
-/// Half a code of a scale that ends at `top`, at `value`.
+/// Half the width of a code at `value`, on a square-root scale that ends at `top`.
 Real half_code(Real value, Real top) {
     return std::sqrt(std::abs(value) * top) / 2047 + top / (4 * 2047.0 * 2047);
 }
@@ -157,11 +157,11 @@ TEST_CASE("packed frames give back places to half a step and values to half a co
         for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
             const BodyFrame& body = frame.bodies[b];
             const ReadShape& shape = run.shapes[read.bodies[b].number];
-            REQUIRE(shape.node.size() == body.position.size() - 1);  // all but the one inside
+            REQUIRE(shape.node.size() == body.position.size() - 1);  // all nodes except the inner one
             REQUIRE(shape.triangles.size() == body.surface.size());
-            CHECK(shape.step < 0.3 / Lattice::steps);  // balls of 0.2 m, wider by a wobble
+            CHECK(shape.step < 0.3 / Lattice::steps);  // balls are 0.2 m wide plus a wobble
             Real farthest = 0;
-            std::array<Real, 3> worst{};  // in half codes
+            std::array<Real, 3> worst{};  // largest errors in units of half_code()
             for (std::size_t vertex = 0; vertex < shape.node.size(); ++vertex) {
                 const auto node = static_cast<std::size_t>(shape.node[vertex]);
                 farthest =
@@ -173,7 +173,7 @@ TEST_CASE("packed frames give back places to half a step and values to half a co
                                                       half_code(value[f], read.top[f]));
             }
             CHECK(farthest <= shape.step / 2 * 1.000001);
-            for (const Real halves : worst) CHECK(halves <= 1.001);  // the code is within a half, the root rounds
+            for (const Real halves : worst) CHECK(halves <= 1.001);  // a code is exact to a half; the root rounds
             for (std::size_t t = 0; t < body.surface.size(); ++t)
                 for (std::size_t k = 0; k < 3; ++k)
                     CHECK(shape.node[static_cast<std::size_t>(shape.triangles[t][k])] == body.surface[t][k]);
@@ -272,7 +272,7 @@ TEST_CASE("names cannot end the script that they stand in, and come back as they
     PageData data;
     for (int i = 0; i < 6; ++i) data.add(sample.frame(i));
     const std::string page = page_of(data, sample.summary());
-    // Run, frames, three.js and player; nothing else opens or ends a script.
+    // Scripts: run, frames, three.js and player. Nothing else opens or ends a script.
     CHECK(count_of(page, "</script>") == 4);
     CHECK(text_of(page, "frames") == base64(data.packed_frames()));
     CHECK(page.find("<title>Balls into a bucket &lt;/title&gt; &amp; &quot;quotes&quot;</title>") != std::string::npos);

@@ -64,7 +64,7 @@ OutputSample::OutputSample(int ball_count, int level, int frame_count) : frame_c
                           .stress = std::vector<Mat3>(tetrahedra_.size()),
                           .strain = std::vector<Mat3>(tetrahedra_.size())});
     }
-    // Names that would end the script element, the attribute or the text they stand in.
+    // Unescaped, these names would end their script element, attribute or text.
     balls_[0].name = "</script><script>document.documentElement.dataset.error='escaped'</script>";
     if (ball_count > 1) balls_[1].name = "\"quotes\" & <b>, \xff no UTF-8";
     shapes_ = {Plane{}, Bucket{.radius = 0.48, .height = 0.25, .thickness = 0.02}, Box{.size = {0.12, 0.5, 0.1}},
@@ -73,7 +73,7 @@ OutputSample::OutputSample(int ball_count, int level, int frame_count) : frame_c
                            .triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}};
 }
 
-/// Bounces of a ball that loses a third of its speed each time; on the ground it is pressed flat and wobbles.
+/// Position of a ball that keeps 55 % of its speed at each bounce. On the ground it is flattened and wobbles.
 void OutputSample::place_ball(int number, Real time) {
     Ball& ball = balls_[static_cast<std::size_t>(number)];
     Real t = time + ball.phase, speed = 0, height = drop + 0.02 * number, length = std::sqrt(2 * height / gravity);

@@ -1,4 +1,4 @@
-// A made-up run with a known answer for every number: balls that fall into a bucket and wobble, without a World.
+// A synthetic run with a known value for every number: balls that fall into a bucket and wobble, without a World.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace skerry {
 
-/// Balls of a centre node and `level` times refined icosahedra around it: 10 * 4^level + 2 surface nodes. Ball 1 is
-/// added at a third of the run, ball 0 removed at two thirds. A plane, a bucket, a box that moves, a capsule.
+/// Balls with a centre node and an icosahedron around it, refined `level` times: 10 * 4^level + 2 surface nodes. Ball 1
+/// is added at a third of the run, ball 0 removed at two thirds. Colliders: plane, bucket, moving box, capsule, mesh.
 class OutputSample {
 public:
     OutputSample(int ball_count, int level, int frame_count);
 
     int frame_count() const { return frame_count_; }
-    /// Valid until the next call.
+    /// Frame `number`; the reference is valid until the next call.
     const Frame& frame(int number);
     PageSummary summary() const;
 
@@ -27,13 +27,13 @@ private:
 
     struct Ball {
         std::string name;
-        Vec3 home;   // m, of the floor under its centre
-        Real phase;  // s
+        Vec3 home;   // point of the floor under its centre [m]
+        Real phase;  // [s]
         std::vector<Vec3> position, velocity;
         std::vector<Mat3> stress, strain;  // by tetrahedron
     };
     int frame_count_;
-    std::vector<Vec3> direction_;  // of the nodes of a ball, the centre first
+    std::vector<Vec3> direction_;  // unit vectors to the nodes of a ball, the centre first
     std::vector<std::array<Index, 3>> surface_;
     std::vector<std::array<Index, 4>> tetrahedra_;
     std::vector<Ball> balls_;

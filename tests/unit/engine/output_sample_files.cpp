@@ -1,4 +1,4 @@
-// Writes the made-up run as files, and beside them what they must say, for tests that read them with other programs:
+// Writes the synthetic run as files with their expected contents, for tests that read them with other programs:
 //   output_sample_files FOLDER
 #include <cmath>
 #include <filesystem>
@@ -65,8 +65,8 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     std::filesystem::remove_all(folder);
 
-    // Few nodes for what is compared number by number. The first ball is number 0 although it goes; the second comes
-    // late.
+    // Few nodes, because the contents are compared number by number. The first ball is number 0 although it is removed;
+    // the second is added late.
     OutputSample small(3, 1, 45);
     VtkSeries series(folder / "vtk", "drop & bounce");
     series.name_materials({"gum <& \"rubber\">"});
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
     series.write_index();
     std::ofstream(folder / "vtk" / "expected.json") << Json{{"name", "drop & bounce"}, {"frames", frames}};
 
-    // The size that a page is allowed 10 MB for: 120 frames of 5,136 vertices.
+    // Size for which a page may take 10 MB: 120 frames of 5,136 vertices.
     OutputSample large(8, 3, 120);
     PageData data;
     for (int i = 0; i < large.frame_count(); ++i) data.add(large.frame(i));

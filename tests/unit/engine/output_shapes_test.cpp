@@ -12,8 +12,8 @@ namespace skerry::test::output_shapes_test {
 namespace {
 
 struct Sum {
-    Real volume = 0;     // m^3, positive when triangles face outwards
-    bool closed = true;  // every edge has its opposite, when vertices at the same place count as one
+    Real volume = 0;     // positive if triangles face outwards [m^3]
+    bool closed = true;  // every edge has its opposite, with vertices at one place counted as one
     bool flat_triangle = false;
 };
 
@@ -54,7 +54,7 @@ TEST_CASE("pictures of solid colliders are closed, face outwards and have the vo
     const Sum sum = sum_of(shape_picture(shape, {}));
     CHECK(sum.closed);
     CHECK_FALSE(sum.flat_triangle);
-    // 48 facets around lose 0.3 % of a circle and up to 0.6 % of a ball.
+    // 48 facets around the axis lose 0.3 % of a circle and up to 0.6 % of a ball.
     CHECK(sum.volume == Approx(volume).epsilon(tolerance));
 }
 

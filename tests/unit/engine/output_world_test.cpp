@@ -1,4 +1,4 @@
-// The writers on a real world: what they collect is what it says.
+// Writers on a real world: their output against the values of the world.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -55,7 +55,7 @@ TEST_CASE("a frame has the bodies, colliders, contacts and energies of its world
 
     Vec3 force = Vec3::Zero();
     for (const Contact& contact : frame.contacts) force += contact.force();
-    // A second of damping at 20/s leaves e^-20 of the landing; a tenth covers what single steps of a contact vary by.
+    // A second of damping at 20/s leaves e^-20 of the landing. A tenth covers the variation of a contact between steps.
     CHECK(force.z() == Approx(world.mass(box) * 9.81).epsilon(0.1));
 }
 

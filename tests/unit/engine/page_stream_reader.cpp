@@ -42,7 +42,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// What is carried from one frame of a body to the next.
+/// State that is carried from one frame of a body to the next.
 struct Track {
     Codes now, before;
     int frames = 0;

@@ -1,5 +1,5 @@
-// Reads frames of the page back, as the page's own player does (engine/output/page/player/data/page_decode.js): a twin
-// that shares nothing with what writes them.
+// Reads frames of a page like the page's own player (engine/output/page/player/data/page_decode.js). This reader shares
+// no code with the writer.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace skerry {
 
-/// The bytes of a zlib stream. Throws std::runtime_error where it is none, or not whole.
+/// Decompresses a zlib stream. Throws std::runtime_error if the stream is invalid or incomplete.
 std::string inflate_all(const std::string& packed);
 
 struct ReadBody {
     std::size_t number;
-    std::vector<Vec3> position;              // m, by vertex
+    std::vector<Vec3> position;              // by vertex [m]
     std::array<std::vector<Real>, 3> value;  // speed, stress, strain by vertex
 };
 
@@ -24,11 +24,11 @@ struct ReadContact {
     Index first, second, collider, region;
     Vec3 point, force;
     Real normal_force;
-    int state, row_prev;  // row_prev: of the frame before, -1 if new
+    int state, row_prev;  // row_prev: row in the previous frame, -1 if new
 };
 
 struct ReadFrame {
-    std::array<Real, 4> top;  // of speed, stress, strain, force
+    std::array<Real, 4> top;  // maxima of speed, stress, strain, force
     std::vector<ReadBody> bodies;
     std::vector<std::size_t> colliders;
     std::vector<ReadContact> contacts;
@@ -38,15 +38,15 @@ struct ReadShape {
     std::vector<Index> node;
     std::vector<std::array<Index, 3>> triangles;
     Vec3 origin;
-    Real step;  // m
+    Real step;  // [m]
 };
 
 struct ReadRun {
-    std::vector<ReadShape> shapes;  // by number of the body
+    std::vector<ReadShape> shapes;  // by body number
     std::vector<ReadFrame> frames;
 };
 
-/// All frames of packed_frames(). Throws std::runtime_error where bytes are missing.
+/// All frames of packed_frames(). Throws std::runtime_error if bytes are missing.
 ReadRun read_run(const std::string& packed);
 
 }  // namespace skerry

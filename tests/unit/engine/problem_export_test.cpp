@@ -1,4 +1,4 @@
-// Contact problems of steps: what a world shows is what it solved.
+// Contact problems of steps: a world exports the problem that it solved.
 #include <skerry/world.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace skerry::test::problem_export_test {
 
 namespace {
 
-/// Two small blocks, one on the other on a plane, dropped askew: regions of several contacts, sliding and sticking.
+/// Two small blocks, stacked askew on a plane and dropped: regions of several contacts, sliding and sticking.
 struct Stack {
     World world;
     std::vector<StepProblem> problems;
@@ -84,20 +84,20 @@ TEST_CASE("the impulses of a step solve the problem that it shows", "[unit][prob
     for (std::size_t k = 0; k < stack.problems.size(); ++k) {
         const StepProblem& step = stack.problems[k];
         INFO("step " << step.step << ", " << step.problem.contacts() << " contacts");
-        // the solver was asked for 1e-11 in its own measure, which weighs contacts by their masses: three digits for
-        // that
+        // The solver's tolerance of 1e-11 is in its own error measure, which weights contacts by their masses. Three
+        // digits allow for the difference.
         CHECK(independent_error(step.problem, step.impulse) < 1e-8);
         const std::vector<Vec3> u = velocities(step.problem, step.impulse);
         for (std::size_t i = 0; i < u.size(); ++i) {
-            // what the world says of the same contact, in its own frame
+            // the same contact as the world reports it, in its own frame
             const Contact& contact = stack.contacts[k][step.contact[i]];
             const TangentFrame tangents = tangent_frame(contact.normal);
             const Vec3 frame[] = {contact.normal, tangents.first, tangents.second};
             for (int axis = 0; axis < 3; ++axis) CHECK(step.impulse[i][axis] == contact.impulse.dot(frame[axis]));
             for (int axis = 1; axis < 3; ++axis) {
-                // nothing else moves here: along the surface the offset is the half turn by which friction looks back
+                // Nothing else moves here: tangentially the offset is the half turn of the midpoint slip.
                 const Real turned = step.lumped.offset[i].dot(frame[axis]);
-                CHECK(u[i][axis] == Approx(contact.slip.dot(frame[axis]) + turned).margin(1e-12));  // m/s
+                CHECK(u[i][axis] == Approx(contact.slip.dot(frame[axis]) + turned).margin(1e-12));  // [m/s]
                 turns += turned != 0;
             }
             CHECK(step.region[i] == contact.region);
@@ -121,7 +121,7 @@ TEST_CASE("the impulses of a step of rigid or implicit bodies solve the problem 
     for (const StepProblem& step : stack.problems) {
         INFO("step " << step.step << ", " << step.problem.contacts() << " contacts");
         CHECK(step.lumped.strained.empty() == (dynamics == BodyDynamics::rigid));
-        // as above, and W is nearly singular: many contacts on six freedoms
+        // The error measures differ, and W is nearly singular: many contacts on six degrees of freedom.
         CHECK(independent_error(step.problem, step.impulse) < 1e-6);
     }
 }
@@ -158,7 +158,7 @@ TEST_CASE("the impulses of a step of rigid spheres solve the problem that it sho
         const StepProblem& step = stack.problems[k];
         CHECK(independent_error(step.problem, step.impulse) < 1e-6);
         const std::vector<Vec3> u = velocities(step.problem, step.impulse);
-        for (std::size_t i = 0; i < u.size(); ++i) {  // slip has the spins
+        for (std::size_t i = 0; i < u.size(); ++i) {  // slip includes the spins
             const Contact& contact = stack.contacts[k][step.contact[i]];
             const TangentFrame tangents = tangent_frame(contact.normal);
             for (const auto& [axis, along] : {std::pair{1, tangents.first}, {2, tangents.second}})
@@ -175,7 +175,7 @@ TEST_CASE("the lumped form of a step and its blocks give the same velocities", "
     REQUIRE(stack.any_coupled());
     for (const StepProblem& step : stack.problems) {
         const LumpedContacts& lumped = step.lumped;
-        std::vector<Vec3> impulse;  // any, N s, world axes
+        std::vector<Vec3> impulse;  // arbitrary impulses in world axes [N s]
         for (std::size_t i = 0; i < lumped.node.size(); ++i) {
             const Real k = static_cast<Real>(i);
             impulse.emplace_back(std::sin(k), std::cos(2 * k), std::sin(3 * k));
@@ -209,7 +209,7 @@ TEST_CASE("a step's problem goes to a file and back, and its solution moves cont
         const ProblemSolution solution = solve_problem(problem, {.tolerance = 1e-11});
         INFO("step " << step.step << ", " << problem.contacts() << " contacts, error " << solution.error);
         REQUIRE(solution.converged);
-        // impulses need not be unique, velocities are; both solves leave 1e-8 of the largest velocity at most
+        // Velocities are unique, impulses need not be. Both solves leave at most 1e-8 of the largest velocity.
         const std::vector<Vec3> u = velocities(problem, solution.reaction);
         CHECK(distance(u, velocities(problem, step.impulse)) < 1e-6 * (largest(problem.q) + largest(u)));
     }
@@ -233,7 +233,7 @@ TEST_CASE("regions alone are solved as the whole step is", "[unit][problem]") {
             for (std::size_t i = 0; i < contacts.size(); ++i) together[contacts[i]] = part.reaction[i];
         }
         CHECK(independent_error(step.problem, together) < 1e-9);
-        // no block joins two regions
+        // No block couples two regions.
         for (std::size_t i = 0; i < step.region.size(); ++i)
             for (Index k = step.problem.row_offset[i]; k < step.problem.row_offset[i + 1]; ++k)
                 CHECK(step.region[step.problem.column[k]] == step.region[i]);

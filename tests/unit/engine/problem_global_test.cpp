@@ -1,4 +1,4 @@
-// Global problems: M v = H r + f, u = H^T v + w, condensed to contacts.
+// Global problems: M v = H r + f, u = H^T v + w, condensed to the contacts.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <functional>
@@ -43,7 +43,7 @@ TEST_CASE("a global problem is condensed to H^T M^-1 H and H^T M^-1 f + w, in ev
             CHECK(problem.freedoms == 9);
             CHECK(problem.mu == sample.reals.at("vectors/mu"));
             for (int row = 0; row < 9; ++row) {
-                // entries are of size 1 to 4: a few roundings
+                // Entries are of size 1 to 4: the margin allows a few roundings.
                 CHECK(problem.q[row / 3][row % 3] == Approx(q[row]).margin(1e-14));
                 for (int column = 0; column < 9; ++column) {
                     CHECK(entry(problem, row, column) == Approx(w(row, column)).margin(1e-14));
@@ -55,14 +55,13 @@ TEST_CASE("a global problem is condensed to H^T M^-1 H and H^T M^-1 f + w, in ev
 
 TEST_CASE("contacts on different bodies are not coupled by condensing", "[unit][problem]") {
     const ContactProblem problem = read_back(global_file());
-    // 0 and 1 meet on the first body, 1 and 2 on the second, 0 and 2 nowhere
+    // Contacts 0 and 1 meet on the first body, 1 and 2 on the second, 0 and 2 on none.
     CHECK(problem.row_offset == std::vector<Index>{0, 2, 5, 7});
     CHECK(problem.column == std::vector<Index>{0, 1, 0, 1, 2, 1, 2});
 }
 
 TEST_CASE("couplings that cancel to rounding are dropped", "[unit][problem]") {
-    // two contacts on one rigid body that do not feel each other: 1/m - arm^2/I = 0 up to rounding, along and across
-    // alike
+    // Two uncoupled contacts on one rigid body: 1/m - arm^2/I = 0 up to rounding, both along and across.
     FclibFile file;
     file.root = "fclib_global";
     file.integers["spacedim"] = {3};
@@ -108,7 +107,7 @@ TEST_CASE("a condensed problem and the same problem as a local file have the sam
 
 TEST_CASE("a body of many contacts is condensed in batches as if at once", "[unit][problem]") {
     FclibFile file = global_file();
-    const int contacts = 100;  // three batches and a rest
+    const int contacts = 100;  // three batches and a remainder
     std::vector<int> row, column;
     std::vector<double> value;
     for (int c = 0; c < contacts; ++c)
@@ -130,7 +129,7 @@ TEST_CASE("a body of many contacts is condensed in batches as if at once", "[uni
     for (std::size_t k = 0; k < row.size(); ++k) h(row[k], column[k]) += value[k];
     const Eigen::MatrixXd w = h.transpose() * dense(file, "M").inverse() * h;
     for (int r = 0; r < 3 * contacts; r += 7)
-        // entries up to 20
+        // Entries are up to 20: the margin allows a few roundings.
         for (int c = 0; c < 3 * contacts; c += 5) CHECK(entry(problem, r, c) == Approx(w(r, c)).margin(1e-12));
 }
 

@@ -1,4 +1,4 @@
-// Local problems from files: every storage, and every way to be wrong.
+// Local problems from files: every storage format and every kind of error.
 #include <hdf5.h>
 
 #include <catch2/catch.hpp>
@@ -79,7 +79,7 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
                {"x", "inf", "entry 4", "finite"});
     check_says(spoil([](auto& f) { f.reals["vectors/mu"][0] = std::numeric_limits<double>::quiet_NaN(); }),
                {"mu", "nan"});
-    // every number is finite, their sum is not
+    // Every number is finite, but their sum is not.
     check_says(spoil([](auto& f) {
                    f.integers["W/i"][1] = 0;
                    f.reals["W/x"][0] = f.reals["W/x"][1] = 1.7e308;
@@ -89,7 +89,7 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
 
 namespace {
 
-/// What the reader says to a local problem with the data set `q` of this type and size, and no values in it.
+/// Message of the reader for a local problem whose data set `q` has this type and size, and no values.
 std::string refusal_of_empty_q(hid_t type, hsize_t size) {
     const TemporaryFolder folder;
     const fs::path path = local_file().write(folder.path());
@@ -122,7 +122,7 @@ TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][pr
     CHECK(refusal_of(folder.path()).find("directory") != std::string::npos);
     CHECK(refusal_of(folder.write("text.txt", "not HDF5")).find("not HDF5") != std::string::npos);
     const fs::path whole = local_file().write(folder.path());
-    fs::resize_file(whole, fs::file_size(whole) / 2);  // a download that broke off
+    fs::resize_file(whole, fs::file_size(whole) / 2);  // an interrupted download
     CHECK(refusal_of(whole) != "read");
 }
 

@@ -37,7 +37,7 @@ void put(hid_t file, const std::string& path, const std::vector<T>& values) {
         values.empty() ? nullptr : values.data());
 }
 
-/// Compressed columns of a full matrix, zeros left out.
+/// Stores a full matrix in compressed columns without its zeros.
 void put_columns(FclibFile& file, const std::string& group, const std::vector<std::vector<double>>& rows) {
     const std::size_t m = rows.size(), n = rows[0].size();
     std::vector<int> begin{0}, row;
@@ -111,7 +111,8 @@ FclibFile global_file() {
     mass[3][4] = mass[4][3] = 1;
     mass[4][5] = mass[5][4] = -0.5;
     put_columns(file, "M", mass);
-    // contact 0 turned about z, so that H is not made of zeros and ones; 1 and 2 along the axes
+    // Contact 0 is turned about z, so that H has entries other than zeros and ones. Contacts 1 and 2 lie along the
+    // axes.
     std::vector<std::vector<double>> h(9, std::vector<double>(9, 0.0));
     const double c = 0.8, s = 0.6;
     h[0][0] = c, h[1][0] = s, h[0][1] = -s, h[1][1] = c, h[2][2] = 1;

@@ -1,4 +1,4 @@
-// Problems from files, solved.
+// Solution of problems from files.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Three contacts that do not feel each other: one sticks, one opens, one slides.
+/// Three uncoupled contacts: one sticks, one opens, one slides.
 ContactProblem three_apart() {
     ContactProblem problem;
     problem.row_offset = {0, 1, 2, 3};
@@ -88,7 +88,7 @@ TEST_CASE("the energy gap is the work that Coulomb's law does not explain", "[un
           Approx(0.5 * 8).epsilon(1e-15));
     CHECK(problem_error(problem, std::vector<Vec3>{Vec3::Zero(), Vec3::Zero(), {1, -0.5, 0}}).energy_gap ==
           Approx(0).margin(1e-14));
-    // the pyramid's gap is measured against the pyramid: sliding askew, both tangents at their bounds
+    // The gap of the pyramid is measured for the pyramid: oblique sliding with both tangents at their bounds.
     ContactProblem askew = problem;
     askew.q[2] = {-2, 8, 8};
     const ProblemSolution pyramid = solve_problem(askew, {.friction = Friction::pyramid, .tolerance = 1e-12});
@@ -104,7 +104,7 @@ TEST_CASE("problems of the FCLIB collection load, and all but one are solved to 
         if (file.path().extension() != ".hdf5") continue;
         ++count;
         const ContactProblem problem = read_problem(file.path());
-        // Gauss-Seidel stagnates at 8e-5 there; so-bogus, also Gauss-Seidel, does not reach 1e-6 either
+        // Gauss-Seidel stagnates at 8e-5 there; so-bogus, also Gauss-Seidel, does not reach 1e-6 either.
         const bool hard = problem.name.starts_with("OneObject");
         const Real tolerance = hard ? 1e-3 : 1e-6;
         const ProblemSolution solution = solve_problem(problem, {.tolerance = tolerance});

@@ -1,4 +1,4 @@
-// Problems to files.
+// Writing of problems to files.
 #include <hdf5.h>
 
 #include <catch2/catch.hpp>
@@ -101,12 +101,12 @@ TEST_CASE("a file has the groups, names and types of FCLIB's own writer", "[unit
         CHECK(r[k] == reaction[k / 3][static_cast<int>(k % 3)]);
         CHECK(u[k] == velocity[k / 3][static_cast<int>(k % 3)]);
     }
-    CHECK(std::distance(fs::directory_iterator(path.parent_path()), {}) == 1);  // no temporary file is left
+    CHECK(std::distance(fs::directory_iterator(path.parent_path()), {}) == 1);  // no temporary file remains
 }
 
 TEST_CASE("a written problem is the problem, bit for bit, and so are its bytes", "[unit][problem]") {
     const TemporaryFolder folder;
-    ContactProblem problem = read_back(local_file());  // W is not symmetric there: rows and columns cannot be mixed up
+    ContactProblem problem = read_back(local_file());  // W is not symmetric: exchanged rows and columns are noticed
     problem.description = "two contacts";
     const fs::path path = folder.path() / "a.hdf5";
     write_problem(problem, path);

@@ -1,4 +1,4 @@
-// Jobs in processes of their own.
+// Jobs that run in their own processes.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -74,7 +74,7 @@ TEST_CASE("a signal ends what is under way, and nothing begins after it", "[unit
     const Told told = run(100, 2, job);
     CHECK(told.end.signal == SIGINT);
     CHECK(told.end.lost.empty());
-    // the first may have ended before, and made room for one more
+    // Job 0 may have ended before the signal, so that a third job started.
     CHECK(told.end.done <= 1);
     CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) >= 2);
     CHECK(told.end.done + static_cast<int>(told.end.stopped.size()) <= 3);

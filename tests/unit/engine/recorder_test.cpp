@@ -1,4 +1,4 @@
-// Time series of probes: what they hold beside what the world says, and their files.
+// Time series of probes: recorded values against those of the world, and the files of the series.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST_CASE("rows of a recorder are what the world says at multiples of a time, im
     for (int call = 1; call <= 40; ++call) {
         REQUIRE(world.advance(0.01).ok());
         recorder.sample(world);
-        recorder.sample(world);  // of a time that was seen: nothing
+        recorder.sample(world);  // a time that was already sampled adds no row
         impulse += world.forces().on(swing.ball, swing.floor).impulse;
         if (call % 5 != 0) continue;
         REQUIRE(recorder.row_count() == ++rows);
@@ -112,7 +112,7 @@ TEST_CASE("series are written as CSV and HDF5 with all digits and units, and rea
     for (int call = 0; call < 5; ++call) {
         REQUIRE(swing.world.advance(0.01).ok());
         recorder.sample(swing.world);
-        CHECK(lines_of(streamed).size() == recorder.row_count() + 1);  // at once, for one who kills the run
+        CHECK(lines_of(streamed).size() == recorder.row_count() + 1);  // at once: a killed run loses nothing
     }
     recorder.write_csv(folder.path() / "whole.csv");
     const std::vector<std::string> lines = lines_of(streamed);
@@ -135,7 +135,7 @@ TEST_CASE("series are written as CSV and HDF5 with all digits and units, and rea
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     CHECK(bytes.find("unit") != std::string::npos);
     CHECK(bytes.find("m/s") != std::string::npos);
-    // nothing half-written stays
+    // No partial file remains.
     for (const auto& entry : fs::directory_iterator(folder.path())) CHECK(entry.path().extension() != ".part");
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("a stream goes on with the whole rows of its file up to a time, of the
             REQUIRE(swing.world.advance(0.01).ok());
         }
     }
-    std::ofstream(file, std::ios::app) << "0.0499";  // cut off within a row
+    std::ofstream(file, std::ios::app) << "0.0499";  // a truncated row
     Recorder second(swing.world, {{"energy", EnergyProbe{}}});
     second.stream_csv(file, 0.0301);
     CHECK(lines_of(file).size() == 1 + 4);
@@ -201,7 +201,7 @@ TEST_CASE("bad probes are refused by name, field, what was found and what was ex
                       Catch::Contains("the name again"));
     for (const Real every : {-1.0, std::nan(""), std::numeric_limits<Real>::infinity()})
         CHECK_THROWS_WITH(Recorder(world, {}, every), Catch::Contains("every") && Catch::Contains("a time >= 0"));
-    // what goes while it is recorded is named when it is missed, and rows stay whole
+    // If a probed body is removed, the error names its probe and the rows stay complete.
     Recorder recorder(world, {{"energy", EnergyProbe{}}, {"ball", BodyProbe{swing.ball}}});
     recorder.sample(world);
     REQUIRE(world.advance(0.01).ok());

@@ -1,4 +1,4 @@
-// Scenes that tests write.
+// Texts of scenes for tests.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// A small scene with `more` keys at its top.
+/// A small scene with `more` keys at the top level.
 inline std::string scene_with(const std::string& more) {
     return R"({"materials": {"rubber": {"E": 1e5}}, "bodies": [
                   {"name": "ball", "mesh": {"ball": {"radius": 0.1, "resolution": 3}}, "material": "rubber"}])" +
@@ -21,7 +21,7 @@ inline std::string body_with(const std::string& more) {
            (more.empty() ? std::string() : ", " + more) + "}]}";
 }
 
-/// A small scene whose only material has these keys.
+/// A small scene whose only material has `keys`.
 inline std::string material_with(const std::string& keys) {
     return R"({"materials": {"rubber": {)" + keys +
            R"(}}, "bodies": [{"mesh": {"ball": {"radius": 1, "resolution": 3}}, "material": "rubber"}]})";

@@ -1,4 +1,4 @@
-// Resolving scenes: meshes, copies, names, pins, probes, overrides.
+// Resolution of scenes: meshes, copies, names, pins, probes, overrides.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -71,7 +71,7 @@ TEST_CASE("a material that is not there is named with the nearest one", "[unit]"
 
 namespace {
 
-/// A scene whose body is two tetrahedra with the labels 1 and 20, and has `materials`.
+/// A scene whose body has `materials` and two tetrahedra with the labels 1 and 20.
 std::string labelled_scene(const TemporaryFolder& folder, const std::string& materials) {
     folder.write("m.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n");
     folder.write("m.ele", "2 4 1\n1 1 2 3 4 1\n2 2 3 4 5 20\n");
@@ -191,7 +191,7 @@ TEST_CASE("a broken mesh file is refused with the scene's place and the mesh fil
 
 namespace {
 
-/// Two rigid blocks, one beside the other, and a joint with these keys.
+/// Two rigid blocks side by side and a joint with `keys`.
 std::string jointed_scene(const std::string& keys) {
     const std::string block =
         R"("mesh": {"box": {"size": [1, 1, 1], "cells": [1, 1, 1]}}, "material": "rubber", "dynamics": "rigid")";

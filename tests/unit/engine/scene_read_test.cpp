@@ -1,4 +1,4 @@
-// Reading scene files: what is understood, and for each kind of mistake a message that names the place.
+// Reading scene files: accepted keys, and for each kind of mistake a message that names the place.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace skerry::test::scene_read_test {
 
 namespace {
 
-/// The message that reading a scene ends with; empty when it is understood.
+/// Error message from reading a scene; empty if it is accepted.
 std::string complaint_about(const std::string& text) {
     const TemporaryFolder folder;
     const auto file = folder.write("scene.json", text);
@@ -60,7 +60,7 @@ TEST_CASE("text that is not JSON is refused with its line and column", "[unit]")
         {"empty", "", {"found an empty file"}},
         {"only spaces", " \n ", {"found an empty file"}},
         {"a list", "[1, 2]", {"found the list [1,2]", "expected an object"}},
-        // once the end of the program's stack: what describes a value goes down into it
+        // Deep nesting must not overflow the stack: the description of a value is recursive.
         {"brackets", "{\"name\": " + std::string(100000, '[') + std::string(100000, ']') + "}", {"more than 100 deep"}},
     });
 }
@@ -254,7 +254,7 @@ TEST_CASE("a file that is not there, or a folder, is refused", "[unit]") {
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(read_scene_file(folder.path() / "none.json"), Catch::Contains("none.json: found no such file"));
     CHECK_THROWS_WITH(read_scene_file(folder.path()), Catch::Contains("found a folder"));
-    CHECK_THROWS_WITH(read_scene_file("/dev/zero"), Catch::Contains("found a device"));  // it never ends
+    CHECK_THROWS_WITH(read_scene_file("/dev/zero"), Catch::Contains("found a device"));  // a device without an end
 }
 
 TEST_CASE("short names of parameters mean the same as long ones", "[unit]") {
@@ -266,7 +266,7 @@ TEST_CASE("short names of parameters mean the same as long ones", "[unit]") {
     CHECK(m.poisson_ratio == 0.3);
     CHECK(m.density == 700);
     CHECK(m.friction == 0.25);
-    CHECK(scene.name == "a");  // by default that of the file
+    CHECK(scene.name == "a");  // by default the name of the file
 }
 
 TEST_CASE("the three spellings of a rotation agree", "[unit]") {
@@ -275,12 +275,12 @@ TEST_CASE("the three spellings of a rotation agree", "[unit]") {
         return read_scene_file(folder.write("r.json", body_with("\"rotation\": " + text))).bodies[0].rotation.value;
     };
     const Vec3 quarter = std::numbers::pi / 2 * Vec3::UnitZ();
-    // The arithmetic of a handful of roundings.
+    // The tolerance allows a handful of roundings.
     CHECK((rotation(R"({"axis": [0, 0, 2], "degrees": 90})") - quarter).norm() < 1e-14);
     CHECK((rotation(R"({"axis": [0, 0, 1], "radians": 1.5707963267948966})") - quarter).norm() < 1e-14);
     CHECK((rotation("[[0, -1, 0], [1, 0, 0], [0, 0, 1]]") - quarter).norm() < 1e-14);
     CHECK(rotation("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]").norm() == 0);
-    // Half a turn: the angle where logarithms of rotations are ill-conditioned.
+    // Half a turn: at this angle the logarithm of a rotation is ill-conditioned.
     CHECK(rotation("[[-1, 0, 0], [0, -1, 0], [0, 0, 1]]").norm() == Approx(std::numbers::pi));
 }
 

@@ -1,4 +1,4 @@
-// Which cases a file of cases means: grids, lists, draws; and the hash by which a result is known again.
+// Cases that a cases file defines: grids, lists, draws; and the hash that identifies a result.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -16,7 +16,7 @@ namespace {
 
 using skerry::Json;
 
-/// A folder with a scene and a file of cases.
+/// A folder with a scene and a cases file.
 class SweepFolder {
 public:
     explicit SweepFolder(const std::string& cases) {
@@ -96,7 +96,7 @@ TEST_CASE("draws are the same on every machine", "[unit]") {
     std::mt19937_64 engine;
     engine.discard(9999);
     CHECK(engine() == 9981545732273789042ull);
-    // Found by another program, from the definitions of the engine and of the draws alone.
+    // Expected values come from an independent program, written from the definitions of the engine and the draws.
     CHECK(texts(R"("random": {"seed": 7, "count": 2, "parameters": [{"set": "u", "from": -1, "to": 3},
         {"set": "l", "distribution": "log_uniform", "from": 1e4, "to": 1e6},
         {"set": "i", "distribution": "integer", "from": 1, "to": 6},
@@ -112,7 +112,7 @@ TEST_CASE("a higher count adds cases and changes none", "[unit]") {
 }
 
 TEST_CASE("draws have the mean and the spread of their distribution", "[unit][long]") {
-    // Means of 40,000 draws are within four standard errors of theirs, 0.02 standard deviations.
+    // Means of 40,000 draws are within four standard errors of the expected means: 0.02 standard deviations.
     constexpr int count = 40000;
     const std::vector<double> uniform = drawn(R"("from": 2, "to": 5)", count);
     CHECK(std::abs(mean(uniform) - 3.5) < 0.02);
@@ -155,14 +155,14 @@ TEST_CASE("the hash of a case covers its values, its scene and the files that th
     CHECK_FALSE(is_new(hash({})));
     CHECK(is_new(hash({"seconds=1"})));
     CHECK(is_new(hash({"seconds=2"})));
-    CHECK(is_new(hash({"bodies[7].x=1"})));  // cannot be carried out
+    CHECK(is_new(hash({"bodies[7].x=1"})));  // cannot be applied to the scene
     CHECK(is_new(hash({"bodies[8].x=1"})));
     CHECK_FALSE(is_new(hash({"seconds=2"})));
     folder.write("part.json", R"({"seconds": 3})");
     CHECK(is_new(hash({})));
-    folder.write("mesh.ele", "2");  // beside the one that is named
+    folder.write("mesh.ele", "2");  // file beside the named one
     CHECK(is_new(hash({})));
-    folder.write("part.json", R"({"include": "scene.json"})");  // in a circle: refused later
+    folder.write("part.json", R"({"include": "scene.json"})");  // a circular include is refused later
     CHECK(is_new(hash({})));
     folder.write("scene.json", R"({"bodies": [ {"mesh": {"file": "mesh.node"}}], "seconds": 1})");
     CHECK(is_new(hash({})));

@@ -1,4 +1,4 @@
-// Which cases a process works on, by what its launcher says.
+// Selection of the cases for a process from the variables of its launcher.
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>
@@ -40,7 +40,7 @@ TEST_CASE("a process that nobody counts has all cases", "[unit]") {
     check(share({}), 0, 1);
     CHECK(share({}).said_by.empty());
     CHECK(share({}).has(17));
-    check(share({{"PMI_RANK", "3"}}), 0, 1);  // of how many nobody knows
+    check(share({{"PMI_RANK", "3"}}), 0, 1);  // the number of processes is unknown
     check(share({{"PMI_RANK", ""}, {"PMI_SIZE", ""}}), 0, 1);
 }
 

@@ -1,4 +1,4 @@
-// Saved worlds that are damaged, or something else: a message that names the file, never a crash, never another world.
+// Loading of damaged worlds and of other files: a message that names the file, never a crash, never another world.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
@@ -16,7 +16,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// A world with something in every table.
+/// A world with rows in every table.
 World full_world() {
     World world = lively_scene({});
     REQUIRE(world.advance(0.21).ok());
@@ -37,7 +37,7 @@ struct SavedFile {
     void write(std::span<const char> content) const {
         std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
     }
-    /// What World::load says against the content.
+    /// Error message of World::load for the content.
     std::string refusal(std::span<const char> content) const {
         write(content);
         try {
@@ -101,7 +101,7 @@ TEST_CASE("a file of another kind, or of another version, is refused by what it 
     CHECK_THAT(saved.refusal(other), Contains("found version 11, expected version 21"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("something that is no file"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
-    // HDF5, with the right head, but not what is expected there
+    // HDF5 with a valid head but with unexpected contents
     ContactProblem problem;
     problem.q = {Vec3(0, 0, -1)};
     problem.mu = {0.5};
@@ -178,7 +178,7 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
 TEST_CASE("a world that cannot be written stays, and so does the file before it", "[unit]") {
     const World world = full_world();
     const SavedFile saved(world);
-    std::filesystem::create_directory(saved.path + ".part");  // where the new file would be written
+    std::filesystem::create_directory(saved.path + ".part");  // blocks the path of the temporary file
     CHECK_THROWS_WITH(world.save(saved.path), Contains(saved.path));
     CHECK(World::load(saved.path).state_hash() == world.state_hash());
     CHECK_THROWS_WITH(world.save(saved.folder.path()), Contains("a folder"));

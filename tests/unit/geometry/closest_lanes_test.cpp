@@ -1,4 +1,4 @@
-// Eight distances at a time against the twin that computes one.
+// Distances in eight lanes against the scalar functions.
 #include "systems/geometry/closest_lanes.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ LaneVec3<Real8> loaded(const Points& points) {
     return all;
 }
 
-/// Four points a lane, of every kind: far and near, flat, short, parallel, touching.
+/// Four points per lane, of every kind: far and near, flat, short, parallel, touching.
 std::array<Points, 4> random_features(Random& random) {
     std::array<Points, 4> of;
     for (std::size_t l = 0; l < lanes; ++l) {
@@ -42,9 +42,9 @@ std::array<Points, 4> random_features(Random& random) {
         else if (kind < -0.5)
             of[2][l] = of[0][l];  // touching
         else if (kind < -0.4)
-            of[1][l] = of[2][l] = of[3][l];  // no triangle at all
+            of[1][l] = of[2][l] = of[3][l];  // three equal points
         else if (kind < -0.2)
-            of[3][l] = of[1][l] + 0.5 * (of[2][l] - of[1][l]);  // a straight triangle
+            of[3][l] = of[1][l] + 0.5 * (of[2][l] - of[1][l]);  // three points on a line
         else if (kind < 0)
             of[0][l] = (of[1][l] + of[2][l] + of[3][l]) / 3;  // in the plane
         else if (kind < 0.2)
@@ -66,7 +66,7 @@ TEST_CASE("eight distances of points and triangles are those of each alone", "[u
             const Vec3 normal = (x[2][l] - x[1][l]).cross(x[3][l] - x[1][l]);
             const Real distance = std::sqrt(found.distance_squared[l]);
             INFO("trial " << trial << " lane " << l);
-            // The twin takes a triangle lower than 1e-6 of its length for its longest edge.
+            // The scalar function replaces a triangle with a height below 1e-6 of its length by its longest edge.
             CHECK(distance == Approx(std::sqrt(expected.distance_squared)).margin(4e-6));
             CHECK(distance <= std::sqrt(expected.distance_squared) + 1e-12);
             CHECK(found.height[l] == Approx(normal.dot(x[0][l] - x[1][l])).margin(1e-12));

@@ -58,7 +58,7 @@ TEST_CASE("the nearest point of a triangle is no further than any sampled point 
         const Real sampled = sampled_triangle_distance(p, a, b, c);
         const Real longest = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
         CHECK(std::sqrt(found.distance_squared) <= sampled + 1e-12);
-        CHECK(std::sqrt(found.distance_squared) >= sampled - longest / samples);  // the sampling is that coarse
+        CHECK(std::sqrt(found.distance_squared) >= sampled - longest / samples);  // spacing of the samples
     }
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("each Voronoi region of a triangle is named, with zero weights outside
         CHECK(found.region == test.region);
         for (std::size_t k = 0; k < 3; ++k) {
             CHECK(found.weight[k] == Approx(test.weight[k]).margin(1e-15));
-            if (test.weight[k] == 0) CHECK(found.weight[k] == 0);  // exactly: such a node joins no regions
+            if (test.weight[k] == 0) CHECK(found.weight[k] == 0);  // exactly: such a node connects no regions
         }
     }
 }
@@ -187,7 +187,7 @@ TEST_CASE("parallel, collinear and zero-length segments have a distance and no i
     found = closest_points_of_segments(o, o, y, y);
     CHECK(distance(found) == Approx(1));
     CHECK_FALSE(found.interior);
-    // An angle of 1e-4 counts as parallel, yet the distance is right: they cross in the middle.
+    // An angle of 1e-4 counts as parallel. The distance is right nevertheless: the segments cross in the middle.
     found = closest_points_of_segments(-x, x, Vec3(-1, -1e-4, 0.5), Vec3(1, 1e-4, 0.5));
     CHECK(distance(found) == Approx(0.5).epsilon(1e-12));
     CHECK_FALSE(found.interior);

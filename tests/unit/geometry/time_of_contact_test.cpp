@@ -27,8 +27,8 @@ FourPoints random_points(Random& random, Real scale) {
     return {scale * random.vector(), scale * random.vector(), scale * random.vector(), scale * random.vector()};
 }
 
-/// The slow answer: where the four points are in one plane (roots of a cubic, between its extrema, by bisection), and
-/// of these the first time at which the features really meet. In extended precision.
+/// Slow reference in extended precision: the times at which the four points are coplanar (roots of a cubic, by
+/// bisection between its extrema), and the first of them at which the features meet.
 class Oracle {
 public:
     Oracle(FeaturePair kind, const FourPoints& x, const FourPoints& d) : kind_(kind) {
@@ -38,7 +38,7 @@ public:
         }
     }
 
-    /// Above 1 when they do not meet.
+    /// Time of the first contact as a fraction of the step; above 1 if there is none.
     Wide first_contact() const {
         const auto [c1, c2, c3] = derivative();
         std::vector<Wide> cuts{0, 1};
@@ -65,7 +65,7 @@ public:
 private:
     WideVector at(std::size_t i, Wide t) const { return x_[i] + t * d_[i]; }
     Wide volume(Wide t) const { return (at(1, t) - at(0, t)).cross(at(2, t) - at(0, t)).dot(at(3, t) - at(0, t)); }
-    /// Of the cubic: c1 + c2 t + c3 t^2, from four of its values.
+    /// Derivative of the cubic, c1 + c2 t + c3 t^2, from four values of the cubic.
     std::array<Wide, 3> derivative() const {
         const Wide f0 = volume(0), f1 = volume(1), g0 = volume(-1), f2 = volume(2);
         const Wide b = (f1 + g0) / 2 - f0;
@@ -73,7 +73,7 @@ private:
         const Wide c = (f1 - g0) / 2 - a;
         return {c, 2 * b, 3 * a};
     }
-    /// The points are in one plane: do the features have a point in common?
+    /// For coplanar points: true if the features have a point in common.
     bool meet(Wide t) const {
         const std::array<WideVector, 4> x{at(0, t), at(1, t), at(2, t), at(3, t)};
         if (kind_ == FeaturePair::edge_edge)
@@ -85,7 +85,7 @@ private:
         }
         return true;
     }
-    /// Whether p and q are on either side of the line ab, all in one plane.
+    /// True if p and q lie on different sides of the line ab, or on it. All points are coplanar.
     static bool separates(const WideVector& a, const WideVector& b, const WideVector& p, const WideVector& q) {
         return (b - a).cross(p - a).dot((b - a).cross(q - a)) <= 0;
     }
@@ -102,7 +102,7 @@ Real distance_at(FeaturePair kind, const FourPoints& x, const FourPoints& d, Rea
                          : closest_points_of_segments(y[0], y[1], y[2], y[3]).distance_squared);
 }
 
-/// Never later than the truth, and what it calls near is near.
+/// Checks that a reported time is not later than the true one, and that the features are near each other then.
 void check_against_oracle(FeaturePair kind, const FourPoints& x, const FourPoints& d, int& met) {
     const Wide truth = Oracle(kind, x, d).first_contact();
     const std::optional<Real> time = time_of_contact(kind, x, d);
@@ -126,7 +126,7 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
         int met = 0, reported = 0;
         for (int trial = 0; trial < draws(20000); ++trial) {
             const FourPoints x = random_points(random, 1);
-            // Half of them aim at the other feature, with some common motion; the rest move anyhow.
+            // Half of the trials aim at the other feature, with some common motion; the others move at random.
             FourPoints d = random_points(random, 1);
             if (trial % 2) {
                 const Real a = std::abs(random.number()), b = std::abs(random.number());
@@ -142,7 +142,7 @@ TEST_CASE("the time of contact is never later than the exact one, and then they 
             reported += time_of_contact(kind, x, d).has_value();
         }
         CHECK(met > draws(5000));
-        CHECK(reported - met > draws(100));  // near misses count
+        CHECK(reported - met > draws(100));  // near misses are reported, too
     }
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("features that stay further apart than the slack are never reported", 
             const FourPoints x = random_points(random, 1), d = random_points(random, 1);
             Real nearest = std::numeric_limits<Real>::infinity();
             for (int i = 0; i <= 200; ++i) nearest = std::min(nearest, distance_at(kind, x, d, i / 200.0));
-            // Between two looks a distance changes by no more than half of the approach of one interval.
+            // Between two samples a distance changes by at most half of the approach in one interval.
             if (nearest - greatest_approach(kind, d) / 400 <= contact_slack * distance_at(kind, x, d, 0)) continue;
             ++far;
             REQUIRE_FALSE(time_of_contact(kind, x, d));
@@ -184,10 +184,10 @@ TEST_CASE("degenerate motions have the time of contact that they should", "[unit
             const auto time = time_of_contact(point_triangle, x, {down, none, none, none});
             REQUIRE(time);
             CHECK(*time <= 0.5);
-            CHECK(*time >= 0.45);  // a tenth of the way is the slack
+            CHECK(*time >= 0.45);  // the tolerance is a tenth of the distance
         }
         FourPoints beside = triangle;
-        beside[0] = Vec3(-0.2, 0.5, 1);  // passes at 0.2, which is above a tenth of the distance at the start
+        beside[0] = Vec3(-0.2, 0.5, 1);  // passes at 0.2, above a tenth of the initial distance
         CHECK_FALSE(time_of_contact(point_triangle, beside, {down, none, none, none}));
     }
     SECTION("parallel edges, edges in one line and edges in one plane") {
@@ -218,7 +218,7 @@ TEST_CASE("degenerate motions have the time of contact that they should", "[unit
         CHECK_FALSE(time_of_contact(point_triangle, x, {Vec3(0.5, 0.2, 0), none, none, none}));
         const FourPoints crossed{Vec3(-1, 0, 1e-9), Vec3(1, 0, 1e-9), Vec3(0, -1, 0), Vec3(0, 1, 0)};
         CHECK_FALSE(time_of_contact(edge_edge, crossed, {Vec3(0.5, 0.2, 0), Vec3(0.5, 0.2, 0), none, none}));
-        // one end is lifted more than the other comes down
+        // One end rises by more than the other descends.
         CHECK_FALSE(time_of_contact(edge_edge, crossed, {Vec3(0, 0, 0.5), Vec3(0, 0, 0.1), none, none}));
     }
 }

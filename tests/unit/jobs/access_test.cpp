@@ -1,4 +1,4 @@
-// What the arguments of a stage pass and declare, what does not compile, and what a stage may not touch.
+// Arguments of a stage: passed values, declared access, code that must not compile, and forbidden access.
 #include "jobs/access.h"
 
 #include <catch2/catch.hpp>
@@ -207,7 +207,7 @@ TEST_CASE("a value conflicts with nothing, a guard declares what it is given", "
 
 namespace {
 
-/// What the graph of a test watches.
+/// Columns that the graph of a test tracks.
 struct Rows {
     Column<Real> a, b;
     Ragged<Index> ragged;
@@ -242,7 +242,7 @@ const std::vector<std::pair<const char*, Touch>> writes_of_b{
      }},
 };
 
-/// Lists what a stage does on its own thread, in each block of a loop, and in each block of a team.
+/// Lists the ways to touch rows: on the stage's thread, in the last block of a loop, in the last block of a team.
 void list_everywhere(std::vector<std::function<void(Executor&)>>& ways, Rows& rows, Touch touch) {
     ways.push_back([&rows, touch](Executor&) { touch(rows); });
     ways.push_back([&rows, touch](Executor& executor) {
@@ -260,7 +260,7 @@ void list_everywhere(std::vector<std::function<void(Executor&)>>& ways, Rows& ro
     });
 }
 
-/// Runs a stage with these arguments that does `work`.
+/// Runs a stage that does `work` and declares `arguments`.
 void run_stage(Rows& rows, Executor& executor, const std::function<void(Executor&)>& work, const auto&... arguments) {
     TaskGraph graph;
     graph.track(&rows, sizeof rows, Rows::name_of);
@@ -371,7 +371,7 @@ TEST_CASE("workers that help one stage and then another may touch what that one 
 
 #else
 
-// What a stage may touch is checked, and the check tested, in builds without NDEBUG: that of the thread sanitizer.
+// The check of access and its tests exist only in builds without NDEBUG, such as that of the thread sanitizer.
 
 #endif
 

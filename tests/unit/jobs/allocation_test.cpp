@@ -1,4 +1,4 @@
-// Counts what operator new hands out: a graph that has run before must not ask for memory.
+// Counts calls of operator new: a graph that has run before must not allocate.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
@@ -13,8 +13,8 @@ namespace skerry::test::jobs_allocation_test {
 
 namespace {
 
-// A thread that a library starts late asks for memory when it comes, which is not ours to avoid: every worker takes one
-// block here, and waits for the others.
+// A thread that a library starts late allocates when it starts, which cannot be avoided here. Therefore every worker
+// takes one block and waits for the others.
 void wait_for_all_workers(Executor& executor) {
     std::atomic<int> here{0};
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(100);

@@ -1,4 +1,4 @@
-// The host owns the threads: what is promised to a host that uses oneTBB itself.
+// The host owns the threads: guarantees for a host that uses oneTBB itself.
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>

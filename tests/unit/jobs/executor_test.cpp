@@ -39,7 +39,7 @@ TEST_CASE("a backend that was not built, or a negative number of workers, is ref
 TEST_CASE("blocks and stages calculate alike, whatever the host has set, and the host's thread is left as it was",
           "[unit]") {
 #if defined(__SSE2__)
-    const auto odd = [] {  // a denormal number that is one, or a sum that is not rounded to nearest
+    const auto odd = [] {  // true if denormal numbers are kept, or if sums are not rounded to nearest
         volatile Real smallest = std::numeric_limits<Real>::min(), one = 1, tiny = 0x1p-60;
         return smallest / 2 > 0 || one + tiny > 1;
     };
@@ -77,7 +77,7 @@ TEST_CASE("what the blocks wrote is seen after run_blocks, run after run", "[uni
     for (const ExecutorChoice& choice : executor_choices()) {
         CAPTURE(choice.text());
         const auto executor = choice.make();
-        std::vector<int> rows(97, 0);  // plain: the thread sanitizer watches
+        std::vector<int> rows(97, 0);  // plain ints: the thread sanitizer watches them
         for (int run = 0; run < 200; ++run)
             executor->run_blocks(97, [&](Index block) { ++rows[static_cast<std::size_t>(block)]; });
         REQUIRE(std::count(rows.begin(), rows.end(), 200) == 97);
@@ -223,8 +223,8 @@ TEST_CASE("of several stages that throw, the lowest is heard", "[unit]") {
         CAPTURE(choice.text());
         const auto executor = choice.make();
         std::atomic<int> started{0};
-        // Each waits a while for the other to have started: then both throw. A machine with a single core may miss
-        // that; stage 0, which is started first, is then the only one.
+        // Each stage waits for the other to start; then both throw. On a single core the wait may end too early: then
+        // only stage 0, which starts first, throws.
         REQUIRE_THROWS_WITH(executor->run_graph(graph.edges(),
                                                 [&](Index stage) {
                                                     ++started;
@@ -246,7 +246,7 @@ TEST_CASE("independent stages run at the same time, and the caller is one of the
         const auto executor = choice.make();
         std::atomic<int> inside{0};
         std::atomic<bool> met{false};
-        // oneTBB's workers yield a hundred times before they leave the arena of an executor that is gone: seconds on a
+        // Workers of oneTBB yield a hundred times before they leave the arena of a destroyed executor: seconds on a
         // crowded machine.
         executor->run_graph(graph.edges(), [&](Index) {
             if (++inside == 2) met = true;

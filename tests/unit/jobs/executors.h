@@ -1,4 +1,4 @@
-// Every backend of the build with some worker counts, for tests that must hold on all of them.
+// Every backend of the build with several worker counts, for tests that must hold on all of them.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ struct ExecutorChoice {
     std::string text() const { return std::string(name_of(backend)) + ", " + std::to_string(workers) + " workers"; }
 };
 
-/// More workers than this machine has cores are meant: they show other interleavings.
+/// All backends with these worker counts. More workers than cores are intended: they cause other interleavings.
 inline std::vector<ExecutorChoice> executor_choices(const std::vector<int>& workers = {1, 2, 4, 8}) {
     std::vector<ExecutorChoice> choices;
     for (Backend backend : available_backends()) {

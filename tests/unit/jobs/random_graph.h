@@ -1,4 +1,4 @@
-// A random graph of stages whose edges all go up.
+// A random graph of stages; every edge leads to a later stage.
 #pragma once
 
 #include <random>

@@ -14,7 +14,7 @@ TEST_CASE("block results are joined in block order, starting from the identity",
         CAPTURE(choice.text());
         const auto executor = choice.make();
         Column<int> partial;
-        // Not associative: any other order gives another number.
+        // The operation is not associative: any other order gives another number.
         const auto digits = [&](std::size_t count) {
             return reduce(
                 *executor, count, 2, partial, 7,
@@ -26,7 +26,7 @@ TEST_CASE("block results are joined in block order, starting from the identity",
         REQUIRE(digits(2) == 71);
         REQUIRE(digits(3) == 712);
         REQUIRE(digits(12) == 7123456);
-        REQUIRE(digits(4) == 712);  // results of the longer run before are not counted
+        REQUIRE(digits(4) == 712);  // results of the longer earlier run are not counted
     }
 }
 

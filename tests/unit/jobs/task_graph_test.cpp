@@ -56,7 +56,7 @@ TEST_CASE("edges that follow from others are left out", "[unit]") {
     TaskGraph graph;
     graph.stage("0", nothing, write(a), write(b));
     graph.stage("1", nothing, read(a), write(b));
-    graph.stage("2", nothing, read(a), read(b));  // waits for 0 too, but 1 does already
+    graph.stage("2", nothing, read(a), read(b));  // also waits for 0, but 1 already does
     graph.compile();
     REQUIRE(edges_of(graph) == Edges{{0, 1}, {1, 2}});
 }
@@ -153,7 +153,7 @@ TEST_CASE("spans are taken when the stage starts, after earlier stages made rows
         "look", [&seen](std::span<const Real> rows, Real h) { seen = rows.size() * static_cast<std::size_t>(h); },
         read(column), value(number));
     graph.compile();
-    number = 2;  // value() passes what it is at run time
+    number = 2;  // value() passes the value at run time
     graph.run_inline();
     REQUIRE(seen == 2000);
 }

@@ -14,7 +14,7 @@ namespace skerry::test::team_test {
 
 namespace {
 
-/// Phases of these numbers of blocks.
+/// Offsets of phases with these numbers of blocks.
 std::vector<Index> offsets(const std::vector<Index>& sizes) {
     std::vector<Index> offset{0};
     for (const Index size : sizes) offset.push_back(offset.back() + size);
@@ -31,7 +31,7 @@ TEST_CASE("every block of a team runs once, after all blocks of earlier phases, 
         CAPTURE(choice.text());
         const auto executor = choice.make();
         for (int gathering = 0; gathering < 5; ++gathering) {
-            std::vector<int> runs(blocks, 0), seen(blocks, 0);  // plain: the thread sanitizer watches
+            std::vector<int> runs(blocks, 0), seen(blocks, 0);  // plain ints: the thread sanitizer watches them
             int led = 0;
             team.gather(*executor, [&] {
                 ++led;

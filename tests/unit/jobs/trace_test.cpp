@@ -73,7 +73,7 @@ TEST_CASE("zones nest and last as long as their scope", "[unit]") {
     REQUIRE(zones[0].at("dur").get<double>() >= 2000);
     REQUIRE(zones[1].at("ts").get<double>() <= zones[0].at("ts").get<double>());
     REQUIRE(zones[1].at("ts").get<double>() + zones[1].at("dur").get<double>() >=
-            zones[0].at("ts").get<double>() + zones[0].at("dur").get<double>() - 0.002);  // 1 ns steps on both ends
+            zones[0].at("ts").get<double>() + zones[0].at("dur").get<double>() - 0.002);  // 1 ns at both ends
 }
 
 TEST_CASE("a zone that was open when the trace was cleared begins before time 0", "[unit]") {

@@ -1,4 +1,4 @@
-// The associated law of friction (docs/methods/friction.md 1.4).
+// The associated friction law (docs/methods/friction.md 1.4).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -28,7 +28,7 @@ const NamedMethod methods[] = {
 };
 const lab::AssociatedMethod& sweeps = methods[0].solve;
 
-/// From the impulses that are in the memory; leaves the solution there.
+/// Starts from the impulses in the memory and leaves the solution there.
 SolveResult solve_prepared(const DenseProblem& problem, const lab::AssociatedMethod& method, const SolveLimits& limits,
                            BlockMemory& memory) {
     lab::AssociatedOperator op(memory, problem.view(), problem.all);
@@ -59,7 +59,7 @@ TEST_CASE("gradients and sweeps agree on the associated law, and it is not Coulo
         for (std::size_t i = 0; i < problem.q.size(); ++i) {
             const Vec3 u = problem.velocity(i, swept), r = swept[i].head<3>();
             const Real size = 1 + problem.q[i].norm();
-            // r in the cone, u in the dual cone, at right angles: from W and q alone
+            // r is in the cone, u in the dual cone, and they are orthogonal. The check uses W and q alone.
             CHECK(std::hypot(r[1], r[2]) <= 0.6 * r[0] * (1 + 1e-12));
             CHECK(u[0] - 0.6 * std::hypot(u[1], u[2]) > -1e-9 * size);
             CHECK(std::abs(u.dot(r)) < 1e-9 * size);
@@ -77,11 +77,11 @@ TEST_CASE("gradients and sweeps agree on the associated law, and it is not Coulo
 }
 
 TEST_CASE("a contact that slides apart slowly still presses under the associated law", "[unit][lab]") {
-    // 2 kg that move along x at 1 m/s and lift off at 0.1 m/s; frame: normal, tangents
+    // A mass of 2 kg moves along x at 1 m/s and lifts off at 0.1 m/s. Components: normal, then tangents.
     DenseProblem problem(1, 3, 0.5, 1);
     problem.block = {0.5 * Mat3::Identity()};
     problem.q = {Vec3(0.1, 1, 0)};
-    // lifts off at mu times its speed: z = -m v, (z_n + mu |z_t|) / (1 + mu^2)
+    // The contact lifts off at mu times its speed: z = -m v, r_n = (z_n + mu |z_t|) / (1 + mu^2).
     const Real pressed = 2 * (-0.1 + 0.5) / 1.25;
     for (const bool fixed : {false, true}) {
         std::vector<Vec4> impulse;
@@ -159,7 +159,7 @@ TEST_CASE("a solution under the associated law has the errors of that law", "[un
     const ProblemSolution solution = lab::solve_associated(problem, sweeps, {.tolerance = 1e-10});
     CHECK(solution.converged);
     CHECK(std::abs(solution.energy_gap) < 1e-9);                       // r . u
-    CHECK(problem_error(problem, solution.reaction).relative > 1e-3);  // both contacts slide: Coulomb's law is not met
+    CHECK(problem_error(problem, solution.reaction).relative > 1e-3);  // both contacts slide and violate Coulomb's law
 }
 
 }  // namespace skerry::test::associated_test

@@ -1,4 +1,4 @@
-// The methods of the lab: the same solution as sweeps, their limits, and problems that are not ordinary ones.
+// Methods of the lab: agreement with the sweeps, iteration limits, and degenerate problems.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,11 +16,11 @@ namespace skerry::test::lab_methods_test {
 
 namespace {
 
-/// A method with a law that it is for.
+/// A method and a friction law that it supports.
 struct Case {
     lab::Method method;
     Friction friction;
-    Real mu;  // 0 where the method leaves friction out
+    Real mu;  // 0 if the method is for contacts without friction
 };
 
 std::vector<Case> cases(Real mu) {
@@ -113,7 +113,7 @@ TEST_CASE("methods of the lab solve large regions in the order of colours", "[un
     add_sheets(scene, 12, 0.3, 1);
     SolverSettings settings = strict();
     const SolvedScene swept = scene.solve(settings);
-    settings.parallel_region_contacts = 100;  // of 200
+    settings.parallel_region_contacts = 100;  // less than the 200 contacts
     for (const lab::Method method : {lab::Method::nncg, lab::Method::apgd}) {
         INFO(name_of(method));
         const SolvedScene solved = solve_by(method, scene, settings);
@@ -130,7 +130,7 @@ TEST_CASE("methods of the lab solve dense random blocks with cone and pyramid", 
             const SolveResult result = solve_dense(problem, one.method, one.friction, {1e-8, 20000, false, 1}, impulse);
             INFO(text(one) << " seed " << seed << " error " << result.error);
             CHECK(result.converged);
-            // looked at again, from W and r alone
+            // This check uses W and r alone.
             for (std::size_t i = 0; i < 6; ++i) {
                 const Vec3 u = problem.velocity(i, impulse), r = impulse[i].head<3>();
                 const Real size = 1 + u.norm();
@@ -158,7 +158,7 @@ TEST_CASE("proportioning comes to the solution of Gauss-Seidel on dense blocks w
             const SolveResult result =
                 solve_dense(problem, lab::Method::mprgp, Friction::cone, {1e-13, 2000, false, 1}, proportioned);
             CHECK(result.converged);
-            CHECK(result.iterations < 200);  // it is finite: a few faces of at most 12 unknowns
+            CHECK(result.iterations < 200);  // the method is finite: a few faces of at most 12 unknowns
             for (std::size_t i = 0; i < problem.q.size(); ++i)
                 CHECK((problem.velocity(i, memory.impulse) - problem.velocity(i, proportioned)).norm() <
                       1e-10 * (1 + problem.q[i].norm()));
@@ -176,7 +176,7 @@ TEST_CASE(
         CHECK(
             solve_dense(DenseProblem(1, 6, mu, 1), method, Friction::cone, {1e-9, 1000, false, 1}, impulse).converged);
 
-        // one global region: a node on a plate that does not move, a pinned node on the plate, and one that leaves it
+        // One global region: a node on a fixed plate, a pinned node on the plate, and one that leaves it.
         ContactScene scene;
         const Index plate = scene.add_node(0, Vec3(0, 0, 0));
         scene.touch_node(scene.add_node(2, Vec3(0.5, 0, -1)), plate, Vec3(0, 0, 1), mu);
@@ -190,7 +190,7 @@ TEST_CASE(
         CHECK(solved.regions.status[0] == RegionStatus::converged);
         CHECK((solved.impulse[0] - Vec3(mu > 0 ? -0.6 : 0, 0, 2)).norm() < 1e-8);
 
-        // the same with fixed iterations, which no certificate saves from being done
+        // With a fixed count the iterations are done even if a certificate would save them.
         SolverSettings fixed = strict();
         fixed.fixed_iterations = true;
         fixed.max_iterations = 7;
@@ -209,7 +209,7 @@ TEST_CASE("methods of the lab say so when a number is not one", "[unit][lab]") {
     for (const Case& one : cases(0.4))
         for (const bool fixed : {false, true})
             for (int place = 0; place < 3; ++place) {
-                // has no tangents
+                // without friction there are no tangents
                 if (one.friction == Friction::pyramid && place > 0 && lab::needs_frictionless(one.method)) continue;
                 INFO(text(one) << " fixed " << fixed << " place " << place);
                 DenseProblem problem(4, 20, one.mu, 2);

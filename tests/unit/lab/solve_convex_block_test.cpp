@@ -46,7 +46,7 @@ TEST_CASE("the convex local solution of 100000 random blocks meets its optimalit
             ++(std::hypot(r[1], r[2]) < mu * r[0] * (1 - 1e-9) ? sticking : sliding);
         }
     }
-    CHECK(worst < 1e-11);  // rounding times the condition of a block, up to 1e5
+    CHECK(worst < 1e-11);  // rounding times the condition of a block, which is up to 1e5
     CHECK(std::min({apart, sticking, sliding}) > 5000);
 }
 
@@ -68,9 +68,9 @@ TEST_CASE("an isotropic block gives the projection onto the cone", "[unit][lab]"
     const ConvexBlock block = prepare_convex_block(2 * Mat3::Identity(), 0.5);
     CHECK(solve_convex_block(block, Vec3(3, 3.6, 4.8), 0.5) == Vec3::Zero());  // u_n = mu |u_t|: on the dual cone
     CHECK((solve_convex_block(block, Vec3(-4, 0.6, 0.8), 0.5) - Vec3(2, -0.3, -0.4)).norm() < 1e-13);
-    // (2 + 0.5 * 5) / 1.25
+    // r_n = (2 + 0.5 * 5) / 1.25
     CHECK((solve_convex_block(block, Vec3(-4, 6, 8), 0.5) - Vec3(3.6, -1.08, -1.44)).norm() < 2e-13);
-    // slides, so it presses
+    // A contact that slides is pressed, even at a normal velocity >= 0.
     CHECK((solve_convex_block(block, Vec3(0, 6, 8), 0.5) - Vec3(2, -0.6, -0.8)).norm() < 1e-13);
     CHECK((solve_convex_block(block, Vec3(1, 6, 8), 0.5) - Vec3(1.6, -0.48, -0.64)).norm() < 1e-13);
 }
@@ -81,7 +81,7 @@ TEST_CASE("degenerate blocks and zero friction have their convex solutions", "[u
     const Mat3 w = draw.block(0.3);
     CHECK((solve_once(w, Vec3(-4, 6, 8), 0) - Vec3(4 / w(0, 0), 0, 0)).norm() < 1e-15);
     CHECK(solve_once(w, Vec3(4, 6, 8), 0) == Vec3::Zero());
-    // rank two: the mobility along the third axis is missing, and nothing asks for it
+    // Rank two: the mobility along the third axis is zero, and the solution does not need it.
     Mat3 flat = Mat3::Zero();
     flat.topLeftCorner<2, 2>() << 2, 0.5, 0.5, 1;
     const Vec3 b(-1, 2, 0);

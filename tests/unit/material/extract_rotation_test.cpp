@@ -77,7 +77,7 @@ TEST_CASE("the trace in the frame is known to rounding, without a product with i
         Mat3 F;
         if (trial % 2 == 0)
             F = random_rotation(random, 0.1) * symmetric(random, 0.4);
-        else  // mirrored and far turned ones, some of which need to be solved
+        else  // mirrored and strongly rotated F, some of which need the solver
             F << test::random_vector(random), test::random_vector(random), test::random_vector(random);
         Lanes8 x = all_lanes(F, identity);
         const Real8 trace = extract_rotation(x.F, x.volume, x.q);
@@ -123,7 +123,7 @@ TEST_CASE("a collapsed element keeps the frame it had", "[unit]") {
     const Eigen::Quaternion<Real> before(random_rotation(random, 1.0));
     const Quaternion start{before.w(), before.x(), before.y(), before.z()};
     CHECK(nearest_rotation(Mat3::Zero(), start) == start);
-    // Onto a line: any turn about it is as good, so none is made.
+    // F maps to a line: all rotations about it are equally good, so none is made.
     const Vec3 axis = Vec3(1, 2, 3).normalized();
     const Mat3 line = before.toRotationMatrix() * axis * axis.transpose();
     CHECK((rotation_matrix_of(nearest_rotation(line, start)) - before.toRotationMatrix()).norm() <= 1e-12);

@@ -20,7 +20,7 @@ MaterialConstants rubber(MaterialModel model) {
     return material_constants(model, 1e5, 0.4, 1000);
 }
 
-/// Random F: mild ones, strong ones, mirrored ones.
+/// Random F: mild (kind 0), strong (1) or mirrored (2).
 Mat3 random_gradient(std::mt19937_64& random, int kind) {
     Mat3 noise;
     noise << test::random_vector(random), test::random_vector(random), test::random_vector(random);
@@ -86,7 +86,7 @@ TEST_CASE("stress and energy by lanes agree with the plain twin", "[unit]") {
             const Real8 energy = lane_energy(material, lanes);
             for (int l = 0; l < element_lanes; ++l) {
                 const Mat3& f = F[static_cast<std::size_t>(l)];
-                // Rounding only, but the frame of a nearly degenerate F magnifies it by 1 / (s_i + s_j).
+                // Only rounding differs, but the frame of a nearly degenerate F magnifies it by 1 / (s_i + s_j).
                 const Real scale = material.lame_lambda * (1 + f.squaredNorm() * f.norm());
                 const Real magnify =
                     model == MaterialModel::corotational ? stiffness_bound(material, f) / material.shear_modulus : 1;
@@ -104,7 +104,7 @@ TEST_CASE("a lane has the bits that its element gives alone", "[unit]") {
     for (Mat3& f : F) f = random_gradient(random, 1);
     const LaneMat3<Real8> lanes = side_by_side(F);
     for (MaterialModel model : test::material_models) {
-        if (has_frame(model)) continue;  // iterated until all lanes are done
+        if (has_frame(model)) continue;  // its frame iterates until all lanes are done
         const MaterialConstants material = rubber(model);
         const LaneMat3<Real8> P = lane_stress(material, lanes);
         for (int l = 0; l < element_lanes; ++l) {
@@ -127,10 +127,10 @@ TEST_CASE("no eigenvalue of dP/dF is above the bound", "[unit]") {
         for (int trial = 0; trial < 200; ++trial) {
             const Mat3 F = random_gradient(random, trial % 3);
             const Real bound = stiffness_bound(material, F);
-            // the frame is about to jump: differences across the jump mean nothing
+            // The frame is about to jump: differences across the jump have no meaning.
             if (bound > 1e3 * material.lame_lambda) continue;
-            // Power iteration on dP/dF by central differences, shifted so that the largest eigenvalue is the largest in
-            // size, too.
+            // Power iteration on dP/dF by central differences, with a shift that makes the largest eigenvalue the
+            // largest in magnitude.
             const Real step = 1e-5;
             Mat3 d = random_gradient(random, 1);
             Real top = 0;
@@ -141,7 +141,7 @@ TEST_CASE("no eigenvalue of dP/dF is above the bound", "[unit]") {
                 d = Hd + bound * d;
             }
             INFO("model " << name_of(model) << " trial " << trial);
-            CHECK(top <= bound * (1 + 1e-5));  // 1e-5: the differences
+            CHECK(top <= bound * (1 + 1e-5));  // 1e-5: error of the differences
             if (model != MaterialModel::linear && F.determinant() > 0.5)
                 CHECK(bound <= 4 * std::max(top, 2 * material.shear_modulus));
         }
@@ -172,7 +172,7 @@ TEST_CASE("stable neo-Hookean: at rest no stress, and Hooke's law for small stra
                 (stress(material, Mat3::Identity() + step * d) - stress(material, Mat3::Identity() - step * d)) /
                 (2 * step);
             const Mat3 expected = la * d.trace() * Mat3::Identity() + mu * (d + d.transpose());
-            // the differences: step^2 times the third derivative
+            // error of the differences: step^2 times the third derivative
             CHECK((slope - expected).norm() <= 1e-8 * (mu + std::abs(la)));
         }
     }
@@ -205,13 +205,13 @@ TEST_CASE("stable neo-Hookean: what is pressed together on all sides is pushed a
             energy = next;
         }
         CHECK(stress(material, Mat3::Zero()) == Mat3::Zero());
-        // Pressed to a line of any length: the two sides that are nearly nothing are pushed apart.
+        // Compressed to a line of any length: the two nearly vanishing sides are pushed apart.
         for (Real length : {0.01, 0.3, 1.0, 3.0, 100.0}) {
             const Mat3 P = stress(material, Vec3(length, 1e-6, 1e-6).asDiagonal());
             CHECK(P(1, 1) < 0);
             CHECK(P(2, 2) < 0);
         }
-        // Flat: pushed apart, from either side towards the right one.
+        // Compressed flat: pushed apart, from either side towards the right one.
         for (Real thickness : {0.01, 0.0, -0.01, -0.5, -1.0})
             CHECK(stress(material, Vec3(1, 1, thickness).asDiagonal())(2, 2) < 0);
     }
@@ -239,14 +239,14 @@ TEST_CASE("stable neo-Hookean: no eigenvalue of the dense Hessian is above the b
                 }
                 const Real bound = stiffness_bound(material, F);
                 INFO("nu " << nu << " stretch " << stretch.transpose() << " trial " << trial);
-                CHECK((H - H.transpose()).norm() <= 1e-7 * bound);  // a stress with an energy
+                CHECK((H - H.transpose()).norm() <= 1e-7 * bound);  // a stress with an energy has a symmetric Hessian
                 const Real top = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, 9, 9>>(0.5 * (H + H.transpose()))
                                      .eigenvalues()[8];
                 CHECK(top <= bound * (1 + 1e-7));
                 const Real rough = StableNeoHookean::rough_stiffness_bound(material, F.squaredNorm(), F.determinant());
                 CHECK(rough >= bound * (1 - 1e-12));
                 if (trial == 0 && stretch == Vec3::Ones()) CHECK(rough == Approx(bound).epsilon(1e-12));
-                CHECK(bound > 0);  // a weight of the shares of mass: not nothing, however soft
+                CHECK(bound > 0);  // mass shares use it as a weight: positive, however soft the element is
             }
     }
 }
@@ -267,7 +267,8 @@ TEST_CASE("constants are refused for values that mean nothing", "[unit]") {
 }
 
 TEST_CASE("a neo-Hookean body at rest has the energy of its strains, not of the rounding of the formula", "[unit]") {
-    // A strain of 1e-12 has 1e-24 of the modulus; terms of first order that cancel only to rounding would leave 1e-16.
+    // A strain of 1e-12 has an energy of 1e-24 of the modulus. First-order terms that cancel only to rounding would
+    // leave 1e-16.
     for (const Real nu : {-0.5, 0.0, 0.3, 0.49}) {
         const MaterialConstants material = material_constants(MaterialModel::stable_neo_hookean, 1e5, nu, 1000);
         Mat3 e;

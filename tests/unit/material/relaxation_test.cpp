@@ -22,7 +22,7 @@ Mat3 random_matrix(std::mt19937_64& random) {
     return m;
 }
 
-/// Nothing is forgotten yet.
+/// Viscous stretch before any relaxation.
 ViscousStretch<Real> stretch_of(const Mat3& F) {
     const LaneSymmetric<Real> strain = twice_green_strain(from_matrix(F));
     return {strain, strain.trace()};
@@ -69,7 +69,7 @@ TEST_CASE("rates spread over a span lose what the loss factor says", "[unit]") {
     for (Real loss_factor : {0.01, 0.05, 0.2}) {
         constexpr Real span = 1e4;
         const Real share = relaxing_share(loss_factor, span);
-        const auto loss_at = [&](Real omega) {  // 1 at the lowest rate
+        const auto loss_at = [&](Real omega) {  // omega in units of the lowest rate
             Real in_phase = 1, behind = 0;
             for (int i = 0; i < parts; ++i) {
                 const Real x = omega / std::pow(span, (i + 0.5) / parts);
@@ -79,7 +79,7 @@ TEST_CASE("rates spread over a span lose what the loss factor says", "[unit]") {
             return behind / in_phase;
         };
         CHECK(loss_at(rates_below) == Approx(loss_factor).epsilon(0.05));
-        // above it stiffness grows, as it must where there are losses, and the loss factor is that much less
+        // Above this frequency the stiffness grows, as losses require, and the loss factor is smaller by that growth.
         const Real growth = 1 + 2 / std::numbers::pi * loss_factor * std::log(10);
         CHECK(loss_at(10 * rates_below) == Approx(loss_factor / growth).epsilon(0.05));
     }

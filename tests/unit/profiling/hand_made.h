@@ -1,4 +1,4 @@
-// Recordings made by hand: what a schedule of them takes is known.
+// Recordings made by hand, with known schedules.
 #pragma once
 
 #include <initializer_list>
@@ -11,7 +11,7 @@ namespace skerry::profiling {
 
 struct HandMadePiece {
     PieceKind kind;
-    std::vector<double> seconds;  // of its blocks
+    std::vector<double> seconds;  // duration of each block [s]
 };
 
 inline HandMadePiece serial(double seconds) {
@@ -24,7 +24,7 @@ inline HandMadePiece phase(std::vector<double> seconds) {
     return {PieceKind::phase, std::move(seconds)};
 }
 
-/// One graph whose stages have these pieces; edges are pairs of stages, ordered, and go up.
+/// One graph with these pieces per stage. Edges are ordered pairs of stages and lead to later stages.
 inline Recording graph_of(const std::vector<std::vector<HandMadePiece>>& stages,
                           const std::vector<std::pair<Index, Index>>& edges) {
     Recording recording;

@@ -20,7 +20,7 @@ std::vector<PieceKind> kinds(const Recording& recording) {
     return all;
 }
 
-/// Balls that are pressed into each other, one region of them large enough for a Team.
+/// Balls pressed into each other; one of the regions is large enough for a Team.
 World pressed_balls() {
     World world;
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5});
@@ -92,7 +92,7 @@ TEST_CASE("the phases of a team are recorded one by one", "[unit]") {
     REQUIRE(kinds(recording) == std::vector<PieceKind>{serial, phase, phase, serial});
     CHECK(recording.pieces[1].blocks.size() == 2);
     CHECK(recording.pieces[2].blocks.size() == 3);
-    team.run_blocks(1, [&](Index block) { order.push_back(block); });  // no longer the executor's
+    team.run_blocks(1, [&](Index block) { order.push_back(block); });  // the team no longer belongs to the executor
     CHECK(order.size() == 6);
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("a world that is recorded ends in the same state", "[unit]") {
 
 TEST_CASE("of several recordings each block takes what it took where it was not interrupted", "[unit]") {
     std::vector<Recording> recordings(3, graph_of({{serial(1), loop({2, 3})}}, {}));
-    recordings[0].seconds[1] = 100;  // interrupted
+    recordings[0].seconds[1] = 100;  // this piece was interrupted
     recordings[2].seconds[2] = 50;
     CHECK(undisturbed(recordings).seconds == std::vector<double>{1, 2, 3});
     recordings[1] = graph_of({{serial(1), loop({2, 3, 4})}}, {});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double us = 1e-6;
 
-/// us, on a machine that costs nothing.
+/// Predicted time on a machine without overheads [us].
 double free_us(const Recording& recording, int cores) {
     return predict_seconds(recording, cores, MachineModel::free_of_cost()) / us;
 }
@@ -78,8 +78,8 @@ TEST_CASE("blocks of a loop are shared, and what follows waits for the last", "[
 TEST_CASE("one long block holds a loop up, most when it is taken last", "[unit]") {
     const Recording first = graph_of({{loop({9 * us, us, us, us})}}, {});
     const Recording last = graph_of({{loop({us, us, us, 9 * us})}}, {});
-    CHECK(free_us(first, 2) == Approx(9));  // the other worker takes all the rest
-    CHECK(free_us(last, 2) == Approx(10));  // which is in its share the second of two
+    CHECK(free_us(first, 2) == Approx(9));  // the other worker takes all other blocks
+    CHECK(free_us(last, 2) == Approx(10));  // the long block is the second of two in its share
     CHECK(free_us(last, 4) == Approx(9));
 }
 
@@ -104,8 +104,8 @@ TEST_CASE("a worker costs a join, a barrier or a wake-up, and a counter is free 
     MachineModel counter = MachineModel::free_of_cost();
     counter.line_transfer = us;
     const Recording even = graph_of({{loop(blocks(100, 0.1 * us))}}, {});
-    CHECK(predict_seconds(even, 4, counter) / us < 5);  // each has a counter of its own
-    // the third has a share of long blocks: others take one of them each, none sooner than the counter moves
+    CHECK(predict_seconds(even, 4, counter) / us < 5);  // each worker has its own counter
+    // The third worker's share has the long blocks. Another worker takes one, but not before the counter has moved.
     Recording uneven = graph_of({{loop(blocks(8, 0.1 * us))}}, {});
     for (std::size_t b = 4; b < 6; ++b) uneven.seconds[b] = 50 * us;
     const double without = free_us(uneven, 4);
@@ -130,11 +130,11 @@ TEST_CASE("cores share the bandwidth, and chiplets what they have written", "[un
     CHECK(predict_seconds(recording, 4, machine, {.bytes_per_second = 10e9, .working_set = 1e6}) / us == Approx(1));
     machine.own_from_elsewhere = 1;
     machine.far_rate = 10e9;
-    machine.cores_per_chiplet = 2;  // half of all is on the other chiplet, a quarter on the other core of this one
+    machine.cores_per_chiplet = 2;  // half of the data is on the other chiplet, a quarter on the other core of this one
     CHECK(predict_seconds(recording, 4, machine, {.bytes_per_second = 10e9, .working_set = 1e6}) / us == Approx(1.5));
     machine.near_rate = 5e9;
     CHECK(predict_seconds(recording, 4, machine, {.bytes_per_second = 10e9, .working_set = 1e6}) / us == Approx(2));
-    machine.own_from_elsewhere = 0.1;  // each takes the block of its own share
+    machine.own_from_elsewhere = 0.1;  // each core takes the block of its own share
     CHECK(predict_seconds(recording, 4, machine, {.bytes_per_second = 10e9, .working_set = 1e6}) / us == Approx(1.1));
 }
 

@@ -1,5 +1,4 @@
-// Counts what operator new hands out: separating contacts and solving large regions, both done before, ask for no
-// memory.
+// Counts calls of operator new: separating contacts and solving large regions must not allocate when they are repeated.
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
@@ -18,7 +17,7 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
     settings.parallel_region_contacts = 300;
     settings.warm_start = WarmStart::off;
     for (const ExecutorChoice& choice : executor_choices({1, 2})) {
-        // libgomp allocates its tasks; what we allocate is the same code
+        // libgomp allocates its tasks; the code of the engine is equal for all backends.
         if (choice.backend == Backend::openmp) continue;
         CAPTURE(choice.text());
         const auto executor = choice.make();
@@ -33,7 +32,7 @@ TEST_CASE("large regions are solved without asking for memory, also when they ar
         solved.velocity = scene.velocity;
         long asked = 0;
         for (int step = 0; step < 20; ++step) {
-            scene.stencil[5].weight[3] = step % 4 < 2 ? -0.25 : 0;  // every second step other nodes
+            scene.stencil[5].weight[3] = step % 4 < 2 ? -0.25 : 0;  // other nodes every two steps
             std::copy(scene.velocity.begin(), scene.velocity.end(), solved.velocity.begin());
             const long before = allocations;
             solve_regions(*executor, scene.inputs(), settings, scene.h, memory, solved.regions,

@@ -1,4 +1,4 @@
-// The factor of Newton steps on contacts between bodies, against Eigen's dense one.
+// The factorisation for Newton steps on contacts between bodies, against Eigen's dense one.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
@@ -28,11 +28,11 @@ DenseBlock block_of(std::vector<Real>& numbers, Index rows, Index columns) {
 
 TEST_CASE("a dense factor that exchanges rows solves what Eigen solves", "[solver]") {
     const auto size = GENERATE(Index{1}, Index{3}, Index{8}, Index{9}, Index{30}, Index{77});
-    const auto columns = GENERATE(Index{5}, Index{23});  // many are solved for with inverses of triangles
+    const auto columns = GENERATE(Index{5}, Index{23});  // many columns are solved with inverses of triangles
     CAPTURE(size, columns);
     const auto count = static_cast<std::size_t>(size);
     std::vector<Real> numbers = random_numbers(count * count, 7);
-    if (size > 1) numbers[0] = 0;  // asks for another pivot
+    if (size > 1) numbers[0] = 0;  // makes another pivot necessary
     std::vector<Real> right = random_numbers(count * static_cast<std::size_t>(columns), 8);
     const Eigen::MatrixXd expected =
         matrix_of(numbers, size, size).partialPivLu().solve(matrix_of(right, size, columns));
@@ -61,7 +61,7 @@ TEST_CASE("a product is taken off a matrix of any shape", "[solver]") {
 TEST_CASE("zeros of a dense matrix are left out, bit for bit", "[solver]") {
     constexpr Index size = 40, columns = 45;
     std::vector<Real> a = random_numbers(size * size, 1), b = random_numbers(size * columns, 2);
-    // a band, as of contacts between two faces, and columns of what no contact presses: runs of four and of many
+    // A band, as of contacts between two faces, and zero columns where no contact presses, in runs of four and of many.
     for (Index c = 0; c < size; ++c)
         for (Index r = 0; r < size; ++r)
             if (std::abs(c - r) > 5) a[static_cast<std::size_t>(c * size + r)] = 0;
@@ -102,7 +102,7 @@ TEST_CASE("a product with a vector is added to one of any length", "[solver]") {
 }
 
 TEST_CASE("a sparse matrix of blocks is solved as the dense one, and as often as it is filled", "[solver]") {
-    // a ring with a chord: it fills in
+    // A ring with a chord: the factor has fill-in.
     const std::vector<Index> sizes{3, 6, 9, 6, 12, 3};
     const std::vector<std::array<Index, 2>> pairs{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 0}, {1, 4}};
     BlockFactor factor;

@@ -23,11 +23,11 @@ TEST_CASE("every method solves dense random blocks with cone and pyramid", "[uni
                 const SolveResult result = run_method(method, op, {1e-8, 20000, false, 1});
                 INFO(name_of(method) << " " << name_of(friction) << " seed " << seed << " error " << result.error);
                 CHECK(op.error() == result.error);
-                // conjugate gradients alone stagnate where impulses meet their limits
+                // Conjugate gradients alone stagnate where impulses reach their limits.
                 const bool stagnates = method == SolverMethod::pcg_fr || method == SolverMethod::pcg_pr;
                 if (stagnates) CHECK(result.error <= start);
                 if (!stagnates) CHECK(result.converged);
-                // looked at again, from W and r alone
+                // This check uses W and r alone.
                 for (std::size_t i = 0; i < 6; ++i) {
                     const Vec3 u = problem.velocity(i, memory.impulse);
                     const Vec3 r = memory.impulse[i].head<3>();

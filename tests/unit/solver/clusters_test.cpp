@@ -1,4 +1,4 @@
-// Contacts on nodes that one matrix couples (docs/methods/clusters.md 4).
+// Contacts on nodes that are coupled by one matrix (docs/methods/clusters.md 4).
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
@@ -8,7 +8,7 @@ namespace skerry::test::solver_clusters_test {
 
 namespace {
 
-/// Nodes first .. first + count - 1 of a scene move by (M + L)^-1, L a chain of springs.
+/// Couples nodes first .. first + count - 1 of a scene by (M + L)^-1, where L is a chain of springs.
 Eigen::MatrixXd couple(ContactScene& scene, Index first, Index count, Real stiffness) {
     NodeClusters& clusters = scene.clusters;
     clusters.cluster_of.resize(scene.inverse_mass.size(), no_index);
@@ -67,7 +67,7 @@ TEST_CASE("contacts on one cluster are one region, and are solved together", "[s
         for (const Index n : {0, 2, 5, 6}) scene.touch_floor(n, 0.2);
         scene.touch_node(3, 7, {0, 1, 1}, 0.4);
         const SolvedScene solved = scene.solve({.method = method, .tolerance = 1e-10, .max_iterations = 5000});
-        REQUIRE(solved.regions.size() == 2);  // node 6 by itself
+        REQUIRE(solved.regions.size() == 2);  // node 6 is a region by itself
         for (std::size_t r = 0; r < 2; ++r) CHECK(solved.regions.status[r] != RegionStatus::iteration_limit);
         for (std::size_t i = 0; i < scene.stencil.size(); ++i) {
             const Vec3 u = scene.relative_velocity(i, solved.velocity), &r = solved.impulse[i], &n = scene.normal[i];
@@ -78,7 +78,7 @@ TEST_CASE("contacts on one cluster are one region, and are solved together", "[s
         Vec3 given = Vec3::Zero(), gained = Vec3::Zero();
         for (const Vec3& r : {solved.impulse[0], solved.impulse[1], solved.impulse[2], solved.impulse[3]}) given += r;
         for (std::size_t n = 0; n < 8; ++n) gained += solved.velocity[n] - scene.velocity[n];
-        CHECK((given - gained).norm() < 1e-10);  // the springs give none
+        CHECK((given - gained).norm() < 1e-10);  // the springs add no momentum
     }
 }
 

@@ -20,7 +20,7 @@ ColouredOrder coloured(const std::vector<ContactNodes>& contact, Index node_coun
     return order;
 }
 
-/// Every contact once; blocks of a phase share no node; phases and blocks cover all places.
+/// Checks that every contact occurs once, blocks of a phase share no node, and phases and blocks cover all places.
 void check_proper(const std::vector<ContactNodes>& contact, const ColouredOrder& order) {
     REQUIRE(order.contact.size() == contact.size());
     std::vector<int> times(contact.size(), 0);
@@ -45,7 +45,7 @@ void check_proper(const std::vector<ContactNodes>& contact, const ColouredOrder&
     }
 }
 
-/// Triangles of a strip against the points of another, and the other way round.
+/// Triangles of one strip against the points of another, and vice versa.
 std::vector<ContactNodes> strips(int length, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<ContactNodes> contact;
@@ -76,7 +76,7 @@ TEST_CASE("the order of contacts that share nodes is proper, and no node is twic
                     REQUIRE(seen.insert(node).second);
         }
         if (seed == 5) {
-            CHECK(order.colour_count >= 4);  // a node is in four contacts and more
+            CHECK(order.colour_count >= 4);  // some nodes are in four contacts or more
             CHECK(order.tail_size < 200);
         }
     }
@@ -99,13 +99,13 @@ TEST_CASE("a contact may name a node twice", "[unit][solver]") {
 
 TEST_CASE("a node with hundreds of contacts has one block for them, in their order", "[unit][solver]") {
     std::vector<ContactNodes> contact;
-    // three hubs, a point of its own for each contact
+    // Three hubs; every contact has its own point.
     for (Index i = 0; i < 700; ++i) contact.push_back(nodes(i + 3, i % 3));
     for (Index i = 0; i < 700; ++i) contact.push_back(nodes(i + 3));
     const ColouredOrder order = coloured(contact, 703);
     check_proper(contact, order);
     CHECK(order.colour_count == 1);
-    CHECK(order.hub_phase_count == 1);  // they share no point: all three side by side
+    CHECK(order.hub_phase_count == 1);  // the hubs share no point: all three are side by side
     CHECK(order.tail_size == 0);
     const Index first = order.phase_offset[1];
     CHECK(order.phase_offset[2] - first == 3);
@@ -123,8 +123,8 @@ TEST_CASE("hubs that meet are not side by side", "[unit][solver]") {
 }
 
 TEST_CASE("what finds none of 64 colours goes to the tail", "[unit][solver]") {
-    // The 13 lines of the projective plane of order 3, each eight times: any two share one of the 13 points, and no
-    // point is in more than 32.
+    // The 13 lines of the projective plane of order 3, each eight times. Any two lines share one of the 13 points, and
+    // no point is in more than 32 of them.
     std::vector<ContactNodes> contact;
     constexpr Index planes = 70;
     for (Index plane = 0; plane < planes; ++plane)

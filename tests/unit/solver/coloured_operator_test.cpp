@@ -1,4 +1,4 @@
-// The coloured operator against its serial twin, a LumpedOperator over the contacts in the same order.
+// The coloured operator against its serial reference, a LumpedOperator over the contacts in the same order.
 #include <catch2/catch.hpp>
 
 #include "systems/solver/methods/run_method.h"
@@ -10,8 +10,8 @@ namespace skerry::test::coloured_operator_test {
 
 namespace {
 
-/// A region of sheets, with a hub that has contacts with many of their nodes, a pinned node, repeated nodes, and
-/// contacts that move nothing.
+/// A region of sheets with a hub that touches many of their nodes, a pinned node, repeated nodes, and contacts without
+/// a movable node.
 ContactScene rough_scene(int size) {
     ContactScene scene;
     add_sheets(scene, size, 0.5, 7);
@@ -26,7 +26,7 @@ ContactScene rough_scene(int size) {
     return scene;
 }
 
-/// One region, loaded in its coloured order.
+/// One region whose contacts are loaded in coloured order.
 struct LoadedScene {
     explicit LoadedScene(const ContactScene& scene)
         : impulse_out(scene.impulse),
@@ -35,7 +35,7 @@ struct LoadedScene {
           inputs(scene.inputs()),
           out{impulse_out, velocity_next, push_out},
           stage{inputs, settings, scene.h, out, data} {
-        settings.method = SolverMethod::pcg_pgs;  // which asks for the most vectors
+        settings.method = SolverMethod::pcg_pgs;  // this method needs the most vectors
         for (std::size_t k = 0; k < scene.stencil.size(); ++k) row.push_back(static_cast<Index>(k));
         data.make_room_for(row.size(), 4 * row.size(), scene.velocity.size(), settings);
         Team alone;
@@ -65,7 +65,7 @@ struct LoadedScene {
     Real scale = 0;
 };
 
-/// What all methods do with an operator, once through; returns what is measured on the way.
+/// Performs once every operation that methods use; returns the measured values.
 template <class Op>
 std::vector<Real> exercise(Op op) {
     std::vector<Real> seen;
@@ -106,7 +106,7 @@ TEST_CASE("a coloured operator does what a lumped one does in the same order, to
             std::vector<Real> seen;
             team.gather(*executor, [&] { seen = exercise(loaded.coloured(team, friction)); });
             REQUIRE(loaded.same_vectors(twin));
-            // sums are taken in another order than the twin's, but always in the same
+            // Sums are taken in another order than in the twin, but the order is always the same.
             REQUIRE(seen.size() == expected.size());
             for (std::size_t i = 0; i < seen.size(); ++i)
                 REQUIRE(std::abs(seen[i] - expected[i]) <=
@@ -128,7 +128,7 @@ TEST_CASE("contacts are ordered again when one of them has another moving node, 
     scene.normal[3] = Vec3::UnitX();
     scene.stencil[5].weight = {1, -0.5, -0.25, -0.25};
     CHECK_FALSE(order());
-    scene.stencil[600].weight[3] = 0;  // one node less
+    scene.stencil[600].weight[3] = 0;  // one node fewer
     CHECK(order());
     CHECK_FALSE(order());
     scene.inverse_mass[static_cast<std::size_t>(scene.stencil[700].node[0])] = 0;  // pinned

@@ -1,4 +1,4 @@
-// Dense random contact problems: W = G G^T, every contact with every other.
+// Dense random contact problems: W = G G^T couples every contact with every other.
 #pragma once
 
 #include <Eigen/Core>

@@ -33,7 +33,7 @@ TEST_CASE("the cone projection leaves a point of the cone and a remainder of its
     }
 }
 
-// Found by random scenes: the frictionless cone is a half line, and a pull along it lies on its backward extension.
+// Without friction the cone is a half line, and a pull along the normal lies on its backward extension.
 TEST_CASE("no projection leaves a pull, along the normal and without friction too", "[unit][solver]") {
     const Vec3 normal = Vec3::UnitX(), pull = -2 * normal;
     const FrictionLimits mu{0, 0};

@@ -1,4 +1,4 @@
-// Small regions side by side: as one on its own, as the ordinary path, and independent of each other.
+// Small regions in lanes: equal to a region solved alone, equal to the ordinary path, and independent of each other.
 #include <catch2/catch.hpp>
 
 #include "systems/solver/lanes/solve_lane_batch.h"
@@ -9,8 +9,8 @@ namespace skerry::test::lanes_test {
 
 namespace {
 
-/// Region `number` of many different small ones, with `contacts` contacts on up to four nodes each: chains that share
-/// nodes at random.
+/// Region `number` of many different small ones, with `contacts` contacts on up to four nodes each. The contacts form
+/// chains that share nodes at random.
 struct SmallRegion {
     std::vector<LumpedContact> contact;
     std::vector<Vec4> free_velocity, impulse;
@@ -83,7 +83,7 @@ void check_against_twin() {
     }
 }
 
-/// Many small regions of point masses and triangles, with a few singles.
+/// Many small regions of point masses and triangles, with a few single contacts.
 ContactScene many_small_regions(int count, Real mu) {
     ContactScene scene;
     for (int k = 0; k < count; ++k) {
@@ -165,7 +165,7 @@ TEST_CASE("lanes and the ordinary path take the same sweeps to the same impulses
 TEST_CASE("a region that lanes do not finish is solved as if it had never been there", "[unit][solver]") {
     const ContactScene scene = many_small_regions(13, 0.4);
     SolverSettings with, without;
-    with.tolerance = without.tolerance = 1e-13;  // more sweeps than lanes do
+    with.tolerance = without.tolerance = 1e-13;  // needs more sweeps than lanes do
     with.max_iterations = without.max_iterations = 2000;
     without.small_regions_in_lanes = false;
     const SolvedScene lanes = scene.solve(with), ordinary = scene.solve(without);
@@ -187,7 +187,7 @@ TEST_CASE("unlike coefficients and the pyramid keep out of the lanes", "[unit][s
         return std::count_if(solved.regions.shortcut.begin(), solved.regions.shortcut.end(),
                              [](RegionShortcut s) { return (s & shortcut_in_lanes) != 0; });
     };
-    CHECK(in_lanes(scene.solve()) == 11);  // of 2 .. 12 contacts
+    CHECK(in_lanes(scene.solve()) == 11);  // regions of 2 to 12 contacts
     CHECK(in_lanes(scene.solve(settings)) == 0);
     for (Real& mu : scene.dynamic_friction) mu = 0.3;
     CHECK(in_lanes(scene.solve()) == 0);

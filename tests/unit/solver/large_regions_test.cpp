@@ -1,4 +1,4 @@
-// Regions that are solved with all workers: against the solution in order, and against themselves on other workers.
+// Regions solved by all workers together: against the serial solution, and against other numbers of workers.
 #include <catch2/catch.hpp>
 
 #include "systems/solver/regions/solve_large_regions.h"
@@ -9,7 +9,7 @@ namespace skerry::test::large_regions_test {
 
 namespace {
 
-/// Two large regions, one of them with a hub, and small ones; some contacts pressed in, some bouncing, some warm.
+/// Two large regions, one with a hub, and small ones. Some contacts penetrate, some bounce, some have a warm start.
 ContactScene large_scene() {
     ContactScene scene;
     add_sheets(scene, 22, 0.5, 1);
@@ -29,7 +29,7 @@ ContactScene large_scene() {
 SolverSettings large_from(Index contacts) {
     SolverSettings settings;
     settings.parallel_region_contacts = contacts;
-    // not what is compared here
+    // Lanes are not compared here.
     settings.small_regions_in_lanes = false;
     return settings;
 }
@@ -65,12 +65,12 @@ TEST_CASE("the coloured solution is that in order, to the tolerance", "[unit][so
         settings->max_iterations = 100000;
     }
     const SolvedScene a = scene.solve(coloured), b = scene.solve(in_order);
-    REQUIRE((a.velocity != b.velocity));  // another order of the sums, at least
+    REQUIRE((a.velocity != b.velocity));  // at least the order of the sums differs
     for (std::size_t r = 0; r < a.regions.size(); ++r) {
         REQUIRE(a.regions.status[r] == RegionStatus::converged);
         REQUIRE(a.regions.dissipated[r] == Approx(b.regions.dissipated[r]).epsilon(1e-6).margin(1e-9));
     }
-    // 1e-10 of an impact of about 1 m/s, on the worst-conditioned of some hundred contacts
+    // 1e-10 of an impact of about 1 m/s, magnified by the worst-conditioned of some hundred contacts
     for (std::size_t n = 0; n < a.velocity.size(); ++n) REQUIRE((a.velocity[n] - b.velocity[n]).norm() < 1e-6);
     for (std::size_t n = 0; n < a.velocity.size(); ++n) REQUIRE((a.push_out[n] - b.push_out[n]).norm() < 1e-6);
 }

@@ -8,7 +8,7 @@ namespace skerry::test::load_sums_test {
 
 namespace {
 
-/// One node of 1 kg against something fixed, along z.
+/// A contact of one node of 1 kg with a fixed object, along z.
 LumpedContact point_contact(Real coefficient) {
     LumpedContact contact{};
     contact.normal = {0, 0, 1, 0};
@@ -34,7 +34,7 @@ TEST_CASE("errors are measured against what contacts would have to stop, not aga
           "[unit][solver]") {
     const Real alone = error_scale(sums_of({{0, 0, -0.02, 0}}), gravity, h, tolerance);
     CHECK(alone == Approx(0.02));
-    // onto the edge of the cone
+    // projection onto the edge of the cone
     CHECK(error_scale(sums_of({{3, 0, -0.02, 0}}), gravity, h, tolerance) == Approx(0.02 / std::sqrt(1.25)));
     CHECK(error_scale(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}), gravity, h, tolerance) == Approx(alone));
     CHECK_FALSE(sums_of({{0, 0, -0.02, 0}, {0, 0, 50, 0}}).separating);
@@ -46,7 +46,7 @@ TEST_CASE("where next to nothing is to be stopped weight, motion and rounding ar
     CHECK(apart.separating);
     CHECK(error_scale(slow, gravity, h, tolerance) == Approx(1e-3 * gravity * h));
     CHECK(error_scale(apart, 0, h, tolerance) == Approx(1e-6 * std::sqrt(5.0)));
-    // a tolerance that numbers cannot hold is one that they can
+    // A tolerance below the precision of numbers is raised to one that they can represent.
     CHECK(1e-15 * error_scale(apart, 0, h, 1e-15) > 4 * std::numeric_limits<Real>::epsilon());
     CHECK(error_scale(sums_of({{0, 0, 0, 0}}), 0, h, tolerance) == 0);
 }

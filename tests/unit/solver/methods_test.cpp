@@ -1,4 +1,4 @@
-// What holds for every method: the same solution, its limits, and what is no ordinary problem.
+// Properties of every method: equal solutions, iteration limits, and degenerate problems.
 #include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
@@ -14,7 +14,7 @@ namespace {
 bool stagnates(SolverMethod method) {
     return method == SolverMethod::pcg_fr || method == SolverMethod::pcg_pr;
 }
-/// Newton steps are those of Coulomb's cone; for other laws only the sweeps between them are left.
+/// Newton steps are for Coulomb's cone; for other laws only the sweeps between them remain.
 bool is_for(SolverMethod method, Friction friction) {
     return method != SolverMethod::newton || friction == Friction::cone;
 }
@@ -97,7 +97,7 @@ TEST_CASE(
             CHECK(solve_dense(DenseProblem(1, 6, mu, 1), method, Friction::cone, {1e-9, 1000, false, 1}, impulse)
                       .converged);
 
-        // one global region: a node on a plate that does not move, a pinned node on the plate, and one that leaves it
+        // One global region: a node on a fixed plate, a pinned node on the plate, and one that leaves it.
         ContactScene scene;
         const Index plate = scene.add_node(0, Vec3(0, 0, 0));
         scene.touch_node(scene.add_node(2, Vec3(0.5, 0, -1)), plate, Vec3(0, 0, 1), mu);
@@ -112,7 +112,7 @@ TEST_CASE(
         CHECK(solved.regions.status[0] == RegionStatus::converged);
         CHECK((solved.impulse[0] - Vec3(-0.6, 0, 2)).norm() < 1e-8);
 
-        // the same with fixed iterations, which no certificate saves from being done
+        // With a fixed count the iterations are done even if a certificate would save them.
         SolverSettings fixed = strict(method);
         fixed.fixed_iterations = true;
         fixed.max_iterations = 7;
@@ -150,7 +150,7 @@ TEST_CASE("no method takes more iterations than allowed, and none is worse than 
             ContactScene scene;
             add_sheets(scene, 10, 0.5, 3);
             SolverSettings settings = strict(method, friction);
-            settings.tolerance = 1e-300;  // never met by sweeps; Newton's steps come to what rounding leaves
+            settings.tolerance = 1e-300;  // never met by sweeps; Newton steps reach the level of rounding
             for (const Index limit : {1, 2, 5, 40}) {
                 INFO(name << " " << name_of(friction) << " " << limit);
                 settings.max_iterations = limit;
@@ -161,7 +161,7 @@ TEST_CASE("no method takes more iterations than allowed, and none is worse than 
                 CHECK((exact || solved.regions.iterations[0] == limit));
                 CHECK((exact || solved.regions.status[0] == RegionStatus::iteration_limit));
                 CHECK(solved.regions.error[0] <= 1.2);         // the start from zero has about 1
-                if (method == SolverMethod::newton) continue;  // ends when there is nothing left to step to
+                if (method == SolverMethod::newton) continue;  // ends when no step is left
                 settings.fixed_iterations = true;
                 const SolvedScene fixed = scene.solve(settings);
                 CHECK(fixed.regions.iterations[0] == limit);
@@ -170,7 +170,7 @@ TEST_CASE("no method takes more iterations than allowed, and none is worse than 
         }
 }
 
-// Found by random scenes: projected conjugate gradients went uphill for as long as they were told to, to errors of 1e6.
+// Without a safeguard, projected conjugate gradients with a fixed count diverge in random scenes, to errors of 1e6.
 TEST_CASE("with a fixed count none is worse than a start from zero, nor conjugate gradients than any start",
           "[unit][solver]") {
     constexpr int contacts = 8;

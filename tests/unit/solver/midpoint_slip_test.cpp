@@ -8,7 +8,7 @@ namespace skerry::test::midpoint_slip_test {
 
 namespace {
 
-/// One node on a floor, that slides with `before` at the start of a step and with `now` after the kick.
+/// Half turn of a node on a floor that slides with `before` at the start of a step and with `now` after the kick.
 Vec3 half_turn_of(const Vec3& before, const Vec3& now, const Vec3& floor = Vec3::Zero(), Real friction = 0.5) {
     const Stencil stencil{{0, 0, 0, 0}, {1, 0, 0, 0}};
     const Vec3 normal = Vec3::UnitZ();
@@ -28,7 +28,7 @@ TEST_CASE("friction looks in the direction halfway through the kick", "[unit][so
     const Vec3 middle = 0.5 * (before + now), seen = now - half_turn_of(before, now);
     const Vec3 along = Vec3(middle.x(), middle.y(), 0).normalized();
     CHECK(seen.z() == now.z());
-    // but for what the kick takes off the speed, which is of second order in the angle
+    // The direction is exact except for the loss of speed by the kick, which is of second order in the angle.
     CHECK(std::abs(along.cross(Vec3(seen.x(), seen.y(), 0).normalized()).z()) < 0.01);
     CHECK(std::abs(along.cross(Vec3(now.x(), now.y(), 0).normalized()).z()) > 0.07);
     const Vec3 floor(5, -3, 0);
@@ -37,7 +37,7 @@ TEST_CASE("friction looks in the direction halfway through the kick", "[unit][so
 
 TEST_CASE("between a quarter and half of the speed the turn fades, without a jump", "[unit][solver]") {
     const auto turned_by = [](Real turn) { return half_turn_of({1, 0, 0}, {1, turn, 0}).norm(); };
-    // at right angles to the slip
+    // unreduced half turn, perpendicular to the slip
     const auto in_full = [](Real turn) { return 0.5 * turn / std::sqrt(1 + turn * turn); };
     CHECK(turned_by(0.2) == Approx(in_full(0.2)));
     CHECK(turned_by(0.25) == Approx(in_full(0.25)));
@@ -52,12 +52,12 @@ TEST_CASE("what goes straight on, rests, stops or turns back keeps the law as it
     CHECK(half_turn_of({0, 0, 0}, {0.01, 0.02, -0.1}).norm() == 0);
     CHECK(half_turn_of({0.1, 0, 0}, {-0.1, 0.05, 0}).norm() == 0);
     CHECK(half_turn_of({2, 0.1, -0.3}, {1.9, 0.4, -0.5}, Vec3::Zero(), 0).norm() == 0);  // no friction
-    // by more than half of its speed
+    // The slip turns by more than half of its speed.
     CHECK(half_turn_of({1, 0, 0}, {0.9, 0.6, 0}).norm() == 0);
 }
 
 TEST_CASE("a node that turned and is stopped is at rest some steps later", "[unit][solver]") {
-    // what stops while it turns is left with a half turn, at most a quarter of what it had
+    // A node that stops while it turns keeps a half turn: at most a quarter of its slip.
     Vec3 slip(0.4, 0, 0);
     const Vec3 kick(0.01, 0.06, 0);
     for (int step = 0; step < 4; ++step) {

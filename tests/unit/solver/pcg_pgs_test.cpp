@@ -42,7 +42,7 @@ TEST_CASE("the combination never takes more iterations than allowed and returns 
 }
 
 TEST_CASE("conjugate gradients are exact where nothing is projected", "[unit][solver]") {
-    // a stack that is pressed together everywhere: the bounds never act, and 6 unknowns need 6 iterations
+    // A stack that is pressed together everywhere: the bounds never act, and 6 unknowns need 6 iterations.
     constexpr int height = 6;
     std::vector<LumpedContact> contact(height);
     std::vector<Vec4> velocity(height), impulse(height, Vec4::Zero()), scratch(height), space[4];

@@ -27,7 +27,7 @@ TEST_CASE("a contact that is pressed in is moved out without gaining velocity", 
     settings.recovery_speed = 0.5;
     scene.gravity = 0;
     CHECK(pushed_by(-0.1, settings) == Approx(0.01 * 0.5));
-    CHECK(pushed_by(-1e-7, settings) == Approx(0.2 * 1e-7 / 1e-3));  // a share of the gap a step: none goes too far
+    CHECK(pushed_by(-1e-7, settings) == Approx(0.2 * 1e-7 / 1e-3));  // a share of the gap per step never goes too far
 }
 
 TEST_CASE("the split impulse adds no kinetic energy", "[property][solver]") {

@@ -1,4 +1,4 @@
-// Separate or global, one worker or eight: what may differ and what must not.
+// Separate or global regions, one worker or eight: permitted and forbidden differences.
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
@@ -7,8 +7,8 @@ namespace skerry::test::region_modes_test {
 
 namespace {
 
-/// Regions of many sizes, their contacts shuffled among each other; some pressed in, some apart, some bouncing, some
-/// warm.
+/// Regions of many sizes with shuffled contacts. Some contacts penetrate, some are apart, some bounce, some have a warm
+/// start.
 ContactScene mixed_scene() {
     ContactScene parts;
     for (int k = 0; k < 12; ++k) add_sheets(parts, 3 + k % 5, k % 3 == 0 ? 0 : 0.5, static_cast<unsigned>(k));
@@ -53,7 +53,7 @@ TEST_CASE("with fixed sweeps separate regions and one global region are the same
         for (const Index sweeps : {1, 5, 30})
             for (const WarmStart warm : {WarmStart::off, WarmStart::on}) {
                 SolverSettings settings;
-                settings.method = SolverMethod::pgs;  // acceleration looks at the whole region
+                settings.method = SolverMethod::pgs;  // acceleration depends on the whole region
                 settings.friction = friction;
                 settings.fixed_iterations = true;
                 settings.max_iterations = sweeps;

@@ -11,9 +11,9 @@ namespace skerry::test::solver_rigid_test {
 
 namespace {
 
-const Mat3 of_cube = 1.0 / 6 * Mat3::Identity();  // kg m^2, of 1 kg and edges of 1 m
+const Mat3 of_cube = 1.0 / 6 * Mat3::Identity();  // inertia of a cube of 1 kg with edges of 1 m [kg m^2]
 
-/// The lower corners of a cube of 1 m whose centre is at `at`.
+/// The lower corners of a cube with edges of 1 m and centre `at`.
 std::array<Vec3, 4> lower_corners(const Vec3& at) {
     return {at + Vec3(-0.5, -0.5, -0.5), at + Vec3(0.5, -0.5, -0.5), at + Vec3(-0.5, 0.5, -0.5),
             at + Vec3(0.5, 0.5, -0.5)};
@@ -33,7 +33,7 @@ Index add_cube(ContactScene& scene, const Vec3& at, Real mass, const Vec3& veloc
     return first;
 }
 
-/// Velocities of nodes that are those of their rigid body with what contacts gave it.
+/// Velocity of a node from the motion of its rigid body after the contact impulses.
 Vec3 expected_velocity(const ContactScene& scene, const SolvedScene& solved, std::size_t r, Index node) {
     const RigidScene& rigid = scene.rigid;
     const Vec3 velocity = (rigid.momentum[r] + solved.contact_impulse[r]) / rigid.mass[r];
@@ -50,7 +50,7 @@ void check_coulomb(const ContactScene& scene, const SolvedScene& solved, Real ma
         CHECK(r.dot(n) >= -margin);
         CHECK(std::abs(r.dot(n) * u.dot(n)) < margin);
         CHECK(friction.norm() <= limit + margin);
-        // against the slip where it slides
+        // Friction opposes the slip where the contact slides.
         CHECK((slip.norm() * friction + limit * slip).norm() < margin);
     }
 }
@@ -92,7 +92,7 @@ TEST_CASE("contacts on rigid bodies obey Coulomb's law by every method", "[solve
         scene.rigid.node_body.resize(scene.inverse_mass.size(), 0);
         scene.rigid.position.resize(scene.inverse_mass.size(), Vec3(0.5, 0.5, 0));
         for (Index n = lower; n < lower + 4; ++n) scene.touch_floor(n, 0.4);
-        // the corners of the upper one on three nodes of the lower one, in the plane of its floor: any weights will do
+        // The upper corners touch three nodes of the lower cube, in the plane of its floor: any weights are valid.
         for (Index n = upper; n < upper + 4; ++n)
             scene.touch({{n, lower, lower + 1, lower + 2}, {1, -0.3, -0.3, -0.4}}, {0.05, 0, 1}, 0.3);
         scene.touch_node(point, lower + 3, {0.2, -0.1, -1}, 0.5);
@@ -106,14 +106,14 @@ TEST_CASE("contacts on rigid bodies obey Coulomb's law by every method", "[solve
         for (Index n = upper; n < upper + 4; ++n)
             CHECK((solved.velocity[static_cast<std::size_t>(n)] - expected_velocity(scene, solved, 1, n)).norm() <
                   1e-12);
-        // what contacts give all of them is what the floor gives
+        // The momentum that all bodies gain equals the impulse of the floor.
         Vec3 floor = Vec3::Zero();
         for (std::size_t i = 0; i < 4; ++i) floor += solved.impulse[i];
         const auto p = static_cast<std::size_t>(point);
         const Vec3 gained = solved.contact_impulse[0] + solved.contact_impulse[1] +
                             (solved.velocity[p] - scene.velocity[p]) / scene.inverse_mass[p];
         CHECK((gained - floor).norm() < 1e-12);
-        // energy is lost
+        // Contacts dissipate energy.
         CHECK(solved.regions.dissipated[0] > 0);
     }
 }

@@ -1,4 +1,4 @@
-// What regions are remembered by, and what that changes: the order in which they are started, and nothing else.
+// The memory of regions and its only effect: the order in which they are started.
 #include <catch2/catch.hpp>
 
 #include "systems/solver/schedule_regions.h"
@@ -8,7 +8,7 @@ namespace skerry::test::solver_schedule_test {
 
 namespace {
 
-/// Regions with so many contacts each, one after the other.
+/// Regions with these numbers of contacts, one after the other.
 RegionTable regions_of(const std::vector<Index>& sizes) {
     RegionTable regions;
     regions.contacts.offset.push_back(0);
@@ -50,7 +50,7 @@ TEST_CASE("a region is known by its first contact, with the sweeps it took and h
     CHECK(data.history.sweeps[1] == Approx(0.7 * 10 + 0.3 * 20));
     CHECK(data.history.age[1] == 1);
 
-    // contact 3 now starts nothing; 2 is a region of its own; the rest starts at 3
+    // Contact 23 no longer starts a region, contact 2 is a region of its own, and the last region starts at contact 3.
     RegionTable changed = regions_of({2, 1, 21});
     recall_regions(*one, key, data, changed);
     CHECK(data.present.sweeps[0] == 1);
@@ -82,7 +82,7 @@ TEST_CASE("each of many regions is remembered, whatever came and went before it"
     recall_regions(*two, key, data, regions);
     for (Index r = 0; r < count; ++r) regions.iterations[r] = r;
     remember_regions(data, regions);
-    // every third is gone, and some are new behind each tenth
+    // Every third region is gone, and a new one follows each tenth.
     std::vector<ContactKey> next;
     std::vector<Index> was;
     for (Index r = 0; r < count; ++r) {

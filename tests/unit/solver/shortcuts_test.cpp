@@ -1,4 +1,4 @@
-// What the solver leaves out where it can: each shortcut is taken, counted, and changes nothing beyond the tolerance.
+// Shortcuts of the solver: each one is taken, counted, and changes results only within the tolerance.
 #include <catch2/catch.hpp>
 
 #include "tests/support/contact_scene.h"
@@ -26,7 +26,7 @@ Real largest_difference(const SolvedScene& a, const SolvedScene& b) {
     return largest;
 }
 
-/// Velocities agree to what the tolerance allows in a badly conditioned region; they are some metres per second.
+/// Difference of velocities that the tolerance allows in an ill-conditioned region, at some metres per second [m/s].
 constexpr Real allowed = 1e-5;
 
 }  // namespace
@@ -67,7 +67,7 @@ TEST_CASE("one row a contact does the sweeps of three where there is no friction
     for (const bool warm : {false, true}) {
         ContactScene scene;
         add_sheets(scene, 9, 0, 4);
-        // a warm start with a part across the normal, as after a change of the friction
+        // a warm start with tangential impulses, as after a change of friction
         if (warm) scene.impulse.assign(scene.stencil.size(), Vec3(0.05, 0.02, 0.1));
         SolverSettings off = tight();
         off.frictionless_rows = false;

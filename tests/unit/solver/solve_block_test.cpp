@@ -16,7 +16,7 @@ Vec3 solve_once(const Mat3& w, const Vec3& b, Real mu) {
     return solve_block(block, b, mu);
 }
 
-/// |F| with the block's own step, relative: what the answer lacks of being the answer.
+/// Residual |F| of the natural map with the block's own step, relative to the size of the data.
 Real lack(const Mat3& w, const Vec3& b, Real mu, const Vec3& r) {
     const Real step = 1 / w.trace();
     const Vec3 u = w * r + b;
@@ -37,7 +37,7 @@ TEST_CASE("the local solution of 100000 random blocks solves Coulomb's law", "[p
         if (b[0] < 0) REQUIRE(r[0] > 0);
         REQUIRE(std::hypot(r[1], r[2]) <= mu * r[0] * (1 + 1e-14));
     }
-    CHECK(worst < 1e-10);  // rounding times the condition of a block, up to 1e5
+    CHECK(worst < 1e-10);  // rounding times the condition of a block, which is up to 1e5
 }
 
 TEST_CASE("the local solution holds for ill-conditioned blocks", "[property][solver]") {
@@ -66,7 +66,7 @@ TEST_CASE("a block of rank one is solved where that is possible", "[unit][solver
     w(0, 0) = 4;
     const Vec3 r = solve_once(w, Vec3(-2, 0, 0), 0.5);
     CHECK((r - Vec3(0.5, 0, 0)).norm() < 1e-15);
-    const Vec3 sliding = solve_once(w, Vec3(-2, 1, 0), 0.5);  // nothing stops the tangent: full friction against it
+    const Vec3 sliding = solve_once(w, Vec3(-2, 1, 0), 0.5);  // the tangent is free: full friction against it
     CHECK((sliding - Vec3(0.5, -0.25, 0)).norm() < 1e-10);
 }
 

@@ -18,8 +18,8 @@ SolverSettings exact() {
     return settings;
 }
 
-/// Pairs of sheets, each sheet a body of its own: every third pair is still, of every third one the first sheet alone,
-/// and every third first sheet is still on a collider that moves.
+/// Pairs of sheets, each sheet a separate body. In every third pair both sheets are still, in every third only the
+/// first, and in every third the first is still on a moving collider.
 struct StillSheets {
     static constexpr int pairs = 18;
     ContactScene scene;
@@ -77,12 +77,12 @@ TEST_CASE("a point mass sticks inside the cone and slides on it", "[unit][solver
     CHECK((stuck.impulse[0] - Vec3(-0.6, -0.8, 4)).norm() < 1e-14);
     CHECK(stuck.velocity[0].norm() < 1e-15);
 
-    scene.velocity[0] = scene.velocity_before[0] = Vec3(3, 4, -2);  // friction takes 0.5 * 2 m/s of 5
+    scene.velocity[0] = scene.velocity_before[0] = Vec3(3, 4, -2);  // friction takes 0.5 * 2 m/s of 5 m/s
     const SolvedScene sliding = scene.solve();
     CHECK((sliding.velocity[0] - Vec3(2.4, 3.2, 0)).norm() < 1e-14);
     CHECK((sliding.impulse[0] - Vec3(-1.2, -1.6, 4)).norm() < 1e-14);
     CHECK(sliding.regions.status[0] == RegionStatus::converged);
-    // all kinetic energy that is gone
+    // The dissipated energy is all kinetic energy that was lost.
     CHECK(sliding.regions.dissipated[0] == Approx(0.5 * 2 * (29 - 16)).epsilon(1e-13));
 }
 
@@ -133,9 +133,9 @@ TEST_CASE("a bounce returns the restitution's share, and only fast impacts bounc
     CHECK(std::abs(scene.solve().velocity[0].z()) < 1e-16);
     scene.gap[0] = 0;
     scene.velocity_before[0] = Vec3(0, 0, -0.2);
-    scene.velocity[0] = Vec3(0, 0, -0.25);  // forces add less than half of it
+    scene.velocity[0] = Vec3(0, 0, -0.25);  // forces add less than half of the approach speed
     CHECK(scene.solve().velocity[0].z() == Approx(0.12).epsilon(1e-14));
-    scene.velocity[0] = Vec3(0, 0, -0.4);  // forces of one step could have made it: not an impact
+    scene.velocity[0] = Vec3(0, 0, -0.4);  // forces of one step could have caused this speed: not an impact
     CHECK(std::abs(scene.solve().velocity[0].z()) < 1e-16);
 }
 
@@ -335,7 +335,7 @@ TEST_CASE("a region whose contacts all separate is left alone", "[unit][solver]"
     const Index a = scene.add_node(1, Vec3(0.1, 0, 1)), b = scene.add_node(1, Vec3(0, 0.2, 0.5));
     scene.touch_floor(a, 0.5);
     scene.touch_node(a, b, Vec3::UnitZ(), 0.5);
-    scene.impulse.assign(2, Vec3(0, 0, 3));  // a warm start from when they were pressed together
+    scene.impulse.assign(2, Vec3(0, 0, 3));  // a warm start from a time when the bodies were pressed together
     const SolvedScene solved = scene.solve();
     CHECK(solved.velocity == scene.velocity);
     CHECK(solved.impulse == std::vector<Vec3>(2, Vec3::Zero()));
@@ -418,7 +418,7 @@ TEST_CASE("regions whose bodies are all still are solved closer, each with the b
 TEST_CASE("a still region that ends within the tolerance that was asked for has converged", "[unit][solver]") {
     const StillSheets sheets;
     SolverSettings settings;
-    settings.still_tolerance = 1e-15;  // out of reach
+    settings.still_tolerance = 1e-15;  // cannot be reached
     const SolvedScene solved = sheets.solve(settings);
     for (std::size_t r = 0; r < solved.regions.size(); ++r) {
         CHECK(solved.regions.status[r] == RegionStatus::converged);

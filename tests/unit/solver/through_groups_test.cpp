@@ -1,4 +1,4 @@
-// The walk of contacts on bodies that deform in the frame that moves with them (docs/methods/implicit_bodies.md 4).
+// Walk over contacts on bodies that deform in a co-moving frame (docs/methods/implicit_bodies.md 4).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
@@ -10,7 +10,7 @@ namespace skerry::test::through_groups_test {
 
 namespace {
 
-/// A body of four nodes, of which the last three are touched, and a free node.
+/// A body of four nodes, of which the last three have contacts, and a free node.
 struct Groups {
     std::vector<Index> node_body{0, 0, 0, 0, 1}, node{no_index, no_index, 1, 2, 3, 4};
     std::vector<Range> body_nodes{{0, 4}, {4, 5}}, body_rigid{{0, 1}, {1, 1}}, body_implicit{{0, 4}, {4, 4}};
@@ -40,14 +40,14 @@ struct Groups {
     ThroughGroups walk() const { return {clusters, implicit, rigid, node}; }
 };
 
-/// Of rows of `Groups::node`.
+/// A contact of rows of `Groups::node`.
 LumpedContact contact_of(std::array<Index, 2> node, std::array<Real, 2> weight) {
     LumpedContact contact;
     contact.node_count = 2;
     for (std::size_t a = 0; a < 2; ++a) {
         contact.node[a] = node[a];
         contact.weight[a] = weight[a];
-        contact.step[a] = 2 * weight[a];  // of a node of half a kilogram
+        contact.step[a] = 2 * weight[a];  // for a node of half a kilogram
     }
     return contact;
 }
@@ -86,7 +86,7 @@ TEST_CASE("impulses that are summed up, by node or by runs, move contacts as the
         for (Index i = run.begin; i < run.end; ++i) {
             const auto at = static_cast<std::size_t>(i);
             runs.apply(at, contacts[at], walk, impulse[at], by_run.data());
-            // at once, of the contacts of the run
+            // all contacts of the run at once
             for (Index j = run.begin; j < run.end; ++j) {
                 const auto other = static_cast<std::size_t>(j);
                 CHECK((found(other, by_run) - expected(other, at)).norm() < 1e-13);
