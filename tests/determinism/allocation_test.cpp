@@ -41,6 +41,13 @@ namespace skerry::test::determinism_allocation_test {
 
 namespace {
 
+/// Few threads: a thread that TBB starts after others allocates on its own, at any time.
+Settings two_threads() {
+    Settings settings;
+    settings.threads = 2;
+    return settings;
+}
+
 World resting_balls(Backend backend, int threads, Settings settings = {}) {
     settings.backend = backend;
     settings.threads = threads;
@@ -102,7 +109,7 @@ TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {
 
 TEST_CASE("rigid and implicit bodies at rest allocate nothing, either", "[determinism]") {
     const auto dynamics = GENERATE(BodyDynamics::rigid, BodyDynamics::implicit_elastic);
-    Settings settings;
+    Settings settings = two_threads();
     settings.sleep = GENERATE(false, true);
     settings.gravity = {1, 0, -9};  // less steep than the friction angle
     World world(settings);
@@ -119,7 +126,7 @@ TEST_CASE("rigid and implicit bodies at rest allocate nothing, either", "[determ
 
 TEST_CASE("implicit bodies allocate nothing in steps that are longer than those of what lies on them",
           "[determinism]") {
-    Settings settings;
+    Settings settings = two_threads();
     settings.sleep = false;
     settings.step_size = 2e-4;
     settings.implicit_step = 2e-3;
@@ -135,7 +142,7 @@ TEST_CASE("implicit bodies allocate nothing in steps that are longer than those 
 }
 
 TEST_CASE("implicit bodies of large strain allocate nothing, whether they swing or lie", "[determinism]") {
-    Settings settings;
+    Settings settings = two_threads();
     settings.step_size = 1.0 / 240;
     settings.sleep = false;
     World world(settings);
