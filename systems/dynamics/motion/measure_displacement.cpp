@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t displaced_bodies_per_job = 16;  // some microseconds if origins move
 
 // Fraction of the mean edge at which the origins move to the nodes. The list of a pair made at drifts a and b holds for
-// a travel of skin - 2 (a + b) (contact_reach.h). So at most 4 x 0.01 = 0.04 of the skin of 0.375 mean edges is lost,
+// a travel of skin - 2 (a + b) (contact_reach.h). So at most 4 x 0.01 = 0.04 of the skin of 0.3125 mean edges is lost,
 // and candidates wake too early by as much. A body that trembles by less than this adds nothing to its travel in the
 // long run.
 constexpr Real longest_displacement = 0.01;
