@@ -26,7 +26,8 @@ def main():
           f"{len(linked)} files linked in {sum(linked):.0f} s, added up by the clock of each")
     slowest = (f"{output.replace('CMakeFiles/', '').replace('.dir', '')} {seconds:.0f} s"
                for seconds, output in compiled[:3])
-    print(f"    slowest: {', '.join(slowest)}")
+    if compiled:
+        print(f"    slowest: {', '.join(slowest)}")
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ phase() {
     if [[ $status -ne 0 ]]; then
         {
             echo "$name failed after $((SECONDS - start)) s with status $status. The end of $root/$log:"
-            explain "$log"
+            explain "$log" || true  # `head` may end before its input
         } >&2
         exit "$status"
     fi
