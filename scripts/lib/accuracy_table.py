@@ -13,7 +13,7 @@ On this page you see how near the engine comes to closed forms. `scripts/accurac
 `tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks in
 `build/accuracy/accuracy.csv`. A row of the table shows the check of an item that comes nearest to its tolerance. The
 error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of elements. The
-formulas are derived in [methods/accuracy.md](methods/accuracy.md). {items} items.
+formulas are derived in [the methods](methods/accuracy.md). {items} items.
 
 | item | checks | nearest to its tolerance | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|
