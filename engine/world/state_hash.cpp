@@ -42,14 +42,14 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
         for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
-/// Adds the rows begin .. end - 1 of every column with the role `state`. A body without such rows has an empty range.
+/// Adds the rows begin .. end - 1 of every column with the role `state`. A range of negative size reaches to the last
+/// row.
 void add_state(Hash& hash, AnyTable table, Range rows) {
-    if (rows.size() <= 0) return;
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::state) continue;
         const AnyColumn column = table.column(info);
         const auto first = static_cast<std::size_t>(rows.begin);
-        add_rows(hash, column, first, static_cast<std::size_t>(rows.size()));
+        add_rows(hash, column, first, std::min(static_cast<std::size_t>(rows.size()), column.size() - first));
     }
 }
 
