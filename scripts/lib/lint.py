@@ -5,8 +5,8 @@
     lint.py CLANG_TIDY BUILD_FOLDER --all    all files
 
 Most of the time of clang-tidy goes into the headers of the packages, read anew for each source. Sources are therefore
-read many at a time, as one unit. Sources that give the same private name to different things go into different
-units."""
+read many at a time, as one unit. In a unit all share one unnamed namespace, and a name in it hides the same name outside. A
+source that declares a private name and another that declares or calls it therefore go into different units."""
 import concurrent.futures
 import os
 import pathlib
@@ -19,6 +19,7 @@ import sources
 PROGRAM = re.compile(r"engine/program/.*")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"^(?:[A-Za-z_\[][^;={]*?\b(\w+)(?:\(|\{| =)|(?:struct|class|enum class|using) (\w+))", re.MULTILINE)
+CALLED = re.compile(r"(?<![\w.:>])(\w+)[<({]")
 
 
 def private_names(text):
@@ -27,15 +28,18 @@ def private_names(text):
 
 def units_of(root, names):
     """Sources in units that can be read as one, one for each core and more where private names need them."""
-    units = [{"private": set(), "sources": []} for _ in range(len(os.sched_getaffinity(0)))]
+    units = [{"private": set(), "called": set(), "sources": []} for _ in range(len(os.sched_getaffinity(0)))]
     for name in names:
-        own = private_names((root / name).read_text())
-        free = [unit for unit in units if not own & unit["private"]]
+        text = (root / name).read_text()
+        own = private_names(text)
+        called = own.union(CALLED.findall(text))
+        free = [unit for unit in units if not own & unit["called"] and not called & unit["private"]]
         if not free:
-            free = [{"private": set(), "sources": []}]
+            free = [{"private": set(), "called": set(), "sources": []}]
             units += free
         unit = min(free, key=lambda unit: len(unit["sources"]))
         unit["private"] |= own
+        unit["called"] |= called
         unit["sources"].append(name)
     return [unit["sources"] for unit in units if unit["sources"]]
 
