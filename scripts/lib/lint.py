@@ -16,7 +16,8 @@ import sys
 
 import sources
 
-PROGRAM = re.compile(r"engine/program/.*")
+# The program is read by nobody else; clang 14 does not know the instruction sets that the table of kernels names.
+PASSED_OVER = re.compile(r"engine/program/.*|systems/kernels/kernel_sets\.cpp")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"^(?:[A-Za-z_\[][^;={]*?\b(\w+)(?:\(|\{| =)|(?:struct|class|enum class|using) (\w+))", re.MULTILINE)
 CALLED = re.compile(r"(?<![\w.:>])(\w+)[<({]")
@@ -46,7 +47,7 @@ def units_of(root, names):
 
 def main():
     tidy, build = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
-    names = [name for name in sources.of_library("--all" in sys.argv) if not PROGRAM.fullmatch(name)]
+    names = [name for name in sources.of_library("--all" in sys.argv) if not PASSED_OVER.fullmatch(name)]
     flags = sources.common_flags(sources.commands(build))
     folder = build / "lint"
     folder.mkdir(exist_ok=True)
