@@ -57,6 +57,7 @@ void TaskGraph::add(StageDeclaration stage, Run run) {
     for (const StageDeclaration& other : stages_)
         if (std::string_view(other.name) == stage.name)
             throw CheckFailed(std::string("two stages are named ") + stage.name);
+    stage.phase = phase_;
     stats_.push_back({stage.name});
     run_.push_back(std::move(run));
     stages_.push_back(std::move(stage));
@@ -143,9 +144,21 @@ void TaskGraph::reset_stats() {
 }
 
 std::string TaskGraph::to_dot() const {
-    std::string text = "digraph step {\n    rankdir=LR;\n    node [shape=box];\n";
+    std::string text = "digraph step {\n    rankdir=TB;\n    node [shape=box];\n";
     const auto quoted = [this](Index stage) { return '"' + std::string(stats_[stage].name) + '"'; };
-    for (Index stage = 0; stage < static_cast<Index>(stages_.size()); ++stage) text += "    " + quoted(stage) + ";\n";
+    std::string_view phase;
+    for (Index stage = 0; stage < static_cast<Index>(stages_.size()); ++stage) {
+        const std::string_view of_stage = stages_[static_cast<std::size_t>(stage)].phase;
+        if (of_stage != phase) {
+            if (!phase.empty()) text += "    }\n";
+            phase = of_stage;
+            if (!phase.empty())
+                text +=
+                    "    subgraph cluster_" + std::to_string(stage) + " {\n    label=\"" + std::string(phase) + "\";\n";
+        }
+        text += "    " + quoted(stage) + ";\n";
+    }
+    if (!phase.empty()) text += "    }\n";
     for (const Edge& edge : edges_) text += "    " + quoted(edge.from) + " -> " + quoted(edge.to) + ";\n";
     return text + "}\n";
 }

@@ -68,7 +68,8 @@ struct StageStats {
 struct StageDeclaration {
     const char* name;
     AccessList accesses;
-    bool guarded;  // has an only_if: the stage may be skipped
+    bool guarded;            // has an only_if: the stage may be skipped
+    const char* phase = "";  // set by TaskGraph
 };
 
 /// Stages and the order between them. Building may allocate; running does not, after the first run on an executor.
@@ -89,6 +90,9 @@ public:
 
     TaskGraph();
 
+    /// Stages that are added from now on belong to this phase. Phases group the stages in the drawing and have no
+    /// effect on the order. The name must be a literal.
+    void begin_phase(const char* name) { phase_ = name; }
     /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that
     /// returns bool returns false if there was nothing to do.
     template <class F, class... Args>
@@ -144,7 +148,7 @@ public:
     /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are
     /// numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
-    /// The graph as Graphviz dot text.
+    /// The graph as Graphviz dot text, with a box around the stages of each phase.
     std::string to_dot() const;
 
 private:
@@ -162,6 +166,7 @@ private:
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
+    const char* phase_ = "";
     std::vector<StageDeclaration> stages_;
     std::vector<Run> run_;           // by stage
     std::vector<StageStats> stats_;  // by stage

@@ -41,16 +41,19 @@ TEST_CASE("nothing is left to do later", "[contract]") {
 TEST_CASE("the list of stages captures nothing", "[contract]") {
     // Data that a stage reaches through a lambda capture is missing from the stage's declared accesses.
     static const std::regex capture("\\[[&=a-z][^\\]]*\\] *[({]");
-    bool found = false;
+    int found = 0;
     for (const skerry::test::ProjectFile& file : skerry::test::project_files()) {
-        if (file.path != "engine/world/step/build_step.cpp") continue;
-        found = true;
+        const bool lists_stages = file.path == "engine/world/step/step.cpp" ||
+                                  file.path.starts_with("engine/world/step/models/") ||
+                                  file.path.starts_with("engine/world/step/laws/");
+        if (!lists_stages) continue;
+        ++found;
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
             INFO(file.path << ":" << i + 1 << ": " << file.lines[i]);
             CHECK_FALSE(std::regex_search(file.lines[i], capture));
         }
     }
-    CHECK(found);
+    CHECK(found == 7);
 }
 
 }  // namespace skerry::test::house_rules_test

@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-// build_step.cpp
+// step.cpp
 /// Lists the stages of the step; the graph derives its edges from the data that they read and write.
 void build_step(WorldState& world);
 

@@ -1,0 +1,202 @@
+// The step on one page: a list of stages in phases. The task graph derives the order of the stages from the data that
+// they read and write. So forces and contact search run side by side, and the solve of one region beside that of others
+// (docs/figures/step_graph.svg). A stage is named folder/function. The bind() of a struct of inputs lists the columns
+// that it reads.
+#include "engine/world/step/step.h"
+
+#include "engine/world/kernels.h"
+#include "engine/world/step/seams.h"
+#include "systems/contact/separate_regions.h"
+#include "systems/contact/sum_contact_impulses.h"
+#include "systems/dynamics/checks/measure_reactions.h"
+#include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/motion/measure_displacement.h"
+#include "systems/dynamics/motion/move_colliders.h"
+#include "systems/dynamics/motion/update_sleep.h"
+#include "systems/dynamics/stability/watch_stable_steps.h"
+
+namespace skerry {
+
+namespace {
+
+void move_as_scripted(WorldState&, TaskGraph&);
+void watch_stable_steps_beside(WorldState&, TaskGraph&);
+void separate(WorldState&, TaskGraph&);
+void solve(WorldState&, TaskGraph&);
+void measure_forces(WorldState&, TaskGraph&);
+void check_end(WorldState&, TaskGraph&);
+void wake(WorldState&, TaskGraph&);
+void measure_travel(WorldState&, TaskGraph&);
+void put_to_rest(WorldState&, TaskGraph&);
+
+template <auto stages>
+void of_models(WorldState& world, TaskGraph& graph) {
+    for (const MotionModel* model : motion_models)
+        if (model->*stages) (model->*stages)(world, graph);
+}
+template <auto stages>
+void of_laws(WorldState& world, TaskGraph& graph) {
+    for (const ConstraintLaw* law : constraint_laws)
+        if (law->*stages) (law->*stages)(world, graph);
+}
+
+}  // namespace
+
+void build_step(WorldState& w) {
+    TaskGraph& g = w.graph;
+    g.begin_phase("Move colliders and held nodes");
+    move_as_scripted(w, g);
+    g.begin_phase("Watch stable steps");
+    watch_stable_steps_beside(w, g);
+    g.begin_phase("Predict velocities without contacts");
+    of_models<&MotionModel::add_forces>(w, g);
+    of_models<&MotionModel::predict>(w, g);
+    g.begin_phase("Find contacts and joint rows");
+    of_laws<&ConstraintLaw::find>(w, g);
+    g.begin_phase("Separate contact regions");
+    separate(w, g);
+    of_models<&MotionModel::couple>(w, g);
+    g.begin_phase("Solve regions as concurrent jobs");
+    solve(w, g);
+    of_laws<&ConstraintLaw::measure>(w, g);
+    g.begin_phase("Apply impulses");
+    of_models<&MotionModel::apply>(w, g);
+    measure_forces(w, g);
+    of_models<&MotionModel::find_pose>(w, g);
+    g.begin_phase("Check the step");
+    check_end(w, g);
+    of_models<&MotionModel::check>(w, g);
+    of_laws<&ConstraintLaw::check>(w, g);
+    g.begin_phase("Joined integration, if all checks hold");
+    wake(w, g);
+    of_models<&MotionModel::integrate>(w, g);
+    g.begin_phase("Remember for the next step");
+    measure_travel(w, g);
+    put_to_rest(w, g);
+    of_laws<&ConstraintLaw::remember>(w, g);
+    g.compile();
+}
+
+namespace {
+
+/// Scripts set the motion of colliders and held nodes during this step.
+void move_as_scripted(WorldState& w, TaskGraph& g) {
+    ColliderTable& c = w.model.colliders;
+    AttachmentTable& a = w.model.attachments;
+    NodeTable& n = w.model.nodes;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage("dynamics/move_colliders", move_colliders, inputs<ColliderMotionInputs>(c), value(w.clock.time), value(p.h),
+            write(c.motion));
+    g.stage("dynamics/move_attachments", move_colliders, inputs<ColliderMotionInputs>(a), value(w.clock.time),
+            value(p.h), write(a.motion));
+    g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(a), value(p.h), read(n.position),
+            write(n.velocity));
+}
+
+/// Evaluates stable steps beside all other stages.
+void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
+            inputs<WatchInputs>(m.elements, m.element_nodes, m.materials, m.bodies, m.nodes),
+            make(w.scratch.watch_parts), make(m.watch));
+}
+
+/// Contacts that share a moving block of degrees of freedom belong to one region.
+void separate(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    ContactTable& c = w.scratch.contacts;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
+    g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
+            make(w.scratch.pressed), if_any_asleep);
+    g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
+            inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
+            value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
+}
+
+void solve(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    NodeTable& n = m.nodes;
+    StepScratch& s = w.scratch;
+    const StepParameters& p = s.parameters;
+    const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.problem_wanted));
+    g.stage("world/keep_velocities", keep_velocities, read(n.velocity), read(n.velocity_next), read(n.position),
+            inputs<KeptFrames>(m.rigid_bodies, m.implicit_nodes), make(s.kept_velocities), if_wanted);
+    g.stage("solver/solve_regions", kernels().solve_regions,
+            inputs<RegionInputs>(s.contacts, n, n.velocity, p.collision.gravity, m.clusters, s.cluster_kick, m.bodies,
+                                 m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints),
+            value(p.solver), value(p.h), make(s.solver_memory), make(s.regions),
+            outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints));
+}
+
+/// Sums of contact and attachment forces, if requested.
+void measure_forces(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    ForceScratch& f = w.scratch.forces;
+    const StepParameters& p = w.scratch.parameters;
+    const auto if_wanted = only_if([](bool wanted) { return wanted; }, value(p.forces_wanted));
+    g.stage("contact/sum_contact_impulses", sum_contact_impulses,
+            inputs<ContactSumInputs>(w.scratch.contacts, m.bodies, m.nodes, m.attachments), value(p.moment_point),
+            make(f.pairs), make(f.held_impulse), if_wanted);
+    g.stage("dynamics/measure_reactions", measure_reactions,
+            inputs<ReactionInputs>(m.attachments, m.nodes, m.bodies, m.materials, m.elements, m.element_nodes,
+                                   m.rigid_bodies, f.held_impulse, f.held_velocity),
+            value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
+}
+
+/// Checks that all motion models share: finite, slow enough, within the strain of a step; and the work from outside.
+void check_end(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    NodeTable& n = m.nodes;
+    BodyTable& b = m.bodies;
+    NodeBlockTable& k = m.node_blocks;
+    const bool& pushed = w.scratch.regions.pushed;
+    StepFindings& found = w.scratch.findings;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("dynamics/check_state", found.verdict, kernels().check_state,
+                        inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
+                        value(p.longest), value(p.max_strain_step), outputs<SpeedOutputs>(k, b),
+                        make(w.scratch.beside_fast));
+    const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
+                                value(m.loaded), read(m.attachments.node));
+    g.stage_with_result("dynamics/measure_work", found.external, measure_work,
+                        inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep, p.gravity), value(p.h),
+                        value(p.kick), make(w.scratch.work_parts), if_any);
+}
+
+auto if_sleepy(const WorldState& w) {
+    return only_if([](const SleepSettings& sleep) { return sleep.on(); }, value(w.scratch.parameters.sleep));
+}
+
+void wake(WorldState& w, TaskGraph& g) {
+    AttachmentTable& a = w.model.attachments;
+    BodyTable& b = w.model.bodies;
+    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.joints),
+            read(w.scratch.pressed), read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken(w),
+            if_sleepy(w));
+}
+
+/// Travel of bodies since the last search for contact candidates.
+void measure_travel(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.model.nodes;
+    BodyTable& b = w.model.bodies;
+    g.stage("dynamics/measure_displacement", kernels().measure_displacement,
+            inputs<DisplacementInputs>(w.model.node_blocks, b, n), value(w.scratch.parameters.h),
+            outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken(w));
+}
+
+void put_to_rest(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    NodeTable& n = m.nodes;
+    RigidBodyTable& r = m.rigid_bodies;
+    const StepParameters& p = w.scratch.parameters;
+    g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
+                        inputs<TouchInputs>(w.scratch.contacts, m.joints),
+                        inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r), value(p.sleep), value(p.h),
+                        make(w.scratch.sleep_memory), outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes),
+                        if_taken(w), if_sleepy(w));
+}
+
+}  // namespace
+
+}  // namespace skerry
