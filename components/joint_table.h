@@ -62,8 +62,8 @@ struct JointTable {
         visit("kind", kind, ColumnRole::state);
         visit("drive", drive, ColumnRole::state);
         visit("parts", parts, ColumnRole::state);
-        visit("first", first, ColumnRole::link);
-        visit("second", second, ColumnRole::link);
+        visit("first", first, ColumnRole::body);
+        visit("second", second, ColumnRole::body);
         visit("first_frame", first_frame, ColumnRole::state);
         visit("second_frame", second_frame, ColumnRole::state);
         visit("lower", lower, ColumnRole::state);

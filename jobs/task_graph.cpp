@@ -144,7 +144,9 @@ void TaskGraph::reset_stats() {
 }
 
 std::string TaskGraph::to_dot() const {
-    std::string text = "digraph step {\n    rankdir=TB;\n    node [shape=box];\n";
+    std::string text =
+        "digraph step {\n    rankdir=TB;\n    node [shape=box, fontname=Helvetica];\n    labeljust=l;\n"
+        "    fontname=Helvetica;\n";
     const auto quoted = [this](Index stage) { return '"' + std::string(stats_[stage].name) + '"'; };
     std::string_view phase;
     for (Index stage = 0; stage < static_cast<Index>(stages_.size()); ++stage) {

@@ -143,10 +143,14 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
-void add_joint(Hash& hash, Model& model, std::size_t j) {
-    add_state(hash, model.joints, single(j));
-    hash.add(slot_of(model.bodies.slot, model.joints.first[j]));
-    hash.add(slot_of(model.bodies.slot, model.joints.second[j]));
+/// A row that joins bodies: they count by their slots.
+void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
+    add_state(hash, table, single(row));
+    for (const ColumnInfo& info : table.columns()) {
+        if (info.role != ColumnRole::body) continue;
+        const auto* const bodies = reinterpret_cast<const Index*>(table.column(info).read());
+        hash.add(slot_of(model.bodies.slot, bodies[row]));
+    }
 }
 
 void add_collider(Hash& hash, Model& model, std::size_t c) {
@@ -223,7 +227,9 @@ std::uint64_t state_hash(WorldState& world) {
         if (model.bodies.kind[b] == BodyKind::deformable) hash.add(body_hash(model, b));
     for (std::size_t c : in_slot_order(model.colliders.slot)) add_collider(hash, model, c);
     for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
-    for (std::size_t j : in_slot_order(model.joints.slot)) add_joint(hash, model, j);
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
+    });
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

@@ -12,7 +12,7 @@
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
-#include "engine/world/edit/joints.h"
+#include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/material_row.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
@@ -74,7 +74,7 @@ void WorldState::draw(bool resting) {
     if (!drawn_behind) return;
     drawn_behind = false;
     draw_round_bodies(
-        *executor, RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.loaded),
+        *executor, RigidBodies::bind({}, model.rigid_bodies, model.bodies, model.nodes, model.any_asleep, model.forced),
         resting, model.nodes.position, model.nodes.velocity);
 }
 
@@ -89,6 +89,7 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
+    note_forces(model);
     find_holders(model);
     cache.extend(model);
     query_trees.forget();
@@ -319,7 +320,7 @@ void World::remove(BodyHandle body) {
         model.attachment_map.forget(model.attachment_map.handle_of_slot(slot));
     }
     enable_pairs_of(body, model.disabled_pairs);
-    erase_joints_of(static_cast<std::size_t>(row), model);
+    erase_rows_joining(static_cast<std::size_t>(row), model);
     model.body_map.forget(body);
     OpenEdits& edits = state_->edits;
     edits.places.add_body(model, static_cast<std::size_t>(row));

@@ -5,8 +5,9 @@
     lint.py CLANG_TIDY BUILD_FOLDER --all    all files
 
 Most of the time of clang-tidy goes into the headers of the packages, read anew for each source. Sources are therefore
-read many at a time, as one unit. In a unit all share one unnamed namespace, and a name in it hides the same name outside. A
-source that declares a private name and another that declares or calls it therefore go into different units."""
+read many at a time, as one unit. In a unit all share one unnamed namespace, and a name in it hides the same name
+outside. A source that declares a private name and another that declares or calls it therefore go into different
+units."""
 import concurrent.futures
 import os
 import pathlib

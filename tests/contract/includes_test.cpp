@@ -23,13 +23,21 @@ std::optional<Place> place_of(const std::string& path) {
     // jobs is beside the components and uses them. tests/support also serves the benchmarks, which tests include. The
     // first matching prefix counts.
     static const std::vector<Place> places{
-        {"components/", 10},        {"jobs/", 11},
-        {"systems/geometry/", 20},  {"systems/material/", 30},
-        {"systems/collision/", 30}, {"systems/dynamics/", 40},
-        {"systems/contact/", 40},   {"systems/solver/", 50},
-        {"systems/kernels/", 55},   {"engine/", 60},
-        {"tests/support/", 70},     {"examples/", 71},
-        {"profiling/", 71},         {"tests/", 72},
+        {"components/", 10},
+        {"jobs/", 11},
+        {"systems/geometry/", 20},
+        {"systems/material/", 30},
+        {"systems/collision/", 30},
+        {"systems/forces/", 30},
+        {"systems/dynamics/", 40},
+        {"systems/contact/", 40},
+        {"systems/solver/", 50},
+        {"systems/kernels/", 55},
+        {"engine/", 60},
+        {"tests/support/", 70},
+        {"examples/", 71},
+        {"profiling/", 71},
+        {"tests/", 72},
     };
     for (const Place& place : places)
         if (path.starts_with(place.folder)) return place;

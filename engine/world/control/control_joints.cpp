@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "engine/world/control/control.h"
-#include "engine/world/edit/joints.h"
+#include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"
 #include "skerry/joint.h"
 #include "systems/contact/tangent_frame.h"
 #include "systems/dynamics/joints/prepare_joints.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
 
@@ -94,6 +95,18 @@ BodyHandle first_of(const Model& model, std::size_t joint) {
     return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(model.joints.first[joint])]);
 }
 
+/// Motion of a point that moves with a body; zero for the world (`body` is no_index).
+struct PointVelocity {
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // [m/s], [rad/s]
+};
+PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
+    if (body == no_index) return {};
+    const RigidBodyTable& table = model.rigid_bodies;
+    const auto r = static_cast<std::size_t>(model.bodies.rigid[static_cast<std::size_t>(body)].begin);
+    const Vec3 turn = spin_of(table.rotation[r], table.moments[r], table.angular_momentum[r]);
+    return {table.momentum[r] / table.mass[r] + turn.cross(point - table.center[r]), turn};
+}
+
 /// Whether another joint disables contact between the same bodies.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
@@ -151,10 +164,7 @@ void Joints::remove(JointHandle joint) {
     wake_both(model, row);
     if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
         world_->set_collision(first_of(model, row), *second_of(model, row), true);
-    model.joint_map.forget(joint);
-    std::vector<std::uint8_t> gone(model.joints.size(), 0);
-    gone[row] = 1;
-    erase_joints(gone, model);
+    erase_joining_row(row, model.joints, model.joint_map);
 }
 
 bool Joints::alive(JointHandle joint) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/any_table.h"
+#include "engine/world/edit/joining_rows.h"
 #include "systems/dynamics/elements/build_elements.h"
 
 namespace skerry {
@@ -154,13 +155,6 @@ void erase_attachments(const RowMoves& moves, Model& model) {
     model.attachment_map.rows_moved(moves.attachment_now);
 }
 
-/// Renumbers the bodies of joints. Joints of removed bodies were removed with them.
-void renumber_joints(const RowMoves& moves, JointTable& joints) {
-    for (Column<Index>* const side : {&joints.first, &joints.second})
-        for (Index& body : *side)
-            if (body != no_index) body = moves.body_now[static_cast<std::size_t>(body)];
-}
-
 void erase_colliders(const RowMoves& moves, Model& model) {
     erase_scripted_rows(moves.colliders_gone, model.colliders);
     erase_records(moves.collider_now, model.collider_records);
@@ -185,7 +179,6 @@ void erase_bodies(const RowMoves& moves, Model& model) {
     const auto first = static_cast<std::size_t>(moves.gone.bodies.front().begin);
     for (std::size_t b = first; b < moves.body_now.size(); ++b)
         if (moves.body_now[b] == no_index && model.has_loads(b)) --model.loaded_bodies;
-    model.loaded = model.loaded_bodies > 0;
     truncate_patches(model.bodies.blocks[first].begin, model.bodies.nodes[first].begin, model.patches);
     renumber_clusters(moves, model, model.clusters);
     model.known_elements.clear();
@@ -238,7 +231,7 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
 void erase_gone(const RowMoves& moves, Model& model) {
     if (!moves.gone.bodies.empty()) erase_attachments(moves, model);
     if (!moves.gone.bodies.empty()) erase_bodies(moves, model);
-    if (!moves.gone.bodies.empty()) renumber_joints(moves, model.joints);
+    if (!moves.gone.bodies.empty()) renumber_joining_rows(moves.body_now, model);
     if (!moves.colliders_gone.empty() || !moves.gone.bodies.empty()) erase_colliders(moves, model);
 }
 

@@ -28,7 +28,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     all("rigid_bodies", model.rigid_bodies, model.rigid_bodies.size());
     all("implicit_nodes", model.implicit_nodes, model.implicit_nodes.size());
     all("materials", model.materials, model.materials.slot.size());
-    all("joints", model.joints, model.joints.size());
+    model.for_each_joining([&](const char* name, auto& table, auto&) { all(name, table, table.slot.size()); });
     all("colliders", model.colliders, model.colliders.slot.size());
     all("attachments", model.attachments, model.attachments.slot.size());
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
@@ -72,7 +72,8 @@ void check_handles(const Hdf5File& file, Model& model) {
     check_handles(file, "bodies", model.body_map, of_bodies);
     check_handles(file, "colliders", model.collider_map, slots(model.colliders.slot));
     check_handles(file, "attachments", model.attachment_map, slots(model.attachments.slot));
-    check_handles(file, "joints", model.joint_map, slots(model.joints.slot));
+    model.for_each_joining(
+        [&](const char* name, auto& table, auto& map) { check_handles(file, name, map, slots(table.slot)); });
 }
 
 void check_bodies(const Hdf5File& file, const Model& model) {
@@ -301,10 +302,18 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     }
 }
 
+/// Checks the bodies that the rows of a table join.
+void check_joined_bodies(const Hdf5File& file, const Model& model, const char* name, AnyTable table) {
+    for (const ColumnInfo& info : table.columns()) {
+        if (info.role != ColumnRole::body) continue;
+        const AnyColumn column = table.column(info);
+        const std::span<const Index> rows(reinterpret_cast<const Index*>(column.read()), column.size());
+        expect_rows_of(file, std::string("/") + name + "/" + info.name, rows, model.bodies.slot.size(), true);
+    }
+}
+
 void check_joints(const Hdf5File& file, const Model& model) {
     const JointTable& table = model.joints;
-    expect_rows_of(file, "/joints/first", table.first, model.bodies.slot.size());
-    expect_rows_of(file, "/joints/second", table.second, model.bodies.slot.size(), true);
     expect_between(file, "/joints/step", table.step, 0.0, unbounded);
     for (std::size_t j = 0; j < table.size(); ++j) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
@@ -314,7 +323,8 @@ void check_joints(const Hdf5File& file, const Model& model) {
         const auto is_rigid = [&](Index body) {
             return body == no_index || model.is_rigid(static_cast<std::size_t>(body));
         };
-        require(is_rigid(table.first[j]), "first", "a body that deforms", "a rigid one");
+        require(table.first[j] != no_index && is_rigid(table.first[j]), "first", "the world or a body that deforms",
+                "a rigid body");
         require(is_rigid(table.second[j]) && table.second[j] != table.first[j], "second",
                 "a body that deforms, or the first again", "another rigid one, or -1: the world");
         for (const JointFrame& frame : {table.first_frame[j], table.second_frame[j]})
@@ -350,6 +360,8 @@ void check_model(const Hdf5File& file, Model& model) {
     check_disabled_pairs(file, model);
     check_clusters(file, model);
     check_rigid_bodies(file, model.rigid_bodies);
+    model.for_each_joining(
+        [&](const char* name, auto& table, auto&) { check_joined_bodies(file, model, name, table); });
     check_joints(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);

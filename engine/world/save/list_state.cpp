@@ -67,7 +67,9 @@ void list_model(Model& model, Archive& archive) {
     list_handles("/handles/bodies", model.body_map, archive);
     list_handles("/handles/colliders", model.collider_map, archive);
     list_handles("/handles/attachments", model.attachment_map, archive);
-    list_handles("/handles/joints", model.joint_map, archive);
+    model.for_each_joining([&](const char* name, auto&, auto& map) {
+        list_handles(std::string("/handles/") + name, map, archive);
+    });
     list_ragged("/clusters/nodes", model.clusters.nodes, archive);
     archive.column("/clusters/body", model.clusters.body);
     archive.column("/clusters/inverse", model.clusters.inverse);

@@ -13,6 +13,7 @@
 #include "engine/world/save/list_state.h"
 #include "engine/world/save/world_file.h"
 #include "engine/world/state_hash.h"
+#include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 
 namespace skerry {
@@ -161,6 +162,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
+    note_forces(model);
     find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);

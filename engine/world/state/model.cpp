@@ -47,7 +47,7 @@ void Model::set_world(std::uint32_t number) {
     body_map.set_world(number);
     collider_map.set_world(number);
     attachment_map.set_world(number);
-    joint_map.set_world(number);
+    for_each_joining([&](const char*, auto&, auto& map) { map.set_world(number); });
 }
 
 Index Model::row(BodyHandle body, const char* call) const {
@@ -130,7 +130,6 @@ bool Model::has_loads(std::size_t body) const {
 
 void Model::note_loads(std::size_t body, bool before) {
     loaded_bodies += static_cast<Index>(has_loads(body)) - static_cast<Index>(before);
-    loaded = loaded_bodies > 0;
 }
 
 ElementList Model::elements_of_implicit(std::size_t body) const {

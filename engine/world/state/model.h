@@ -97,8 +97,9 @@ struct Model {
     // bodies, colliders or settings have changed since the implicit elements were last chosen
     bool clusters_open = true;
     bool settled = true;      // true if all bodies and colliders are settled
-    bool loaded = false;      // some node has a load; derived: derive_all, note_loads
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
+    bool forced = false;      // the world has some force element, loads included; derived: note_forces
+    Column<Real> force_rate;  // by body: see ForceElement::add_rate; empty: zero [1/s^2]; derived: note_forces
     bool any_asleep = false;  // some body rests; derived: note_rest. If false, no stage tests for rest
 
     /// Sets the world number that its handles carry.
@@ -196,6 +197,9 @@ struct Model {
         visit("joints", joints);
         visit("disabled_pairs", disabled_pairs);
     }
+    /// Tables whose rows join bodies, each with its handles. They need no code of their own to be saved, checked,
+    /// hashed, renumbered, or erased with a body: the role `body` of a column says which bodies a row joins.
+    void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
 };
 
 }  // namespace skerry

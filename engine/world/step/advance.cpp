@@ -200,7 +200,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.cache.crossings.row.clear();  // rows of an abandoned step: bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
-    world.scratch.parameters.draws_late = !model.loaded;  // loads need all nodes in every step
+    world.scratch.parameters.draws_late = !model.forced;  // forces need all nodes in every step
     Real stiffened = 0;                                   // energy brought in by clusters since the last step [J]
     bool look_at_end = false;  // with leapfrog, all energies belong to one time only between calls
     // exception thrown by a callback: the call still ends between two steps

@@ -46,12 +46,12 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     forget_impulses(r);
     drift_implicit_bodies(ImplicitBodies::bind({}, r, model.bodies, model.materials, i, n, a, model.any_asleep),
                           ImplicitSpins::bind({}, r), model.stiff_bodies, seconds, ImplicitStrains::bind({}, i, r, n));
-    turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
+    turn_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.forced),
                       RigidHolds::bind({}, r, a), RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), n.position,
                       seconds, {r.center_next, r.rotation_next, n.velocity});
     advance_positions(executor, AdvanceInputs::bind({}, k, model.bodies, n, n.velocity, model.any_asleep), seconds,
                       AdvanceOutputs::bind({}, n, k, pushed));
-    move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.loaded),
+    move_rigid_bodies(executor, RigidBodies::bind({}, r, model.bodies, n, model.any_asleep, model.forced),
                       RigidImpulses::bind({}, r), ElasticMotion::bind({}, i, r), r.center_next, r.rotation_next, false,
                       RigidMoves::bind({}, r, n, i));
     measure_displacement_of(executor, model, seconds, search);

@@ -1,8 +1,9 @@
-// Two of the seams along which a step is extended. The page of the step (step.cpp) walks both lists and names no member
-// of either.
+// Seams along which a step is extended: force elements, motion models and constraint laws. The page of the step
+// (step.cpp) walks the three lists and names no member of any.
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "engine/world/world_state.h"
 #include "jobs/stage_arguments.h"
@@ -12,6 +13,17 @@ namespace skerry {
 
 /// Adds stages to the graph of the step.
 using ListStages = void (*)(WorldState&, TaskGraph&);
+
+/// A force element: a force on nodes that is neither elastic nor a constraint. All bodies take its forces by their
+/// nodes, however they move. Its forces count as work from outside in the balance of a run.
+struct ForceElement {
+    bool (*any)(const Model&);    // whether the world has one; without any, the stages of all are skipped
+    ListStages add_forces;        // adds its forces at the start of the step to NodeTable::applied_force
+    Real (*power)(const Model&);  // power of its forces on moving nodes, at the present positions and velocities [W]
+    // For each body, adds a bound on the part of this element in the squares of its natural frequencies, which limits
+    // the stable step [1/s^2]. Null: its forces do not depend on positions.
+    void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
+};
 
 /// A motion model: how the degrees of freedom of some bodies move in a step. Each member lists the stages of the model
 /// in one phase of the step; null: it has none there.
@@ -34,9 +46,12 @@ struct ConstraintLaw {
     ListStages remember = nullptr;  // keeps the impulses for the next step, once the step can be taken
 };
 
+extern const ForceElement nodal_loads;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies;
 extern const ConstraintLaw contact_law, joint_law;
 
+/// All force elements. The loads on nodes come first: their stage sets the sum that others add to.
+inline constexpr std::array<const ForceElement*, 1> force_elements{&nodal_loads};
 /// All motion models. The order matters where two of them write the same columns: frames of implicit bodies move as
 /// rigid bodies do, so that rigid bodies come first.
 inline constexpr std::array<const MotionModel*, 4> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,

@@ -26,7 +26,10 @@ constexpr Real step_of_rigid_bodies = 1.0 / 120;
 }  // namespace
 
 Real step_of_body(const Model& model, std::size_t body) {
-    const Real step = model.bodies.stable_step[body];
+    Real step = model.bodies.stable_step[body];
+    // The largest eigenvalue of a sum of symmetric matrices is at most the sum of theirs.
+    if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
+        step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
     // Damping keeps the fraction `kept` of a velocity in this step: a mode is stable for omega h < sqrt(2 (1 + kept)).

@@ -29,6 +29,9 @@ void wake(WorldState&, TaskGraph&);
 void measure_travel(WorldState&, TaskGraph&);
 void put_to_rest(WorldState&, TaskGraph&);
 
+void add_applied_forces(WorldState& world, TaskGraph& graph) {
+    for (const ForceElement* element : force_elements) element->add_forces(world, graph);
+}
 template <auto stages>
 void of_models(WorldState& world, TaskGraph& graph) {
     for (const MotionModel* model : motion_models)
@@ -49,6 +52,7 @@ void build_step(WorldState& w) {
     g.begin_phase("Watch stable steps");
     watch_stable_steps_beside(w, g);
     g.begin_phase("Predict velocities without contacts");
+    add_applied_forces(w, g);
     of_models<&MotionModel::add_forces>(w, g);
     of_models<&MotionModel::predict>(w, g);
     g.begin_phase("Find contacts and joint rows");
@@ -157,10 +161,10 @@ void check_end(WorldState& w, TaskGraph& g) {
                         inputs<CheckInputs>(k, b, n, m.tetrahedra, m.elements, m.element_nodes, pushed), value(p.h),
                         value(p.longest), value(p.max_strain_step), outputs<SpeedOutputs>(k, b),
                         make(w.scratch.beside_fast));
-    const auto if_any = only_if([](bool loaded, std::span<const Index> held) { return loaded || !held.empty(); },
-                                value(m.loaded), read(m.attachments.node));
+    const auto if_any = only_if([](bool forced, std::span<const Index> held) { return forced || !held.empty(); },
+                                value(m.forced), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
-                        inputs<WorkInputs>(n, m.attachments, b, m.loaded, m.any_asleep, p.gravity), value(p.h),
+                        inputs<WorkInputs>(n, m.attachments, b, m.forced, m.any_asleep, p.gravity), value(p.h),
                         value(p.kick), make(w.scratch.work_parts), if_any);
 }
 

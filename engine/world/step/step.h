@@ -13,10 +13,16 @@ void build_step(WorldState& world);
 /// Adds a committed step to the sums of the run.
 void count_step(const StepScratch& scratch, RunCounters& counters);
 
+// note_forces.cpp
+/// After force elements, or bodies with any, were added, changed or removed: notes whether there are any, and their
+/// part in the stable steps.
+void note_forces(Model& model);
+
 // stable_steps.cpp
 /// Largest step at which the stiffest body is stable, as last evaluated, and the row of that body [s].
 Real stable_step(const Model& model, Index* body = nullptr);
-/// Stable step of one body: the bound of its elements, reduced for damping (docs/methods/stable_step.md 6.1) [s].
+/// Stable step of one body: the bound of its elements, reduced for damping (docs/methods/stable_step.md 6.1)
+/// and for force elements [s].
 Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports. If all bodies are rigid, and stable at any step, it is the step that is taken [s].
 Real told_step(const Model& model, Index* body = nullptr);

@@ -19,7 +19,7 @@ struct ExternalWork {
 };
 
 struct WorkInputs {
-    std::span<const Vec3> load;   // N, by node; empty: none
+    std::span<const Vec3> load;   // applied force by node; empty: none [N]
     std::span<const Vec3> force;  // by held node [N]
     std::span<const Vec3> velocity_next;
     std::span<const Real> mass;   // kg, by node
@@ -29,10 +29,10 @@ struct WorkInputs {
     RestingNodes resting;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
-    /// `loaded`: true if some node has a load. `any_asleep`: true if some body is asleep.
+    /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
     static WorkInputs bind(const Binder& binder, const NodeTable& node, const AttachmentTable& attachment,
-                           const BodyTable& body, const bool& loaded, const bool& any_asleep, const Vec3& gravity) {
-        return {.load = binder.read_if(binder.value(loaded), node.load),
+                           const BodyTable& body, const bool& forced, const bool& any_asleep, const Vec3& gravity) {
+        return {.load = binder.read_if(binder.value(forced), node.applied_force),
                 .force = binder.read(node.force),
                 .velocity_next = binder.read(node.velocity_next),
                 .mass = binder.read(node.mass),

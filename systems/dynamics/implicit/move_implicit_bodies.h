@@ -100,13 +100,13 @@ struct ImplicitTimes : LongStepTimes {
 };
 
 struct ImplicitLoads {
-    std::span<const Vec3> load;  // by node; empty: no loads [N]
+    std::span<const Vec3> load;  // applied force by node; empty: none [N]
     Vec3 gravity;                // accelerates held bodies; others fall with their frames [m/s^2]
     Real kick;  // time for which loads act on other bodies; on implicit bodies they act for the whole step [s]
 
-    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded,
+    static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced,
                               const Real& kick) {
-        return {.load = binder.read_if(binder.value(loaded), node.load),
+        return {.load = binder.read_if(binder.value(forced), node.applied_force),
                 .gravity = binder.value(gravity),
                 .kick = binder.value(kick)};
     }

@@ -20,14 +20,14 @@ struct KickInputs {
     std::span<const PaddedVec3> patch_force;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
-    std::span<const Vec3> load = {};                 // empty: no node has a load [N]
+    std::span<const Vec3> load = {};                 // applied force; empty: no node has one [N]
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are skipped; empty: no body rests
     // BodyTable; elements exert no force on nodes of unstrained bodies; empty: no body is unstrained
     std::span<const std::uint16_t> body_unstrained = {};
 
-    /// `loaded`: some node has a load. `any_asleep`: some body rests.
+    /// `forced`: the world has force elements. `any_asleep`: some body rests.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
-                           const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& loaded,
+                           const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& forced,
                            const bool& any_asleep) {
         return {.block_begin = binder.read(block.begin),
                 .block_end = binder.read(block.end),
@@ -37,7 +37,7 @@ struct KickInputs {
                 .mass = binder.read(node.mass),
                 .inverse_mass = binder.read(node.inverse_mass),
                 .gravity = binder.value(gravity),
-                .load = binder.read_if(binder.value(loaded), node.load),
+                .load = binder.read_if(binder.value(forced), node.applied_force),
                 .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
                 .body_unstrained = binder.read(body.unstrained)};
     }

@@ -33,13 +33,13 @@ struct RigidBodies {
     std::span<const Real> inverse_mass;   // by node [1/kg]
     std::span<const Index> holder;        // row of AttachmentTable, or no_index
 
-    /// `loaded`: some node has a load; then all nodes are used, also those that only draw round bodies.
+    /// `forced`: the world has force elements; then all nodes are used, also those that only draw round bodies.
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
-                            const NodeTable& node, const bool& any_asleep, const bool& loaded) {
+                            const NodeTable& node, const bool& any_asleep, const bool& forced) {
         return {.body = binder.read(rigid.body),
                 .body_nodes = binder.read(of_body.nodes),
                 .body_implicit = binder.read(of_body.implicit),
-                .body_core_nodes = binder.read_if(!binder.value(loaded), of_body.core_nodes),
+                .body_core_nodes = binder.read_if(!binder.value(forced), of_body.core_nodes),
                 .body_asleep = binder.read_if(binder.value(any_asleep), of_body.asleep),
                 .mass = binder.read(rigid.mass),
                 .moments = binder.read(rigid.moments),
@@ -90,13 +90,13 @@ struct ElasticMotion {
 
 struct RigidForces {
     Vec3 gravity;                    // [m/s^2]
-    std::span<const Vec3> load;      // by node; empty: no loads [N]
+    std::span<const Vec3> load;      // applied force by node; empty: none [N]
     std::span<const Vec3> position;  // by node [m]
 
-    /// `loaded`: some node has a load.
-    static RigidForces bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& loaded) {
+    /// `forced`: the world has force elements.
+    static RigidForces bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced) {
         return {.gravity = binder.value(gravity),
-                .load = binder.read_if(binder.value(loaded), node.load),
+                .load = binder.read_if(binder.value(forced), node.applied_force),
                 .position = binder.read(node.position)};
     }
 };

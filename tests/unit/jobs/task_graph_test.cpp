@@ -327,7 +327,9 @@ TEST_CASE("a graph without stages compiles and runs", "[unit]") {
     graph.run_inline();
     graph.run(*make_executor(available_backends().front(), 2));
     REQUIRE(graph.stats().empty());
-    REQUIRE(graph.to_dot() == "digraph step {\n    rankdir=TB;\n    node [shape=box];\n}\n");
+    REQUIRE(graph.to_dot() ==
+            "digraph step {\n    rankdir=TB;\n    node [shape=box, fontname=Helvetica];\n    labeljust=l;\n"
+            "    fontname=Helvetica;\n}\n");
 }
 
 TEST_CASE("the drawing names every stage and every edge", "[unit]") {

@@ -33,7 +33,7 @@ void list_prediction(WorldState& w, TaskGraph& g) {
     NodeBlockTable& k = m.node_blocks;
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/predict_velocity", kernels().predict_velocity,
-            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.loaded, m.any_asleep), read(n.velocity), value(p.kick),
+            inputs<KickInputs>(k, m.patches, n, b, p.gravity, m.forced, m.any_asleep), read(n.velocity), value(p.kick),
             write(n.force), write(n.velocity_next));
     g.stage("dynamics/damp_velocity", kernels().damp_velocity, inputs<DampingInputs>(k, b, m.materials, n, p.lag),
             read(n.velocity), value(p.kick), write(k.sums), write(n.velocity_next), make(w.scratch.findings.damped));

@@ -7,14 +7,14 @@ namespace skerry {
 namespace {
 
 auto rigid_inputs(const Model& m) {
-    return inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep, m.loaded);
+    return inputs<RigidBodies>(m.rigid_bodies, m.bodies, m.nodes, m.any_asleep, m.forced);
 }
 
 void list_rigid_kick(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
     g.stage("dynamics/kick_rigid_bodies", kick_rigid_bodies, rigid_inputs(m),
-            inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(m.nodes, p.gravity, m.loaded),
+            inputs<RigidHolds>(m.rigid_bodies, m.attachments), inputs<RigidForces>(m.nodes, p.gravity, m.forced),
             value(p.h), value(p.kick), outputs<RigidKicks>(m.rigid_bodies, m.nodes));
 }
 

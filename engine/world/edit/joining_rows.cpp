@@ -1,0 +1,43 @@
+#include "engine/world/edit/joining_rows.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace skerry {
+
+namespace {
+
+/// Bodies that each row of a table joins: calls visit(row, reference to a row of BodyTable) for each that is no world.
+void for_each_joined_body(AnyTable table, auto&& visit) {
+    for (const ColumnInfo& info : table.columns()) {
+        if (info.role != ColumnRole::body) continue;
+        const AnyColumn column = table.column(info);
+        auto* const bodies = reinterpret_cast<Index*>(column.write());
+        for (std::size_t row = 0; row < column.size(); ++row)
+            if (bodies[row] != no_index) visit(row, bodies[row]);
+    }
+}
+
+}  // namespace
+
+void erase_rows_joining(std::size_t body, Model& model) {
+    model.for_each_joining([&](const char*, auto& table, auto& map) {
+        std::vector<bool> gone(table.slot.size(), false);
+        for_each_joined_body(table, [&](std::size_t row, Index joined) {
+            if (joined == static_cast<Index>(body)) gone[row] = true;
+        });
+        for_each_joined_body(table, [&](std::size_t row, Index joined) {
+            if (gone[row]) model.wake(static_cast<std::size_t>(joined));
+        });
+        for (std::size_t row = gone.size(); row-- > 0;)
+            if (gone[row]) erase_joining_row(row, table, map);
+    });
+}
+
+void renumber_joining_rows(std::span<const Index> body_now, Model& model) {
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        for_each_joined_body(table, [&](std::size_t, Index& body) { body = body_now[static_cast<std::size_t>(body)]; });
+    });
+}
+
+}  // namespace skerry

@@ -1,0 +1,33 @@
+// Force element of loads on nodes. It comes first in the list: its stage sets the applied forces that others add to.
+#include "systems/forces/add_nodal_loads.h"
+
+#include "engine/world/step/seams.h"
+
+namespace skerry {
+
+namespace {
+
+bool any_load(const Model& model) {
+    return model.loaded_bodies > 0;
+}
+
+void list_loads(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.model.nodes;
+    const auto if_forced = only_if([](bool forced) { return forced; }, value(w.model.forced));
+    g.stage("forces/add_nodal_loads", add_nodal_loads, read(n.load), write(n.applied_force), if_forced);
+}
+
+Real power_of_loads(const Model& model) {
+    const NodeTable& nodes = model.nodes;
+    Real power = 0;
+    for (std::size_t n = 0; n < nodes.position.size(); ++n)
+        if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
+            power += nodes.load[n].dot(nodes.velocity[n]);
+    return power;
+}
+
+}  // namespace
+
+constinit const ForceElement nodal_loads{.any = any_load, .add_forces = list_loads, .power = power_of_loads};
+
+}  // namespace skerry
