@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Writes docs/accuracy.md from the records of the accuracy tests: accuracy_table.py FOLDER OUTPUT. The page has one
-row for each item, FOLDER/accuracy.csv has all of them."""
-import collections
+"""Writes docs/accuracy.md from the records of the accuracy tests: accuracy_table.py FOLDER OUTPUT. The page shows the
+items that come nearest to their tolerances, FOLDER/accuracy.csv has all checks with their notes."""
 import pathlib
 import sys
 
@@ -10,15 +9,16 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Accuracy
 
 On this page you see how near the engine comes to closed forms. `scripts/accuracy` runs the tests tagged `[accuracy]` in
-`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks in
-`build/accuracy/accuracy.csv`. A row of the table shows the check of an item that comes nearest to its tolerance. The
-error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of elements. The
-formulas are derived in [the methods](methods/accuracy.md). {items} items.
+`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks of {items} items with notes in
+`build/accuracy/accuracy.csv`. The table has the {shown} items that use most of their tolerance, each with the check that
+does. The error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of elements.
+The formulas are derived in [the methods](methods/accuracy.md).
 
-| item | checks | nearest to its tolerance | formula | expected | found | error | tolerance |
+| item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|
 """
-COLUMNS = ["item", "quantity", "formula", "expected", "found", "error", "tolerance", "kind"]
+COLUMNS = ["item", "quantity", "formula", "expected", "found", "error", "tolerance", "kind", "note"]
+SHOWN = 30  # rows of the page
 
 
 def number(value):
@@ -36,29 +36,39 @@ def error_of(row):
     return error / abs(row["expected"]) if row["kind"] == "relative" else error
 
 
+def used(row):
+    """The part of its tolerance that a check uses."""
+    return error_of(row) / row["tolerance"] if row["tolerance"] > 0 else error_of(row)
+
+
+def named(rows):
+    """The rows with "the same" at the start of a name replaced by the object that the rows before are about."""
+    thing = ""
+    for row in rows:
+        if row["name"].startswith("the same"):
+            row["name"] = row["name"].replace("the same", thing, 1)
+        else:
+            thing = row["name"].split(",")[0]
+    return rows
+
+
 def line(rows):
     """The row of an item."""
-    row = max(rows, key=lambda row: error_of(row) / row["tolerance"] if row["tolerance"] > 0 else error_of(row))
+    row = max(rows, key=used)
     shown = percent if row["kind"] == "relative" else "{:.2g}".format
     return cells([row["item"] or "-", len(rows), row["name"], f"`{row['formula']}`", number(row["expected"]),
                   number(row["found"]), shown(error_of(row)), shown(row["tolerance"])])
 
 
 def main(folder, output):
-    rows = rows_of(folder)
+    rows = named(rows_of(folder))
     write_csv(pathlib.Path(folder) / "accuracy.csv", COLUMNS,
               ([row["item"], row["name"], row["formula"], row["expected"], row["found"], error_of(row),
-                row["tolerance"], row["kind"]] for row in rows))
-    notes = collections.defaultdict(list)
-    for row in rows:
-        if row["note"] and row["note"] not in notes[row["item"]]:
-            notes[row["item"]].append(row["note"])
+                row["tolerance"], row["kind"], row["note"]] for row in rows))
     items = by_item(rows)
-    text = HEADER.format(rows=len(rows), items=len(items)) + "".join(map(line, items.values()))
-    if any(notes.values()):
-        text += "\n## Notes\n\n"
-        text += "".join(f"- **{item or 'without a number'}**: {' '.join(lines)}\n" for item, lines in notes.items()
-                        if lines)
+    nearest = sorted(items.values(), key=lambda of_item: -max(map(used, of_item)))[:SHOWN]
+    shown = [of_item for of_item in items.values() if of_item in nearest]
+    text = HEADER.format(rows=len(rows), items=len(items), shown=len(shown)) + "".join(map(line, shown))
     pathlib.Path(output).write_text(text)
     print(f"{len(rows)} checks of {len(items)} items in {output}")
 
