@@ -137,4 +137,9 @@ struct BodyTable {
     }
 };
 
+/// Pairs of bodies that rows of other tables join, such as joints. Joined bodies are put to rest and wake together.
+struct BodyLinks {
+    Column<Index> first, second;  // rows of BodyTable
+};
+
 }  // namespace skerry

@@ -89,7 +89,7 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
-    note_forces(model);
+    note_seams(model);
     find_holders(model);
     cache.extend(model);
     query_trees.forget();

@@ -153,7 +153,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     model.bodies.surface[after] = model.bodies.surface[before];
     copy_rows(model.nodes.load, from, to);
     model.note_loads(after, false);
-    note_forces(model);
+    note_seams(model);
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
         return;  // its new shape may overlap something: it is checked as at a start

@@ -5,6 +5,7 @@
 #include "engine/world/control/control.h"
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "skerry/joint.h"
 #include "systems/contact/tangent_frame.h"
@@ -153,6 +154,7 @@ JointHandle Joints::add(const JointSettings& joint) {
         world_->set_collision(joint.first, *joint.second, false);
     }
     wake_both(model, row);
+    note_seams(model);
     return handle;
 }
 
@@ -165,6 +167,7 @@ void Joints::remove(JointHandle joint) {
     if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
         world_->set_collision(first_of(model, row), *second_of(model, row), true);
     erase_joining_row(row, model.joints, model.joint_map);
+    note_seams(model);
 }
 
 bool Joints::alive(JointHandle joint) const {

@@ -162,7 +162,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
-    note_forces(model);
+    note_seams(model);
     find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);

@@ -98,8 +98,9 @@ struct Model {
     bool clusters_open = true;
     bool settled = true;      // true if all bodies and colliders are settled
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
-    bool forced = false;      // the world has some force element, loads included; derived: note_forces
-    Column<Real> force_rate;  // by body: see ForceElement::add_rate; empty: zero [1/s^2]; derived: note_forces
+    bool forced = false;      // the world has some force element, loads included; derived: note_seams
+    Column<Real> force_rate;  // by body: see ForceElement::add_rate; empty: zero [1/s^2]; derived: note_seams
+    BodyLinks links;          // by rows of the tables of for_each_joining; derived: note_seams
     bool any_asleep = false;  // some body rests; derived: note_rest. If false, no stage tests for rest
 
     /// Sets the world number that its handles carry.

@@ -175,7 +175,7 @@ auto if_sleepy(const WorldState& w) {
 void wake(WorldState& w, TaskGraph& g) {
     AttachmentTable& a = w.model.attachments;
     BodyTable& b = w.model.bodies;
-    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.joints),
+    g.stage("dynamics/wake_bodies", wake_bodies, inputs<TouchInputs>(w.scratch.contacts, w.model.links),
             read(w.scratch.pressed), read(a.body), read(a.motion), write(b.asleep), write(b.still_time), if_taken(w),
             if_sleepy(w));
 }
@@ -195,7 +195,7 @@ void put_to_rest(WorldState& w, TaskGraph& g) {
     RigidBodyTable& r = m.rigid_bodies;
     const StepParameters& p = w.scratch.parameters;
     g.stage_with_result("dynamics/rest_bodies", w.scratch.findings.rest, rest_bodies,
-                        inputs<TouchInputs>(w.scratch.contacts, m.joints),
+                        inputs<TouchInputs>(w.scratch.contacts, m.links),
                         inputs<RestInputs>(m.attachments, m.bodies, m.materials, n, r), value(p.sleep), value(p.h),
                         make(w.scratch.sleep_memory), outputs<RestOutputs>(m.bodies, n, r, m.implicit_nodes),
                         if_taken(w), if_sleepy(w));

@@ -13,10 +13,10 @@ void build_step(WorldState& world);
 /// Adds a committed step to the sums of the run.
 void count_step(const StepScratch& scratch, RunCounters& counters);
 
-// note_forces.cpp
-/// After force elements, or bodies with any, were added, changed or removed: notes whether there are any, and their
-/// part in the stable steps.
-void note_forces(Model& model);
+// note_seams.cpp
+/// After force elements, or rows that join bodies, were added, changed or removed: derives whether the world has force
+/// elements, their part in the stable steps, and which bodies are joined.
+void note_seams(Model& model);
 
 // stable_steps.cpp
 /// Largest step at which the stiffest body is stable, as last evaluated, and the row of that body [s].

@@ -27,8 +27,8 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
         }
         memory.touching.join(first, second);
     }
-    for (std::size_t j = 0; j < touches.joint_first.size(); ++j)
-        if (touches.joint_second[j] != no_index) memory.touching.join(touches.joint_first[j], touches.joint_second[j]);
+    for (std::size_t link = 0; link < touches.linked_first.size(); ++link)
+        memory.touching.join(touches.linked_first[link], touches.linked_second[link]);
 }
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
@@ -104,9 +104,9 @@ bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> press
         if (pressed[b]) wake(static_cast<Index>(b));
     for (std::size_t a = 0; a < attached_body.size(); ++a)
         if (!attached_motion[a].stands_still()) wake(attached_body[a]);
-    for (std::size_t j = 0; j < touches.joint_first.size(); ++j) {
-        const Index first = touches.joint_first[j], second = touches.joint_second[j];
-        if (second == no_index || asleep[first] == asleep[second]) continue;
+    for (std::size_t link = 0; link < touches.linked_first.size(); ++link) {
+        const Index first = touches.linked_first[link], second = touches.linked_second[link];
+        if (asleep[first] == asleep[second]) continue;
         wake(first);
         wake(second);
     }

@@ -11,7 +11,6 @@
 #include "components/column.h"
 #include "components/contact_table.h"
 #include "components/implicit_node_table.h"
-#include "components/joint_table.h"
 #include "components/material_table.h"
 #include "components/node_block_table.h"
 #include "components/node_table.h"
@@ -36,18 +35,18 @@ struct SleepSettings {
 struct TouchInputs {
     std::span<const Index> first_body, second_body;
     std::span<const ContactState> state;
-    std::span<const Real> gap;                             // [m]
-    std::span<const Vec3> surface_velocity;                // [m/s]
-    std::span<const Index> joint_first{}, joint_second{};  // rows of BodyTable of each joint
+    std::span<const Real> gap;                               // [m]
+    std::span<const Vec3> surface_velocity;                  // [m/s]
+    std::span<const Index> linked_first{}, linked_second{};  // BodyLinks
 
-    static TouchInputs bind(const Binder& binder, const ContactTable& contact, const JointTable& joint) {
+    static TouchInputs bind(const Binder& binder, const ContactTable& contact, const BodyLinks& link) {
         return {.first_body = binder.read(contact.first_body),
                 .second_body = binder.read(contact.second_body),
                 .state = binder.read(contact.state),
                 .gap = binder.read(contact.gap),
                 .surface_velocity = binder.read(contact.surface_velocity),
-                .joint_first = binder.read(joint.first),
-                .joint_second = binder.read(joint.second)};
+                .linked_first = binder.read(link.first),
+                .linked_second = binder.read(link.second)};
     }
 };
 

@@ -1,0 +1,46 @@
+#include <span>
+
+#include "components/any_table.h"
+#include "engine/world/step/seams.h"
+#include "engine/world/step/step.h"
+
+namespace skerry {
+
+namespace {
+
+/// Adds a link between the first body of each row and each other body that the row joins to it.
+void add_links(AnyTable table, BodyLinks& links) {
+    std::span<const Index> first;
+    for (const ColumnInfo& info : table.columns()) {
+        if (info.role != ColumnRole::body) continue;
+        const AnyColumn column = table.column(info);
+        const std::span<const Index> bodies(reinterpret_cast<const Index*>(column.read()), column.size());
+        if (first.empty()) {
+            first = bodies;
+            continue;
+        }
+        for (std::size_t row = 0; row < bodies.size(); ++row) {
+            if (first[row] == no_index || bodies[row] == no_index) continue;
+            links.first.push_back(first[row]);
+            links.second.push_back(bodies[row]);
+        }
+    }
+}
+
+}  // namespace
+
+void note_seams(Model& model) {
+    model.forced = false;
+    model.force_rate.clear();
+    for (const ForceElement* element : force_elements) {
+        if (!element->any(model)) continue;
+        model.forced = true;
+        if (!element->add_rate) continue;
+        model.force_rate.resize(model.bodies.slot.size());
+        element->add_rate(model, model.force_rate);
+    }
+    model.links = {};
+    model.for_each_joining([&](const char*, auto& table, auto&) { add_links(table, model.links); });
+}
+
+}  // namespace skerry
