@@ -9,10 +9,10 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Accuracy
 
 On this page you see how near the engine comes to closed forms. `scripts/accuracy` runs the tests tagged `[accuracy]` in
-`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks of {items} items with notes in
-`build/accuracy/accuracy.csv`. The table has the {shown} items that use most of their tolerance, each with the check that
-does. The error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of elements.
-The formulas are derived in [the methods](methods/accuracy.md).
+`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks of {items} items with notes
+in `build/accuracy/accuracy.csv`. The table has the {shown} items that use most of their tolerance, each with the check
+that does. The error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of
+elements. The formulas are derived in [the methods](methods/accuracy.md).
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|

@@ -9,9 +9,9 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Stress
 
 On this page you see which extreme inputs the engine withstands. `scripts/stress` runs the tests tagged `[stress]` in
-`tests/scene/stress`, writes this page, and lists all {checks} checks with their tests in `build/stress/stress.csv`. Every
-item also requires that each step is taken, or refused with a message, and that the state stays finite. An item without
-a number is a problem that users of other engines reported. {items} numbered items, {failed} checks failed.
+`tests/scene/stress`, writes this page, and lists all {checks} checks with their tests in `build/stress/stress.csv`.
+Every item also requires that each step is taken, or refused with a message, and that the state stays finite. An item
+without a number is a problem that users of other engines reported. {items} numbered items, {failed} checks failed.
 
 | item | checks | passed | first scene |
 |---:|---:|---:|---|

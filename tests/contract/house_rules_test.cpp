@@ -1,7 +1,11 @@
 // Project rules that a reader of a single change cannot check.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <regex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/contract/project_files.h"
 
@@ -36,6 +40,44 @@ TEST_CASE("nothing is left to do later", "[contract]") {
                 INFO(file.path << ":" << i + 1 << ": " << file.lines[i]);
                 CHECK(file.lines[i].find(mark) == std::string::npos);
             }
+}
+
+/// Comments of a file, with the line on which each begins. Lines that follow each other are one comment.
+std::vector<std::pair<std::size_t, std::string>> comments_of(const ProjectFile& file) {
+    static const std::regex whole_line("^\\s*///?<? ?(.*)$"), behind_code("^.*\\S.*\\s// ?(.*)$");
+    std::vector<std::pair<std::size_t, std::string>> comments;
+    bool goes_on = false;
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+        std::smatch found;
+        if (std::regex_match(file.lines[i], found, whole_line)) {
+            if (!goes_on) comments.emplace_back(i + 1, "");
+            comments.back().second += found[1].str() + " ";
+            goes_on = true;
+            continue;
+        }
+        goes_on = false;
+        if (std::regex_match(file.lines[i], found, behind_code)) comments.emplace_back(i + 1, found[1].str());
+    }
+    return comments;
+}
+
+TEST_CASE("comments are sentences or noun phrases of their own", "[contract]") {
+    // These openings mark a fragment that needs the comment above it, or a clause in place of a noun.
+    static const std::regex opening("^(What|Of|Whose|By|Behind|The same|As)\\b.*"), quoted("`[^`]*`|\"[^\"]*\""),
+        noun(".*\\b[Ww]hat\\b.*");
+    std::size_t seen = 0;
+    for (const ProjectFile& file : skerry::test::project_files()) {
+        const bool checked = std::ranges::any_of(std::array{"engine/", "systems/", "components/", "jobs/"},
+                                                 [&](const char* folder) { return file.path.starts_with(folder); });
+        if (!checked || !(file.path.ends_with(".h") || file.path.ends_with(".cpp"))) continue;
+        for (const auto& [line, comment] : comments_of(file)) {
+            ++seen;
+            INFO(file.path << ":" << line << ": " << comment);
+            CHECK_FALSE(std::regex_match(comment, opening));
+            CHECK_FALSE(std::regex_match(std::regex_replace(comment, quoted, ""), noun));
+        }
+    }
+    CHECK(seen > 1000);
 }
 
 TEST_CASE("the list of stages captures nothing", "[contract]") {
