@@ -1,6 +1,6 @@
 // Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K. The nonzero
-// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and L
-// L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term becomes a
+// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and
+// L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term becomes a
 // closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). To test for a given c is cheaper:
 // lambda_max(A) < c if c - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
@@ -136,8 +136,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the mass b (R:X)^2 of an element, where X = Y L^T is the displacement gradient. A becomes D A D with D = (1 + b
-/// s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine. The mass of Y was |Y|^2 before, and R:X = (R L):Y.
+/// Adds the mass b (R:X)^2 of an element, where X = Y L^T is the displacement gradient. A becomes D A D with
+/// D = (1 + b s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine. The mass of Y was |Y|^2 before, and
+/// R:X = (R L):Y.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
