@@ -115,8 +115,8 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// For each tetrahedron of a block, |F'|^2 over the squared leeway [1/s^2]; 0 in an unused lane. F' = [v_k - v_0] [X_k
-/// - X_0]^-1 with the corner velocities v and rest positions X.
+/// For each tetrahedron of a block, |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
+/// lane. F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -130,10 +130,10 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Squared deformation rates of the tetrahedra of a block over the squared leeways [1/s^2]. The deformation rate is
-/// |F'|, or the relative speed of the corners over the smallest altitude if that ratio is less. All lanes are 0 if the
-/// corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most blocks. `part_at_most`: upper bound on
-/// the relative speed of two nodes of the body [m/s].
+/// Squared deformation rates of the tetrahedra of a block over the squared leeways (factors on max_strain_step)
+/// [1/s^2]. The deformation rate is |F'|, or the relative speed of the corners over the smallest altitude if that ratio
+/// is less. All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most
+/// blocks. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -182,8 +182,8 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// Greatest |F'|^2 over the squared leeway among the elements of a block; 0 for inversion barriers, and if no node of
-/// the block is marked in `beside_fast` [1/s^2].
+/// Greatest |F'|^2 over the squared leeway (factor on max_strain_step) among the elements of a block; 0 for inversion
+/// barriers, and if no node of the block is marked in `beside_fast` [1/s^2].
 Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // F of an inversion barrier is F of one tetrahedron, not a mean over several
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;

@@ -15,8 +15,9 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of an element over the leeway of the element. The deformation rate is |F'|, the norm of the rate of
-/// F, or the relative speed of two corners of a tetrahedron over its altitude if that ratio is less.
+/// Deformation rate of an element, divided by the leeway of the element (its factor on max_strain_step). The
+/// deformation rate is |F'|, the norm of the rate of F, or the relative speed of two corners of a tetrahedron over its
+/// altitude if that ratio is less.
 struct StrainRate {
     Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
     Index body = no_index;  // body of the fastest element: row of BodyTable
@@ -27,8 +28,8 @@ struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
-    // For too_fast: norm of the change of F in this step over the leeway. For too_far: spacing of floating-point
-    // coordinates over the mean edge. Not used for not_finite.
+    // For too_fast: norm of the change of F in this step, over the leeway (factor on max_strain_step). For too_far:
+    // spacing of floating-point coordinates over the mean edge. Not used for not_finite.
     Real value = 0;
     Index tetrahedron = no_index;  // lane t % 8 of block t / 8, if one tetrahedron causes the fault
     StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
@@ -104,14 +105,14 @@ inline constexpr Real implicit_leeway = 5;
 
 /// Writes the greatest speeds and returns the first fault in body order. A fault is a velocity that is not finite, or
 /// an element whose F would change too much in this step of length `h` [s]. The change of F (Frobenius norm) must not
-/// exceed `max_strain_step` times the leeway of the element. F of an element is a mean over tetrahedra, so an element
-/// is tested only beside a tetrahedron whose F changes too much. A tetrahedron is tested only if two of its corners
-/// move apart by more than the same fraction of its smallest altitude. The verdict names the tetrahedron that deforms
-/// fastest. Common motion of all nodes and slow rotation of a large body are harmless and do not count. Without
+/// exceed `max_strain_step` times the leeway, a factor of the element. F of an element is a mean over tetrahedra, so an
+/// element is tested only beside a tetrahedron whose F changes too much. A tetrahedron is tested only if two of its
+/// corners move apart by more than the same fraction of its smallest altitude. The verdict names the tetrahedron that
+/// deforms fastest. Common motion of all nodes and slow rotation of a large body are harmless and do not count. Without
 /// `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the smallest
 /// altitude of the body. This test also rejects fast rotation of a large body. `fastest` is set if an element deforms
-/// too fast for a step of length `longest` [s]. `beside_fast` is scratch, one entry per node. Parallel over node blocks
-/// and bodies.
+/// too fast for a step of length `h` or `longest` [s]. `beside_fast` is scratch, one entry per node. Parallel over node
+/// blocks and bodies.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 

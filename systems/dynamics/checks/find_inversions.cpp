@@ -15,14 +15,15 @@ namespace skerry {
 
 namespace {
 
-// Greatest number of blocks in a part. Small bodies share a job of at most this number of blocks.
+// Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
 // Number of inversion checks of a narrow block for each computation of the block's width, which takes half of the time
 // of a check.
 constexpr std::uint8_t looks_at_narrow = 8;
 
-// Number of blocks whose travel budgets are compared together, without a branch for each block.
+// Number of blocks whose travel budgets (distances without a check) are compared together, without a branch for each
+// block.
 constexpr std::size_t blocks_at_once = 32;
 
 Real8 squared(const LaneVec3<Real8>& v) {
@@ -61,7 +62,7 @@ struct Body {
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
     Real travel_bound;  // upper bound on the travel of the body at the end of this step [m]
-    Real travel_base;   // travel at which a new budget begins (measure_displacement.h) [m]
+    Real travel_base;   // travel of the body from which a new travel budget counts (measure_displacement.h) [m]
 
     Body(const InversionInputs& of, Real step, Index body)
         : inputs(of),

@@ -57,16 +57,16 @@ struct InversionPart {
     Index body = no_index;
     Range blocks{0, 0};
     Real uninverted_until = 0;                // travel of the body until which these blocks cannot invert [m]
-    Index count = 0, tetrahedron = no_index;  // number of tetrahedra that the step inverts, and the first of them
-    bool judged = false;                      // true if the step inverts a tetrahedron for which is_judged() holds
+    Index count = 0, tetrahedron = no_index;  // number of tetrahedra that the step inverts; the first inverted one
+    bool judged = false;  // true if an inverted tetrahedron is no sliver and not covered by an implicit element
 };
 
 /// Working memory of find_inversions, kept between steps.
 struct InversionMemory {
     Column<InversionPart> part;  // parts of all bodies to check, in body order
     Column<Index> job;           // first row of `part` for each job; the last entry is the number of parts
-    // For each block of tetrahedra: number of checks until the next travel budget is computed. It is positive only if a
-    // tetrahedron is so narrow that one step would spend a budget.
+    // For each block of tetrahedra: number of checks until the next travel budget (distance without a check) is
+    // computed. The number is positive only if a tetrahedron is so narrow that one step would spend a budget.
     Column<std::uint8_t> looks_left;
 };
 
@@ -82,8 +82,8 @@ struct InversionBudgets {
 /// Finds the tetrahedra that a step of length `h` [s] inverts. Tetrahedra are checked only if their body may have moved
 /// far enough. A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of
 /// two parallel planes that enclose it. So slivers are checked often, and all other tetrahedra rarely. Each check of a
-/// block writes a new travel budget; for a block too narrow for a budget, only every eighth check does. Parallel over
-/// parts of bodies.
+/// block writes a new travel budget, the distance that the body may move before the next check. For a block too narrow
+/// for a budget, only every eighth check computes a new one. Parallel over parts of bodies.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

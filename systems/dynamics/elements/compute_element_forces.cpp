@@ -106,7 +106,7 @@ struct Run {
         const LaneSymmetric<T> strain = twice_green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
-        // 2 if the last change is unknown: it is then assumed equal to this change
+        // 2 if the last change of viscous strain is unknown: it is then assumed equal to the present change
         const Real of_now = kick_over_last > 0 ? 1 : 2;
         const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
         const LaneSymmetric<T> taken = strain - after.strain;

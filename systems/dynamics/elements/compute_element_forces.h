@@ -124,8 +124,8 @@ struct PatchForces {
 /// State of the elements that a step writes for the next step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // Viscous strain after this step. Before this step writes it, the viscous strain before the last step. Empty if no
-    // stress relaxes.
+    // Viscous strain after this step. Until this step writes the column, it holds the viscous strain before the last
+    // step. Empty if no stress relaxes.
     std::span<ElementStrain> viscous_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {

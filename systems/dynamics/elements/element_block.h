@@ -139,7 +139,7 @@ template <class Part>
     return (two[0] | two[1]) == 0;
 }
 
-/// Edge vectors of one part of a block, as columns: corners 1 to 3 minus corner 0.
+/// Edge vectors of the elements in one register-wide part of a block, as columns: corners 1 to 3 minus corner 0.
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
                                                                  Positions position, Load&& load_nodes) {
@@ -176,8 +176,8 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
             g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
 }
 
-/// F = sum_k (x_k - x_0) (x) g_k of one part of a block, for elements with any number of nodes. x_k are the node
-/// positions, g_k the gradients at rest.
+/// F = sum_k (x_k - x_0) (x) g_k of the elements in one register-wide part of a block, with any number of nodes. x_k
+/// are the node positions, g_k the gradients at rest.
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     Positions position, Load&& load_nodes) {
@@ -193,15 +193,16 @@ template <class Positions, class Load>
     return F;
 }
 
-/// Deformation gradient F of the elements in one part of a block. If `position` holds velocities, the result is the
-/// rate of F.
+/// Deformation gradient F of the elements in one register-wide part of a block. If `position` holds velocities, the
+/// result is the rate of F.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
         return gradient_of_part(block, part, position.data(), load_corner<const Vec3*>);
     return gradient_of_part(block, part, position.data(), load_corner_near_end);
 }
-/// Deformation gradient F of the elements in one part of a block, from the padded node positions of a patch.
+/// Deformation gradient F of the elements in one register-wide part of a block, from the padded node positions of a
+/// patch.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         PatchRows<const Real> position) {
     return gradient_of_part(block, part, position, load_corner<PatchRows<const Real>>);
@@ -278,7 +279,7 @@ template <class Take>
     const Real4 zero{};
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // digits are lanes: x0 y0 x2 y2
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // z0 0 z2 0
+    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // digits are lanes: z0 0 z2 0
     const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
     const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));

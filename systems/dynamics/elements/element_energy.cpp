@@ -16,8 +16,8 @@ namespace skerry {
 namespace {
 
 /// Calls visit(block, material, volume, F, frame) for every block for which asks(block) holds. The search for a
-/// corotational frame starts from the frame of the same lane of the block before, since neighbours rotate alike. It
-/// therefore runs for all blocks. Laws without a frame do not use it.
+/// corotational frame starts from the frame of the same lane of the block before, since neighbours rotate alike. The
+/// search therefore also runs for skipped blocks. Laws without a frame do not use it.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
                        Visit&& visit) {

@@ -26,7 +26,7 @@ struct ElementsAround {
     std::vector<ElementPart> part;              // of each block
     Ragged<Index> covered;                      // tetrahedra that each lane covers: indices into `tetrahedron`
     std::vector<Index> tetrahedron;             // tetrahedra around the nodes, numbered within the body, ascending
-    std::vector<std::array<Index, 4>> corners;  // indices into `nodes`; nodes.size() for other corners
+    std::vector<std::array<Index, 4>> corners;  // index of each corner in `nodes`; nodes.size() if absent
 };
 
 /// Finds the tetrahedra around `nodes`, which must be distinct, and the elements that cover these tetrahedra.

@@ -157,8 +157,8 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// For each lane of this part: true if all eigenvalues of volume A are below `limit`. The test is whether limit -
-/// volume A has a Cholesky decomposition L D L^T with D > 0, by more than rounding. It ends early if no lane passes.
+/// For each lane of this part: true if all eigenvalues of volume * A are below `limit`. The test is whether limit -
+/// volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding. It ends early if no lane passes.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
@@ -224,9 +224,9 @@ LaneMat3<KernelReal> everywhere(const Mat3& m) {
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
-/// Upper bounds on the largest eigenvalue of volume A in each lane, by bisection between `low` and `high`. The bound is
-/// close to `low` for an eigenvalue below `low`. Every lane is bisected by itself, so that the register width changes
-/// no bit.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high`. The bound
+/// is close to `low` for an eigenvalue below `low`. Every lane is bisected by itself, so that the register width
+/// changes no bit.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
         for (int i = 0; i < halvings; ++i) {
@@ -238,7 +238,7 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume A in each lane, for the case that some lanes are above `enough`,
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that some lanes are above `enough`,
 /// probably by little. The greatest of these bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     const auto all_below = [&](Real limit) {
@@ -263,7 +263,7 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
-/// Upper bound on the largest eigenvalue of volume A in each lane: the least of the limits enough, 1.1 enough, 1.21
+/// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits enough, 1.1 enough, 1.21
 /// enough ... that is above the eigenvalue. The bound is infinite if no limit is.
 BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     constexpr Real growth = 1.1;

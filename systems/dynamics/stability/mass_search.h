@@ -25,8 +25,8 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Moduli of explicit elements at rest. Springs that relax count with the stiffness that they have in steps of a
-/// certain length: `longer` times the step that bounds of single elements allow.
+/// Moduli of explicit elements at rest. Springs of Maxwell elements count with the stiffness that they have in steps of
+/// a certain length: `longer` times the step that bounds of single elements allow.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
@@ -42,7 +42,7 @@ public:
 private:
     const ElementInputs& elements_;
     Real stiffest_ = 0;       // greatest modulus [Pa]
-    Real relaxing_step_ = 0;  // length of the steps in which springs relax [s]
+    Real relaxing_step_ = 0;  // step length for which springs of Maxwell elements count [s]
 };
 
 /// Sorts nodes by position along the longest side of their bounding box.
@@ -80,8 +80,8 @@ struct BandMatrix {
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Tests if limit - matrix has a Cholesky decomposition, by more than rounding. Only rows that influence each other are
-/// stored, in a window that moves along the diagonal.
+/// Tests if limit I - matrix has a Cholesky decomposition, by more than rounding, where I is the identity. Only rows
+/// that influence each other are stored, in a window that moves along the diagonal.
 class BandDecomposition {
 public:
     bool is_below(const BandMatrix& matrix, Real limit);

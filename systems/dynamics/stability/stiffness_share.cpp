@@ -41,8 +41,8 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
 }
 
-/// Sets the fractions with which relaxing springs count in steps of length `step` [s]. The longer the step, the less a
-/// spring counts.
+/// Sets the fractions with which the springs of Maxwell elements count in steps of length `step` [s]. The longer the
+/// step, the less a spring counts.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
@@ -60,7 +60,7 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
     // Most elements are stable at the step that other elements allow, so that their bound need not be known. With
-    // springs in full almost no element would pass this test, since all elements allow about the same step at rest.
+    // unrelaxed springs almost no element would pass this test, since all elements allow about the same step at rest.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =
@@ -68,7 +68,8 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         if (all(compared <= enough)) return compared + nothing;
         viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
     }
-    // The step with springs in full is shorter than the stable step, and so a safe estimate of it.
+    // The stable step with unrelaxed springs is shorter than the stable step with relaxing springs. It is therefore a
+    // safe estimate of the step in which springs relax.
     const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame);
     count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
     return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame) + nothing;

@@ -23,9 +23,9 @@ LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block,
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
 /// Sets the initial mass_share of each element. In a body with several materials, the share is the stiffness of the
-/// material if this stiffness is not already part of the weight. It is relative to the greatest stiffness of the body,
-/// or in Pa if the weights of other materials include their stiffness. In all other cases the share is 1. Inversion
-/// barriers (guards) get 0, since they act only as implicit elements of a cluster.
+/// material if this stiffness is not already part of the weight. The share is relative to the greatest stiffness of the
+/// body, or in Pa if the weights of other materials include their stiffness. In all other cases the share is 1.
+/// Inversion barriers (guards) get 0, since they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
 /// Adds the stiffness of each element of a block at its nodes to stiffness_sum, for lanes that satisfy counts(lane).
@@ -68,8 +68,8 @@ Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block
                                 LaneQuaternion<Real8>& q, Real enough = 0);
 
 /// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the least of
-/// `enough`, 1.1 `enough`, 1.21 `enough`... that is above omega^2, and infinite beyond ten times `enough`. Springs
-/// relax as in steps of length `step` [s], so that the bound is also valid for longer steps.
+/// `enough`, 1.1 `enough`, 1.21 `enough`... that is above omega^2, and infinite beyond ten times `enough`. Springs of
+/// Maxwell elements relax as in steps of length `step` [s], so that the bound is also valid for longer steps.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real enough, Real step);
 

@@ -21,7 +21,7 @@ namespace {
 
 // Factor on omega^2 of the requested step. Most elements of a strained body stay below the product.
 constexpr Real above_asked = 1.1;
-// Rounds of the iteration towards weights d for which all row sums have the same ratio to m d.
+// Rounds of the iteration towards weights d for which all row sums have the same ratio to mass times d.
 constexpr int rounds = 4;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
@@ -95,7 +95,7 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
-    Real least = std::numeric_limits<Real>::infinity();  // least upper bound on E / M so far [1/s^2]
+    Real least = std::numeric_limits<Real>::infinity();  // least of the upper bounds on E relative to the mass [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(of.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
@@ -116,8 +116,8 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // Each weight d changes by the square root of the relative ratio of its row. Nodes that E hardly touches need
-        // only a small weight.
+        // Each weight d is multiplied by the square root of r / r_max, where r is the row sum over mass times d, and
+        // r_max the greatest r. Nodes that E hardly touches need only a small weight.
         for (std::size_t n = 0; n < of_nodes.size(); ++n)
             of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
     }

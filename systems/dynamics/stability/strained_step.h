@@ -10,7 +10,7 @@ namespace skerry {
 
 struct StrainedLook {
     Real asked;   // longest step of interest; the result need not be longer [s]
-    Real stands;  // step known to be stable by other bounds; springs relax in it [s]
+    Real stands;  // step known to be stable by other bounds; springs relax for this time [s]
 };
 
 /// Number of entries in the work memory of strained_step().
