@@ -22,8 +22,8 @@ Vec3 motion(const CheckInputs& state, std::size_t node) {
     return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
-/// Greatest squared speeds in a node block: in the world, and in a frame with the velocity `frame` [m/s]. NaN if the
-/// velocity of a node is not finite, or so large that its square is not.
+/// Greatest squared node speeds of a node block [m^2/s^2]: first in the world, then relative to the velocity `frame`.
+/// An entry is NaN if the velocity of a node is not finite or its square overflows.
 std::array<Real, 2> max_speeds_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
     const auto begin = static_cast<std::size_t>(state.block_begin[block]);
     const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
@@ -60,7 +60,8 @@ Real highest_lane(const Real8& of) {
     return highest;
 }
 
-/// The highest value of `count` rows, at least 0. It does not depend on the order in which the rows are evaluated.
+/// Highest of value(0) to value(count - 1), or 0 if all are negative. The result does not depend on the order in which
+/// the jobs run.
 template <class Value>
 Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job, Value&& value) {
     std::atomic<Real> highest{0};
@@ -74,7 +75,7 @@ Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job,
     return highest.load();
 }
 
-/// True if `exceeds` holds for any of `count` rows. The answer does not depend on the order in which the jobs run.
+/// True if exceeds(row) holds for any row below `count`. The result does not depend on the order in which the jobs run.
 template <class Exceeds>
 bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job, Exceeds&& exceeds) {
     std::atomic<bool> found{false};
@@ -86,22 +87,23 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // |F'|^2 over the square of the leeway [1/s^2]
+    Real rate_squared = 0;  // squared deformation rate over the squared leeway [1/s^2]
     Index node = no_index;
-    Index element = no_index;  // number of a tetrahedron: lane of a block
+    Index element = no_index;  // tetrahedron t: lane t % 8 of block t / 8
 
     void look_at(const Fastest& other) {
         if (other.rate_squared > rate_squared) *this = other;
     }
 };
 
-/// Columns: velocities of corners 1 to 3 minus that of corner 0 [m/s].
+/// Velocity differences of each tetrahedron of a block, as columns: velocities of corners 1 to 3 minus the velocity of
+/// corner 0 [m/s].
 LaneMat3<Real8> parting_of(const CheckInputs& state, std::size_t block) {
     const LaneMat3<Real8> parting = edges(state.tetrahedron_node[block], state.velocity_next);
     return state.push_out.empty() ? parting : parting + edges(state.tetrahedron_node[block], state.push_out);
 }
 
-/// Squared length of the longest column.
+/// Squared length of the longest column in each lane [m^2/s^2].
 Real8 widest_parting(const LaneMat3<Real8>& parting) {
     const Real8 first = dot(parting.c0, parting.c0), second = dot(parting.c1, parting.c1),
                 third = dot(parting.c2, parting.c2);
@@ -113,8 +115,8 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// |F'|^2 over the square of the leeway, F' = [v_k - v_0] [X_k - X_0]^-1, of each tetrahedron of a block; 0 in an
-/// unused lane [1/s^2].
+/// For each tetrahedron of a block, |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
+/// lane. F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -128,9 +130,10 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Squared deformation rates of the tetrahedra of a block: |F'|, or the relative speed of corners over the altitude if
-/// that is less [1/s^2]. 0 in all lanes if none is faster than `rate` [1/s]; in most blocks the corners alone show
-/// this. `part_at_most`: bound on the relative speed of two nodes of the body [m/s].
+/// Squared deformation rates of the tetrahedra of a block over the squared leeways (factors on max_strain_step)
+/// [1/s^2]. The deformation rate is |F'|, or the relative speed of the corners over the smallest altitude if that ratio
+/// is less. All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most
+/// blocks. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -143,8 +146,8 @@ Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, 
     return by_corners < by_gradient ? by_corners : by_gradient;
 }
 
-/// The greatest squared deformation rate in a block if it is above the square of `rate`, else 0 [1/s^2]. Marks the
-/// nodes of all tetrahedra above it.
+/// Returns the greatest squared deformation rate of the tetrahedra of a block if it exceeds the square of `rate`, else
+/// 0 [1/s^2]. Marks the corners of all tetrahedra that deform faster than `rate`.
 Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
                         std::span<std::uint8_t> beside_fast) {
     const Real8 squared = deforming_squared(state, block, rate, part_at_most);
@@ -159,7 +162,8 @@ Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, 
     return highest_lane(squared);
 }
 
-/// The tetrahedron of a block that deforms fastest, and its corner that is fastest relative to corner 0.
+/// Finds the tetrahedron of a block that deforms fastest, and the corner that moves fastest relative to corner 0 of
+/// this tetrahedron.
 Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     const Real8 rate_squared = rate_squared_of(state, block, parting_of(state, block));
     Fastest fastest;
@@ -178,14 +182,15 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// The greatest |F'|^2 over the square of the leeway among the elements of a block if any node is marked, else 0
-/// [1/s^2].
+/// Greatest |F'|^2 over the squared leeway (factor on max_strain_step) among the elements of a block; 0 for inversion
+/// barriers, and if no node of the block is marked in `beside_fast` [1/s^2].
 Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
-    // F of a guard is that of one tetrahedron, not a mean
+    // F of an inversion barrier is F of one tetrahedron, not a mean over several
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
-    unsigned marked = 0;  // tested first: gradients are over half of the cost of a block
+    // nonzero if a node is marked; tested first, because gradients take over half of the time of a block
+    unsigned marked = 0;
     for (Index k = 0; k < count; ++k)
         for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)
             marked |= beside_fast[static_cast<std::size_t>(n)];
@@ -197,8 +202,8 @@ Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<con
     return highest_lane(inner_product(change, change) / (leeway * leeway));
 }
 
-/// The node that is fastest relative to the mean velocity of the body. A coarser measure, for a body whose tetrahedra
-/// are not given.
+/// Finds the node that is fastest relative to the mean velocity of the body. This measure is coarser and serves bodies
+/// without a list of tetrahedra.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
     const std::size_t begin = static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]);
@@ -212,8 +217,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// True if a node of a body moves so fast relative to the first one that a tetrahedron of the least altitude may deform
-/// faster than `rate` [1/s].
+/// True if a node is so fast relative to the first node of the body that a tetrahedron of the smallest altitude could
+/// deform faster than `rate` [1/s].
 bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
@@ -228,9 +233,9 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
     });
 }
 
-/// Deformation rate of the fastest element of a body if it is above `rate`, else 0 [1/s]. Tests go from cheap to
-/// expensive; each runs only if the one before fails. F' of an element is a mean of those of its tetrahedra.
-/// `part_at_most`: bound on the relative speed of two nodes of the body [m/s].
+/// Deformation rate of the fastest element of a body if it exceeds `rate`, else 0 [1/s]. Tests go from cheap to
+/// expensive, and end as soon as a test shows that no element exceeds `rate`. F' of an element is the mean of F' of its
+/// tetrahedra. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;
@@ -255,7 +260,7 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
     return where_faster(std::min(of_tetrahedra, of_elements));
 }
 
-/// The tetrahedron and node to report for a body that deforms too fast: the first of the fastest ones.
+/// Finds the tetrahedron and the node to report for a body that deforms too fast: the first with the highest rate.
 Fastest fastest_of(const CheckInputs& state, std::size_t body) {
     if (state.body_blocks.empty())
         return fastest_from_mean(state, state.body_node_blocks[body], state.body_min_altitude[body]);
@@ -294,7 +299,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
     StepVerdict verdict;
     beside_fast.resize(state.velocity_next.size());
     const Real looked_for = max_strain_step / std::max(h, longest);
-    // the relative speed of two nodes is at most twice the highest speed
+    // The relative speed of two nodes is at most twice the highest node speed in the frame of the body.
     const auto may_be_fast = [&](std::size_t body) {
         const Real altitude = state.body_min_altitude[body];
         return altitude > 0 && 2 * speed.body_frame[body] > looked_for * altitude;
@@ -325,7 +330,8 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         const Real rate =
             deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
         if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
-        if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;  // the first fault counts
+        // only the first fault is reported
+        if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;
         const Fastest fastest = fastest_of(state, body);
         verdict.fault = StepFault::too_fast;
         verdict.body = static_cast<Index>(body);

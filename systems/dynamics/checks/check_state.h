@@ -1,4 +1,4 @@
-// Checks the step before it is committed (docs/methods/time_stepping.md 4).
+// Checks the result of a step before the step is committed (docs/methods/time_stepping.md 4).
 #pragma once
 
 #include <cstdint>
@@ -15,46 +15,49 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of an element: |F'| or, if that is less, the relative speed of two corners of a tetrahedron over
-/// its altitude. It is divided by the leeway of the element.
+/// Deformation rate of an element, divided by the leeway of the element (its factor on max_strain_step). The
+/// deformation rate is |F'|, the norm of the rate of F, or the relative speed of two corners of a tetrahedron over its
+/// altitude if that ratio is less.
 struct StrainRate {
-    Real rate = 0;          // of the fastest element; 0: none is faster than the rate asked for [1/s]
-    Index body = no_index;  // body of that element: row of BodyTable
+    Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
+    Index body = no_index;  // body of the fastest element: row of BodyTable
 };
 
-/// Why a step must not be committed.
+/// Tells whether a step may be committed, and otherwise the fault that prevents it.
 struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
-    Real value = 0;         // too_fast: norm of the change of F in this step, over the leeway;
-                            // too_far: spacing of floating-point coordinates over the mean edge; not_finite: unused
-    Index tetrahedron = no_index;  // lane of a block, if one tetrahedron causes the fault
-    StrainRate fastest = {};       // set by check_state unless the fault is not_finite
+    // For too_fast: norm of the change of F in this step, over the leeway (factor on max_strain_step). For too_far:
+    // spacing of floating-point coordinates over the mean edge. Not used for not_finite.
+    Real value = 0;
+    Index tetrahedron = no_index;  // lane t % 8 of block t / 8, if one tetrahedron causes the fault
+    StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
 };
 
 struct CheckInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
     std::span<const Range> body_node_blocks;
-    std::span<const Real> body_min_altitude;  // 0: a kinematic body, whose speed is not checked [m]
-    std::span<const Vec3> velocity;           // m/s, at the start of the step
+    // smallest rest altitude; 0 for a kinematic body, whose speed is not checked [m]
+    std::span<const Real> body_min_altitude;
+    std::span<const Vec3> velocity;  // at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
-    std::span<const Vec3> push_out;                           // m/s; empty: no contact pushes
+    std::span<const Vec3> push_out;  // velocity by which contacts move positions only; empty if none does [m/s]
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
-    std::span<const ElementLane> tetrahedron_leeway = {};     // factor on max_strain_step; empty: 1
-    std::span<const Range> body_blocks = {};                  // BodyTable; empty: see check_state
-    // ElementBlockTable, ElementNodeTable; empty: tetrahedra are the elements
+    std::span<const ElementLane> tetrahedron_leeway = {};     // factor on max_strain_step; empty means 1 for all
+    std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
+    // ElementBlockTable and ElementNodeTable. If empty, the tetrahedra are the elements.
     std::span<const Range> body_element_blocks = {};
     std::span<const Index> element_first = {}, element_count = {};
     std::span<const NodeLane> element_node = {};
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
-    std::span<const ElementPart> element_part = {};  // empty: no element is a guard
-    std::span<const MovingFrame> body_frame = {};    // BodyTable; empty: no frame moves
+    std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
+    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if no frame moves
 
-    /// `pushed`: true if some contact pushes.
+    /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                             const NodeTable& node, const TetrahedronBlockTable& tetrahedron,
                             const ElementBlockTable& element, const ElementNodeTable& element_node,
@@ -83,8 +86,8 @@ struct CheckInputs {
     }
 };
 
-/// Greatest speeds of velocity_next + push_out, in the world and in the frame of the body: squared by node block
-/// [m^2/s^2], and by body [m/s].
+/// Greatest node speeds with the velocities velocity_next + push_out, in the world and in the moving frame of the body.
+/// Values by node block are squared [m^2/s^2], values by body are not [m/s].
 struct SpeedOutputs {
     std::span<Real> block_squared, block_frame_squared;
     std::span<Real> body, body_frame;
@@ -100,27 +103,29 @@ struct SpeedOutputs {
 /// Factor on max_strain_step for implicit elements and for the tetrahedra that they cover.
 inline constexpr Real implicit_leeway = 5;
 
-/// Writes speeds and returns the first fault in body order: a velocity that is not finite, or an element whose F would
-/// change by more than `max_strain_step` (Frobenius norm) in this step. F of an element is a mean over tetrahedra. So
-/// an element is tested only beside a tetrahedron whose F would change by as much (times its leeway). A tetrahedron is
-/// tested only if two corners move apart by more than this fraction of its smallest altitude. The verdict names the
-/// tetrahedron that deforms fastest. Common motion and slow rotation of a large body do no harm and do not count.
-/// Without `body_blocks` a node is compared with the mean velocity of its body, and its displacement with the smallest
-/// altitude of the body. This also rejects fast rotation of a large body. `fastest` is reported if it is too fast for a
-/// step of `longest` [s]. `beside_fast` is scratch, by node. Parallel over node blocks and bodies.
+/// Writes the greatest speeds and returns the first fault in body order. A fault is a velocity that is not finite, or
+/// an element whose F would change too much in this step of length `h` [s]. The change of F (Frobenius norm) must not
+/// exceed `max_strain_step` times the leeway, a factor of the element. F of an element is a mean over tetrahedra, so an
+/// element is tested only beside a tetrahedron whose F changes too much. A tetrahedron is tested only if two of its
+/// corners move apart by more than the same fraction of its smallest altitude. The verdict names the tetrahedron that
+/// deforms fastest. Common motion of all nodes and slow rotation of a large body are harmless and do not count. Without
+/// `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the smallest
+/// altitude of the body. This test also rejects fast rotation of a large body. `fastest` is set if an element deforms
+/// too fast for a step of length `h` or `longest` [s]. `beside_fast` is scratch, one entry per node. Parallel over node
+/// blocks and bodies.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 
-/// Deformation rate of the body that deforms fastest, from velocity_next and push_out, for use between two steps.
-/// The result has rate 0 if no body is faster than `rate` [1/s].
+/// Finds the body that deforms fastest with the velocities velocity_next + push_out, for use between two steps. The
+/// rate of the result is 0 if no body deforms faster than `rate` [1/s].
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
-/// Largest allowed spacing of the coordinates of a body, over its mean edge. With a coarser spacing motion below a
-/// millionth of the speed of sound would be lost to rounding.
+/// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. With a coarser
+/// spacing, motion below a millionth of the speed of sound would be lost to rounding.
 inline constexpr Real coarsest_place = 1e-6;
 
-/// Finds the first body that is too far from the origin for its size. Tests one node per body, since a body is small
-/// compared with such distances.
+/// Finds the first body that is too far from the origin for its size. One node per body is tested, since a body is
+/// small compared with such distances.
 StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, std::span<const Range> body_nodes,
                            std::span<const Real> body_mean_edge);
 

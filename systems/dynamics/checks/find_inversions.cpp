@@ -15,13 +15,15 @@ namespace skerry {
 
 namespace {
 
-// Blocks of a part. Parts of small bodies share a job of at most as many blocks.
+// Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// Checks of a narrow block per computation of its width, which is half of the cost of a check.
+// Number of inversion checks of a narrow block for each computation of the block's width, which takes half of the time
+// of a check.
 constexpr std::uint8_t looks_at_narrow = 8;
 
-// Blocks whose budgets are tested together, without a branch for each.
+// Number of blocks whose travel budgets (distances without a check) are compared together, without a branch for each
+// block.
 constexpr std::size_t blocks_at_once = 32;
 
 Real8 squared(const LaneVec3<Real8>& v) {
@@ -32,8 +34,8 @@ Real8 larger(const Real8& a, const Real8& b) {
     return a > b ? a : b;
 }
 
-/// The largest squared cross product of four faces and three pairs of opposite edges. The nearest parallel planes
-/// around a tetrahedron are parallel to one of these.
+/// Largest squared cross product of two edges of a tetrahedron, over its four faces and its three pairs of opposite
+/// edges [m^4]. The nearest two parallel planes that enclose a tetrahedron are parallel to one of these seven pairs.
 Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     const LaneVec3<Real8> e01 = e.c1 - e.c0, e02 = e.c2 - e.c0, e12 = e.c2 - e.c1;
     const Real8 faces = larger(larger(squared(cross(e.c0, e.c1)), squared(cross(e.c1, e.c2))),
@@ -42,7 +44,8 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     return larger(faces, pairs);
 }
 
-/// Width of the narrowest tetrahedron of a block [m]. Inverted ones count: they may turn back and invert again.
+/// Width of the narrowest tetrahedron of a block: the least distance of two parallel planes that enclose it [m].
+/// Inverted tetrahedra count, because they may turn back and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     const Real8 left_over = Real8{} + std::numeric_limits<Real>::infinity();
@@ -53,13 +56,13 @@ Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     return std::sqrt(least);
 }
 
-/// One body in this step.
+/// Inversion check of one body in one step.
 struct Body {
     const InversionInputs& inputs;
     Real h;
-    Real reach;         // greatest motion of a node in this step [m]
-    Real travel_bound;  // bound on the travel after this step [m]
-    Real travel_base;   // travel at which a new budget begins (measure_displacement.h) [m]
+    Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
+    Real travel_bound;  // upper bound on the travel of the body at the end of this step [m]
+    Real travel_base;   // travel of the body from which a new travel budget counts (measure_displacement.h) [m]
 
     Body(const InversionInputs& of, Real step, Index body)
         : inputs(of),
@@ -69,7 +72,7 @@ struct Body {
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
     void look(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> looks_left) const {
-        // All blocks are prefetched before the first is checked: since the last step they have left the cache.
+        // All blocks are prefetched before the first is checked, because they have left the cache since the last step.
         std::array<std::size_t, blocks_per_part> due;
         std::size_t due_count = 0;
         SKERRY_CHECK(static_cast<std::size_t>(part.blocks.size()) <= due.size());
@@ -99,14 +102,14 @@ struct Body {
     }
 
 private:
-    /// False for tetrahedra whose inversion is harmless. An implicit element never makes a step unstable. A motion that
-    /// inverts a sliver strains only a negligible volume by much.
+    /// False for tetrahedra whose inversion is harmless: an implicit element never makes a step unstable, and a motion
+    /// that inverts a sliver strongly strains only a negligible volume.
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
     }
 
-    /// Calls visit(begin, end) for groups of at most blocks_at_once consecutive blocks.
+    /// Calls visit(begin, end) for consecutive groups of at most blocks_at_once blocks.
     static void for_each_group(Range blocks, auto&& visit) {
         const auto end = static_cast<std::size_t>(blocks.end);
         for (auto b = static_cast<std::size_t>(blocks.begin); b < end; b += blocks_at_once)
@@ -146,16 +149,17 @@ private:
     }
 };
 
-/// Splits the bodies that may have moved far enough into parts, and groups the parts into jobs.
+/// Finds the bodies that may have moved far enough for an inversion, splits them into parts, and groups the parts into
+/// jobs.
 void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> body_uninverted_until,
                 InversionMemory& memory) {
     memory.part.clear();
     memory.job.clear();
-    // enough for any later step, whichever bodies it checks
+    // This capacity is enough for any later step, whichever bodies are checked then.
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);
-    Index open = blocks_per_part;  // blocks in the last job
+    Index open = blocks_per_part;  // number of blocks in the last job
     for (Index b = 0; b < static_cast<Index>(inputs.body_blocks.size()); ++b) {
         const Range blocks = inputs.body_blocks[b];
         if (inputs.body_travel[b] + h * inputs.body_frame_speed[b] < body_uninverted_until[b]) continue;
@@ -173,7 +177,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     memory.job.push_back(static_cast<Index>(memory.part.size()));
 }
 
-/// Adds the results of the parts of one body to those of the bodies before it.
+/// Adds the results of the parts of one body to `found`, the results of all earlier bodies.
 void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
               Inversions& found) {
     const Index body = parts.front().body;

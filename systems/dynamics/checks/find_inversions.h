@@ -1,4 +1,4 @@
-// Finds the tetrahedra that the step would turn inside out (docs/methods/time_stepping.md 4.2).
+// Finds the tetrahedra that a step would turn inside out (docs/methods/time_stepping.md 4.2).
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct InversionInputs {
     std::span<const TetrahedronNodes> tetrahedron_node;  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_volume;
     std::span<const ElementLane> tetrahedron_leeway;   // empty: 1
-    std::span<const std::uint8_t> tetrahedron_sliver;  // empty: there are no slivers
+    std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
-    std::span<const Vec3> position;                 // m, at the start of the step
-    std::span<const Vec3> velocity_next, push_out;  // m/s; push_out may be empty: no contact pushes
-    std::span<const Range> body_rigid = {};         // BodyTable; rigid bodies are skipped; empty: there are none
+    std::span<const Vec3> position;                 // at the start of the step [m]
+    std::span<const Vec3> velocity_next, push_out;  // push_out is empty if no contact pushes [m/s]
+    std::span<const Range> body_rigid = {};  // from BodyTable; rigid bodies are not checked; empty if there are none
 
-    /// `pushed`: true if some contact pushes.
+    /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static InversionInputs bind(const Binder& binder, const TetrahedronBlockTable& tetrahedron, const BodyTable& body,
                                 const NodeTable& node, const bool& pushed) {
         return {.tetrahedron_node = binder.read(tetrahedron.node),
@@ -42,31 +42,31 @@ struct InversionInputs {
     }
 };
 
-/// Tetrahedra whose volume is positive at the start of the step and not at its end.
+/// Tetrahedra whose volume is positive at the start of a step but not at the end of the step.
 struct Inversions {
     Index count = 0;
-    Index body = no_index;         // of the first one: row of BodyTable
-    Index tetrahedron = no_index;  // the first one: lane of a block of the table
-    // true if one of the bodies had no inverted tetrahedron before; slivers and tetrahedra that implicit elements cover
-    // do not count
+    Index body = no_index;         // body of the first inverted tetrahedron: row of BodyTable
+    Index tetrahedron = no_index;  // first inverted tetrahedron: lane t % 8 of block t / 8
+    // True if a body that had no inverted tetrahedron before the step gets one. Slivers and tetrahedra that implicit
+    // elements cover do not count.
     bool first = false;
 };
 
-/// Some blocks of a body that has to be checked, and the results for them.
+/// Some blocks of a body that has to be checked for inversions, and the result of the check.
 struct InversionPart {
     Index body = no_index;
     Range blocks{0, 0};
-    Real uninverted_until = 0;                // least value of the blocks [m]
-    Index count = 0, tetrahedron = no_index;  // tetrahedra that the step inverts, and the first
-    bool judged = false;                      // one of them is neither a sliver nor has leeway
+    Real uninverted_until = 0;                // travel of the body until which these blocks cannot invert [m]
+    Index count = 0, tetrahedron = no_index;  // number of tetrahedra that the step inverts; the first inverted one
+    bool judged = false;  // true if an inverted tetrahedron is no sliver and not covered by an implicit element
 };
 
-/// Working memory, kept between steps.
+/// Working memory of find_inversions, kept between steps.
 struct InversionMemory {
     Column<InversionPart> part;  // parts of all bodies to check, in body order
-    Column<Index> job;           // first row of `part` for each job, then the number of parts
-    // by block of tetrahedra: checks left before the next budget is computed; above 0 only if a tetrahedron is so
-    // narrow that a budget would be spent at once
+    Column<Index> job;           // first row of `part` for each job; the last entry is the number of parts
+    // For each block of tetrahedra: number of checks until the next travel budget (distance without a check) is
+    // computed. The number is positive only if a tetrahedron is so narrow that one step would spend a budget.
     Column<std::uint8_t> looks_left;
 };
 
@@ -79,10 +79,11 @@ struct InversionBudgets {
     }
 };
 
-/// Checks tetrahedra only if their body may have moved far enough. A tetrahedron cannot invert before its corners have
-/// moved by half of its width, the distance of the two nearest parallel planes around it. So slivers are checked often,
-/// the rest of their body rarely. Every check of a block writes a new budget; in blocks too narrow for a budget only
-/// every eighth check does. Parallel over parts of bodies.
+/// Finds the tetrahedra that a step of length `h` [s] inverts. Tetrahedra are checked only if their body may have moved
+/// far enough. A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of
+/// two parallel planes that enclose it. So slivers are checked often, and all other tetrahedra rarely. Each check of a
+/// block writes a new travel budget, the distance that the body may move before the next check. For a block too narrow
+/// for a budget, only every eighth check computes a new one. Parallel over parts of bodies.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

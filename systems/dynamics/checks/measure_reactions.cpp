@@ -15,14 +15,14 @@ bool is_awake(const ReactionInputs& inputs, Index body) {
     return inputs.kind[b] == BodyKind::deformable && !inputs.asleep[b];
 }
 
-/// True if the nodes of a body are held one by one, not as a rigid body.
+/// True for an awake body whose nodes are held one by one, not as one rigid body.
 bool counts(const ReactionInputs& inputs, Index body) {
     const auto b = static_cast<std::size_t>(body);
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
-/// Adds the impulse that moves a rigid body against its weight, loads and contacts. For an implicit body adds the
-/// moment that holds its frame.
+/// Adds the reaction on a held rigid body: the change of its momentum less the impulses of weight, loads and contacts.
+/// For an implicit body, adds only the moment that holds the frame of the body.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
@@ -41,14 +41,15 @@ void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_
     }
 }
 
-/// Fraction of its velocity that a node of a held body loses to damping.
+/// Fraction of the velocity of a body's nodes that damping removes in the time `kick` [s].
 Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) {
     const Index material = inputs.body_material[body];
     return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * kick);
 }
 
-/// Adds the rows of held nodes in the added inertia of the implicit elements (docs/methods/clusters.md 1): a change of
-/// the velocities of moving nodes also gives an impulse to held ones. Damping does not act through that inertia.
+/// Adds the impulses on held nodes from the added inertia of the implicit elements (docs/methods/clusters.md 1).
+/// Through this inertia a velocity change of a moving node also gives an impulse to held nodes. Velocity changes by
+/// damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
     const Real damped = damped_fraction(inputs, body, kick);
@@ -59,7 +60,7 @@ void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real 
             const Real weight = beta * inputs.implicit_modulus[b][lane] * inputs.volume[b][lane];
             const auto begin = static_cast<std::size_t>(inputs.first[b]),
                        end = begin + static_cast<std::size_t>(inputs.count[b]);
-            Mat3 change = Mat3::Zero();  // of grad v
+            Mat3 change = Mat3::Zero();  // change of grad v
             for (std::size_t k = begin; k < end; ++k) {
                 const auto n = static_cast<std::size_t>(inputs.element_node[k][lane]);
                 if (!(inputs.inverse_mass[n] > 0)) continue;
@@ -85,7 +86,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     SKERRY_CHECK(inputs.velocity_before.size() == inputs.velocity.size());
     reactions.assign(count, {});
     node_impulse.resize(inputs.position.size());
-    // The impulse on each held node; every attachment that holds it finds the same value.
+    // Computes the impulse on each held node. Every attachment that holds a node finds the same value.
     for (std::size_t a = 0; a < count; ++a) {
         if (!counts(inputs, inputs.attached_body[a])) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
@@ -98,7 +99,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     Index last = no_index;
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
-        // attachments of one body need not be adjacent: a body is treated at the first one
+        // Attachments of one body need not be adjacent, so each body is treated at its first attachment.
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);
@@ -106,7 +107,8 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     }
     for (std::size_t a = 0; a < count; ++a)
         if (is_awake(inputs, inputs.attached_body[a])) add_rigid_body(inputs, kick, moment_point, a, reactions[a]);
-    // In reverse order, so that the impulse of a node goes to the last attachment that holds it.
+    // Attachments are visited in reverse order, so that the impulse of a node goes to the last attachment that holds
+    // it.
     for (std::size_t a = count; a-- > 0;) {
         if (!counts(inputs, inputs.attached_body[a])) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);

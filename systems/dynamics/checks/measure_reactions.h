@@ -1,4 +1,4 @@
-// Impulses of attachments on their bodies in this step.
+// Measures the impulses of attachments on their bodies in a step.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +29,9 @@ struct ImpulseAndMoment {
 struct ReactionInputs {
     std::span<const Range> attached;       // by attachment: range in `held`
     std::span<const Index> attached_body;  // by attachment: row of BodyTable
-    std::span<const Index> held;           // nodes, of all attachments
-    std::span<const Vec3> held_impulse;    // by node: impulse of contacts [N s]
-    // by node: velocities of held nodes before the step [m/s]
+    std::span<const Index> held;           // held nodes of all attachments: rows of NodeTable
+    std::span<const Vec3> held_impulse;    // impulse of contacts on held nodes, by node [N s]
+    // velocity of held nodes before the step, by node [m/s]
     std::span<const Vec3> velocity_before;
     // by node
     std::span<const Vec3> position, velocity, velocity_next;
@@ -41,7 +41,7 @@ struct ReactionInputs {
     std::span<const std::uint8_t> asleep;
     std::span<const BodyKind> kind;
     std::span<const Range> blocks;
-    std::span<const Real> cluster_step;  // 0: no implicit element [s]
+    std::span<const Real> cluster_step;  // longest stable step of the implicit elements; 0 if there are none [s]
     std::span<const Index> body_material;
     std::span<const Real> material_damping;  // 1/s
     // by element block
@@ -49,7 +49,7 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
-    // by row of RigidBodyTable
+    // rows of RigidBodyTable, and the ranges of these rows by body
     std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, kick, moment_kick, hold_moment;
@@ -91,11 +91,12 @@ struct ReactionInputs {
     }
 };
 
-/// Writes one row per attachment: the impulse that takes its nodes to the velocities of this step against the forces of
-/// elements, weight and loads, the impulses of contacts and the inertia of implicit elements. Moments are about
-/// `moment_point`. A node that several attachments hold counts for the last one, whose motion it follows. Attachments
-/// of bodies at rest and of colliders have zero rows. A rigid body counts as a whole for the last attachment that holds
-/// it. `node_impulse` is scratch, by node. Sequential.
+/// Writes the impulse and moment of each attachment on its nodes, one row per attachment. The impulse changes the
+/// velocities of the nodes to those of this step. It acts against element forces, weight, loads, the impulses of
+/// contacts and the inertia of implicit elements. Moments are about `moment_point`. A node that several attachments
+/// hold counts for the last one, whose motion it follows. Attachments of sleeping bodies and of colliders get zero
+/// rows. A rigid body counts as a whole for the last attachment that holds it. `kick`: time for which forces act [s].
+/// `node_impulse` is scratch, by node. Sequential.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

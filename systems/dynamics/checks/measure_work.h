@@ -1,4 +1,4 @@
-// Impulse and work of loads and held nodes on the moving nodes in this step, for the balance of a run.
+// Measures the impulse and work of loads and of holding forces in a step, for the balances of energy and momentum.
 #pragma once
 
 #include <span>
@@ -19,17 +19,17 @@ struct ExternalWork {
 };
 
 struct WorkInputs {
-    std::span<const Vec3> load;   // applied force by node; empty: none [N]
-    std::span<const Vec3> force;  // by held node [N]
+    std::span<const Vec3> load;   // applied force by node; empty if there is none [N]
+    std::span<const Vec3> force;  // force of elements, weight and loads by node; used at held nodes [N]
     std::span<const Vec3> velocity_next;
     std::span<const Real> mass;   // kg, by node
     std::span<const Index> held;  // nodes
     std::span<const Index> node_body;
-    std::span<const Range> body_implicit;  // BodyTable; with rows: `force` is already that of the whole step
+    std::span<const Range> body_implicit;  // rows of implicit bodies, whose `force` holds for the whole step
     RestingNodes resting;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
-    /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
+    /// `forced`: true if the world has force elements. `any_asleep`: true if at least one body is asleep.
     static WorkInputs bind(const Binder& binder, const NodeTable& node, const AttachmentTable& attachment,
                            const BodyTable& body, const bool& forced, const bool& any_asleep, const Vec3& gravity) {
         return {.load = binder.read_if(binder.value(forced), node.applied_force),
@@ -45,11 +45,12 @@ struct WorkInputs {
     }
 };
 
-/// Impulse and work of the loads on all nodes and of the forces that hold the nodes `held`, the opposite of `force`
-/// there. The impulse is kick F. Loads are constant and do the work h F . velocity_next, since h velocity_next is the
-/// displacement of a symplectic step. Holding forces do work against weight and loads for h, too, but against elements
-/// for `kick`. Nodes at rest do not count: the force that holds them is unknown. Loads are summed over fixed blocks, in
-/// their order.
+/// Sum of impulse and work over two kinds of forces: the loads on all nodes, and the forces that hold the nodes `held`.
+/// A holding force is the opposite of `force`. The impulse of a force F is kick F with the force interval `kick` [s]. A
+/// load is constant and does the work h F . velocity_next, since h velocity_next is the displacement in symplectic
+/// Euler. A holding force works against weight and loads for the step length `h` [s], but against element forces for
+/// `kick`. Nodes of sleeping bodies do not count, because the forces that hold these nodes are unknown. Loads are
+/// summed over fixed groups of nodes, in a fixed order.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick,
                           Column<ExternalWork>& partial);
 

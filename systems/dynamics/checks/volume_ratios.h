@@ -1,4 +1,4 @@
-// Compression of tetrahedra and elements, for reports.
+// Ratios of present volume to rest volume, of tetrahedra and of elements, for reports.
 #pragma once
 
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace skerry {
 
-/// Statistics of present volume over rest volume: the smallest ratio, the item that has it (lane of a block), the
-/// number below near_inversion (or another limit), and the number below 0 (inverted). NaN counts as the smallest.
+/// Statistics of the ratio of present volume to rest volume, over some tetrahedra or elements. `smallest`: the smallest
+/// ratio; NaN counts as the smallest. `item`: the one with the smallest ratio, in lane i % 8 of block i / 8.
+/// `near_inversion`: number of ratios below 0.1 or another limit. `inverted`: number of ratios below 0.
 struct VolumeRatios {
     Real smallest;
     Index item;
@@ -17,11 +18,12 @@ struct VolumeRatios {
 };
 inline constexpr Real near_inversion = 0.1;
 
-/// Volume ratios of the tetrahedra of a range of blocks.
+/// Statistics of the volume ratios of the tetrahedra in a range of blocks.
 VolumeRatios tetrahedron_volume_ratios(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                                        Range blocks, std::span<const Vec3> position);
 
-/// Volume ratios det F of the elements of a range of blocks; below `near` they count as near inversion.
+/// Statistics of the volume ratios det F of the elements in a range of blocks. Ratios below `near` count as near
+/// inversion. Inversion barriers count with ratio 1.
 VolumeRatios element_volume_ratios(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                    Real near = near_inversion);
 

@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-using Order = std::span<Index>;  // elements of a list
+using Order = std::span<Index>;  // indices of elements in an ElementList
 
-/// The mean of the nodes of each element.
+/// Mean rest position of the nodes of each element [m].
 std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest_position) {
     std::vector<Vec3> centre(list.size());
     for (std::size_t e = 0; e < list.size(); ++e) {
@@ -26,7 +26,8 @@ std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest
     return centre;
 }
 
-/// Halves a group along its longest side until every part is a patch. Appends the sizes of the patches in their order.
+/// Halves a group of elements along its longest side until every part is small enough for a patch. Appends the number
+/// of elements of each patch to `patch_size`.
 void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<std::size_t>& patch_size) {
     const std::size_t patches = (group.size() + elements_per_patch - 1) / elements_per_patch;
     if (patches <= 1) {
@@ -55,7 +56,7 @@ ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_po
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    // guards are separate, so that inactive ones change no sum of other elements
+    // Inversion barriers get patches of their own, so that inactive ones change no sum of other elements.
     const auto group_of = [&](Index e) { return list.part[static_cast<std::size_t>(e)] == ElementPart::guard; };
     std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;
@@ -93,7 +94,7 @@ Real smallest_altitude(const std::array<Index, 4>& tetrahedron, std::span<const 
     const auto at = [&](std::size_t a) -> const Vec3& {
         return rest_position[static_cast<std::size_t>(tetrahedron[a % 4])];
     };
-    Real largest_face = 0;  // twice its area
+    Real largest_face = 0;  // twice the area [m^2]
     for (std::size_t a = 0; a < 4; ++a)
         largest_face = std::max(largest_face, (at(a + 1) - at(a)).cross(at(a + 2) - at(a)).norm());
     return six_volumes(tetrahedron, rest_position) / largest_face;
@@ -162,7 +163,8 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         blocks.part[block] = list.part[leader];
         blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
-        blocks.rotation_next[block] = blocks.rotation[block];  // some laws write neither, yet the step swaps them
+        // The columns must be equal, since the step swaps them and laws without a corotational frame write neither.
+        blocks.rotation_next[block] = blocks.rotation[block];
         for (Real& share : blocks.mass_share[block].lane) share = 1;
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const bool used = lanes[l] != no_index;
@@ -210,17 +212,18 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
                      std::span<const Real> density, std::span<Real> mass) {
     SKERRY_CHECK(density.size() == tetrahedra.size());
     for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
-        const Real share = density[t] * six_volumes(tetrahedra[t], rest_position) / 24;  // rho V / 4
+        // mass of a tetrahedron at each corner, rho V / 4 [kg]
+        const Real share = density[t] * six_volumes(tetrahedra[t], rest_position) / 24;
         for (const Index n : tetrahedra[t]) mass[static_cast<std::size_t>(n)] += share;
     }
 }
 
 namespace {
 
-/// Appends the lists of rows that have none yet: the items that name each row, ascending. Only items behind the listed
-/// ones name these rows.
+/// Appends a list for each row that has none yet. The list of a row has all items i with row_of_item[i] == row,
+/// ascending. Items that are not in a list yet must belong to rows without a list.
 void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
-    // Counting sort: count, sum up, fill.
+    // Counting sort: count the items of each row, form prefix sums, fill the lists.
     if (items.offset.empty()) items.offset.push_back(0);
     const std::size_t first_row = items.size(), first_item = items.item.size();
     items.offset.resize(row_count + 1, 0);
@@ -254,7 +257,7 @@ void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNod
         const auto first_row = static_cast<std::size_t>(blocks.first[begin]);
         const auto end_row = static_cast<std::size_t>(blocks.first[end - 1] + blocks.count[end - 1]);
         for (std::size_t b = begin; b < end; ++b) SKERRY_CHECK(blocks.body[b] == blocks.body[begin]);
-        // Nodes of a patch ascend, since the kernel fetches their positions from memory.
+        // The nodes of a patch are sorted, since the kernel fetches their positions from memory.
         for (std::size_t row = first_row; row < end_row; ++row)
             for (const Index n : nodes.node[row].lane)
                 if (Index& slot = slot_of(n); slot == no_index) {

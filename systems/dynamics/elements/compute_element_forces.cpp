@@ -19,39 +19,39 @@ namespace skerry {
 
 namespace {
 
-// Blocks between the one that is computed and the one whose rows are prefetched.
+// Number of blocks by which prefetching is ahead of computing.
 constexpr std::size_t blocks_ahead = 6;
 
-// Positions of up to this many nodes of a patch (16 kB) are in a local buffer that stays in the L1 cache; those of
-// larger patches are in patches.position.
+// Number of node positions (16 kB) that fit into a local buffer, which stays in the L1 cache. Larger patches use
+// patches.position instead.
 constexpr std::size_t near_nodes = 512;
 
-/// `alike`: the kick (force interval) of this step equals that of the step before. Dissipated energy then needs one
+/// `alike`: the force interval (kick) of this step equals the kick of the step before. Dissipated energy then needs one
 /// subtraction instead of a weighted difference.
 enum class Kicks { alike, any };
 
-/// Consecutive blocks of a patch that have one material and one part.
+/// Consecutive blocks of a patch with one material and one part of the stress (ElementPart).
 struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
     Real kick;                       // s
-    Real kick_over_last;             // 0: the strain that relaxed in the step before is unknown
-    PatchRows<const Real> position;  // m, of the patch
-    PatchRows<Real> force;           // N, of the patch
+    Real kick_over_last;             // this kick over the last; 0 if the last change of viscous strain is unknown
+    PatchRows<const Real> position;  // of the nodes of the patch [m]
+    PatchRows<Real> force;           // on the nodes of the patch [N]
     std::span<const Vec3> velocity;  // of all nodes
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
     const PatchForces& patches;
 
-    /// Rows of a block, with its nodes as slots of the patch.
+    /// Rows of a block, with nodes given as slots of the patch.
     BlockNodes nodes_of(std::size_t block) const {
         const auto row = static_cast<std::size_t>(elements.first[block]);
         return {patches.slot.data() + row, elements.gradient.data() + row, elements.count[block]};
     }
 
-    /// Prefetches the rows of a later block, which may belong to the next patch. The other loads in between keep
-    /// processors from recognising that these rows are consecutive.
+    /// Prefetches the rows of a later block, which may belong to the next patch. Processors do not recognise that these
+    /// rows are consecutive, because other loads lie between them.
     [[gnu::always_inline]] void ask_for_one_ahead_of(std::size_t current) const {
         const std::size_t block = current + blocks_ahead;
         if (block >= elements.blocks()) return;
@@ -72,7 +72,8 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// Fractions of the stretch of both viscous parts that remain after the dashpots relax for the time of the kick.
+    /// Fractions of the elastic stretch that remain after the dashpots relax for the time of the kick: one fraction for
+    /// the strain, one for the volume.
     template <class T>
     struct Kept {
         T strain, volume;
@@ -81,7 +82,7 @@ struct Run {
     [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
         const T forgets = kick * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
-        // backward Euler: never relaxes more than all; one division for both
+        // Backward Euler never relaxes more than the whole stretch. One division serves both fractions.
         const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
         return {over_both * less_volume, over_both * less};
     }
@@ -96,7 +97,7 @@ struct Run {
     }
 
     /// Relaxes the dashpots, then computes the stress of the springs. Returns the second Piola-Kirchhoff stress [Pa]
-    /// times the scale of the block. Writes the viscous strain and `dissipated`, which dissipated_of converts to J.
+    /// times `scale`. Writes the viscous strain, and `dissipated`, which dissipated_of converts to an energy.
     template <Kicks kicks, class T>
     [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, const T& scale,
                                                   std::size_t block, std::size_t part, T& dissipated) const {
@@ -105,12 +106,14 @@ struct Run {
         const LaneSymmetric<T> strain = twice_green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
-        const Real of_now = kick_over_last > 0 ? 1 : 2;  // 2 if unknown: assumes the stretch of now
+        // 2 if the last change of viscous strain is unknown: it is then assumed equal to the present change
+        const Real of_now = kick_over_last > 0 ? 1 : 2;
         const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
         const LaneSymmetric<T> taken = strain - after.strain;
         const T taken_volume = strain.trace() - after.volume;
-        // The dissipation is the work of the mean spring stress of the step before and of this one on the strain that
-        // the dashpots take. The stretch in the step before is the strain that relaxed then over the rate.
+        // The dissipated energy is the mean spring stress of the last step and this step, times the change of viscous
+        // strain. The last stress follows from the last change of viscous strain, which is the relaxation rate times
+        // the stretch.
         const auto twice = [&](const T& now, std::size_t i) {
             const T older = load_part<T>(forgotten_next[i], part);
             if constexpr (kicks == Kicks::alike) return T(now - older);
@@ -133,16 +136,16 @@ struct Run {
         return S;
     }
 
-    /// relax() for the rare case, out of line. The arguments are passed by value, so that they need not be in memory if
-    /// it is not called.
+    /// Calls relax() in the rare case of unlike kicks, out of line. Arguments are passed by value, so that the caller
+    /// need not hold them in memory.
     template <class T>
     [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, T scale,
                                                            std::size_t block, std::size_t part, T& dissipated) {
         return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
-    /// Elastic stress [Pa] times `scale`. Frames are extracted from all parts at once, so that the number of iterations
-    /// does not depend on the width of a part.
+    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for the whole block at once, so that the
+    /// number of iterations does not depend on the register width.
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                const Parts<KernelReal>& scale) const {
@@ -169,15 +172,15 @@ struct Run {
         }
     }
 
-    /// True for implicit elements near enough to rest to have no viscosity. `square`: |F|^2, `J`: det F.
+    /// True for implicit elements so near to rest that they have no viscosity. `square`: |F|^2, `J`: det F.
     template <class T>
     static auto is_calm(const T& square, const T& J) {
-        constexpr Real stretched = 6, pressed = 0.3;  // 3 and 1 at rest
+        constexpr Real stretched = 6, pressed = 0.3;  // limits on |F|^2 and det F, which are 3 and 1 at rest
         return (square < stretched) & (J > pressed);
     }
 
-    /// True if the block has implicit elements and none of them is viscous or near its assumed stiffness. This holds
-    /// for most blocks in most steps.
+    /// True if the block has implicit elements, none of them is viscous, and none is nearly as stiff as assumed. This
+    /// holds for most blocks in most steps.
     [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
@@ -191,8 +194,8 @@ struct Run {
         return any_implicit && easy;
     }
 
-    /// Writes the viscosity of implicit elements that are stretched or compressed by much, 0 for others [Pa s]. Returns
-    /// whether any element is viscous.
+    /// Computes the viscosity of implicit elements: positive if an element is strongly stretched or compressed, else 0
+    /// [Pa s]. Returns true if any element is viscous.
     bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
@@ -206,7 +209,7 @@ struct Run {
         return std::ranges::any_of(lanes.lane, [](Real of) { return of > 0; });
     }
 
-    /// True if an implicit element is so strained that its stiffness has to be computed accurately.
+    /// True if an implicit element is strained so much that its stiffness must be computed accurately.
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
@@ -222,7 +225,7 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the viscous stress of implicit elements, times `scale`, if the block has one, and stores its impulse.
+    /// Adds the viscous stress of the implicit elements of a block, times `scale`, and stores the viscous impulse.
     void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
                             Parts<LaneMat3<KernelReal>>& P) const {
         Parts<KernelReal> viscosity;
@@ -253,7 +256,7 @@ struct Run {
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
     }
 
-    /// Factor from stress to forces: minus the volume [m^3].
+    /// Factor from stress to nodal forces: minus the volume of the element [m^3].
     [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
         Parts<KernelReal> scale;
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -261,8 +264,8 @@ struct Run {
         return scale;
     }
 
-    /// Total first Piola-Kirchhoff stress of the elements [Pa] times the scale of the block. Adds their dissipation to
-    /// `relaxed`, which dissipated_of converts to J.
+    /// Total first Piola-Kirchhoff stress of the elements of a block [Pa], times minus their volume. Adds the
+    /// dissipation to `relaxed`, which dissipated_of converts to an energy.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
                                                                  const Parts<LaneMat3<KernelReal>>& F,
@@ -274,7 +277,8 @@ struct Run {
             if (rests_easy(block, F)) {
                 note(block, false, false);
             } else {
-                // copies for the call only: a variable with an address is in memory, even if the call is not made
+                // Only the call needs these copies: a variable whose address is taken lives in memory, even without the
+                // call.
                 Parts<LaneMat3<KernelReal>> rest;
                 for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
@@ -293,7 +297,7 @@ struct Run {
             if (kick_over_last == 1) {
                 S = relax<Kicks::alike>(F[part], kept[part], scale[part], block, part, dissipated);
             } else {
-                KernelReal unlike;  // for the call only: a variable with an address is in memory
+                KernelReal unlike;  // only for the call, as a variable whose address is taken lives in memory
                 S = relax_unlike(*this, F[part], kept[part], scale[part], block, part, unlike);
                 dissipated = unlike;
             }
@@ -303,11 +307,11 @@ struct Run {
         return P;
     }
 
-    /// Dissipated energy from the sum over the elements [J]. The sum has two steps and strains twice their size, hence
-    /// the factor 1/4; the scale of the blocks is negative.
+    /// Dissipated energy from the sum over the elements [J]. The factor 1/4 is needed because the sum covers two steps
+    /// and contains twice the strain. The minus sign is needed because `scale` is negative.
     static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
 
-    /// Deformation gradients of a block.
+    /// Deformation gradients F of the elements of a block.
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
         const BlockNodes nodes = nodes_of(block);
         Parts<LaneMat3<KernelReal>> F;
@@ -315,7 +319,7 @@ struct Run {
         return F;
     }
 
-    /// Adds the forces of a block to its nodes. `Q`: its stress times its scale.
+    /// Adds the forces of the elements of a block to their nodes. `Q`: stress times minus the volume.
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
         for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
@@ -324,9 +328,10 @@ struct Run {
     }
 };
 
-/// Computes a run. With wide registers the next block is fetched before the forces of the present one are added. These
-/// two are independent, while the stress between them is a long chain of dependent operations. Narrow registers are too
-/// few to hold both. Returns the energy that the dashpots of the elements dissipate [J].
+/// Computes the forces of a run of blocks. With wide registers the next block is fetched before the forces of the
+/// present block are added. These two operations are independent, while the stress between them is a long chain of
+/// dependent operations. Narrow registers are too few to hold two blocks. Returns the energy that the dashpots of the
+/// elements dissipate [J].
 [[gnu::always_inline]] inline Real compute_run(const Run& run) {
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
@@ -339,7 +344,7 @@ struct Run {
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) {
                 F = run.fetch(block + 1);
-                kept = run.kept_of(block + 1);  // early: a division takes long
+                kept = run.kept_of(block + 1);  // computed early, because a division takes long
             }
             run.add(block, Q);
             if (!ahead && goes_on) {
@@ -351,18 +356,19 @@ struct Run {
     return run.dissipated_of(relaxed);
 }
 
-/// Copies the positions of the nodes of a patch, which ascend, to padded rows, and sets their forces to zero.
+/// Copies the positions of the nodes of a patch to padded rows, and sets the forces on these nodes to zero. `node` must
+/// be ascending.
 void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVec3* to, PaddedVec3* force) {
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    const std::size_t last = node.size() - 1;  // the only one whose position may end the array
+    const std::size_t last = node.size() - 1;  // no other position can be the last of the array
     for (std::size_t s = 0; s < last; ++s)
         store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};
 }
 
-/// The first block after `begin` that has another material or part.
+/// First block after `begin` that has another material or another part of the stress, or `end`.
 std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     std::size_t b = begin + 1;
     while (b < end && elements.material[b] == elements.material[begin] && elements.part[b] == elements.part[begin]) ++b;

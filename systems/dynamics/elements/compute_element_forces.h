@@ -12,7 +12,7 @@
 namespace skerry {
 
 struct ElementInputs {
-    std::span<const Index> first, count;  // rows of the two below, by block
+    std::span<const Index> first, count;  // rows of `node` and `gradient`, by block
     std::span<const NodeLane> node;
     std::span<const ElementGradient> gradient;
     std::span<const ElementLane> volume;
@@ -20,19 +20,20 @@ struct ElementInputs {
     std::span<const Index> material;
     std::span<const ElementPart> part;
     std::span<const MaterialConstants> constants;
-    std::span<const Index> body = {};         // row of BodyTable, by block; may be empty if no body is left out
-    std::span<const Real> viscous_time = {};  // s; empty: nothing is viscous
-    // Relaxing stress; empty: nothing relaxes
+    std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
+    std::span<const Real> viscous_time = {};  // viscous time by block; empty if no element is viscous [s]
+    // Relaxing part of the stress; empty if no stress relaxes.
     std::span<const ElementLane> relaxation_rate = {}, own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const ElementStrain> viscous_strain = {};
-    // BodyTable. Elements of bodies that are asleep or unstrained are left out of a step; empty: no such body
+    // Flags from BodyTable. Elements of sleeping and of unstrained bodies are left out of a step. Empty if there are
+    // no such bodies.
     std::span<const std::uint8_t> body_asleep = {};
     std::span<const std::uint16_t> body_unstrained = {};
-    std::span<const ElementForm> mass_form = {};         // 1/(kg m^2); empty: elements use mass_share
-    std::span<const ElementLane> implicit_modulus = {};  // Pa; 0: an explicit element; empty: all are explicit
+    std::span<const ElementForm> mass_form = {};         // empty if all elements use mass_share [1/(kg m^2)]
+    std::span<const ElementLane> implicit_modulus = {};  // 0 for an explicit element; empty if all are explicit [Pa]
     std::span<const FrameMass> frame_mass = {};
-    std::span<const Real> frame_bound = {};  // 1/s^2; empty: no body has frame masses
+    std::span<const Real> frame_bound = {};  // empty if no body has frame masses [1/s^2]
 
     std::size_t blocks() const { return first.size(); }
     BlockNodes nodes_of(std::size_t block) const {
@@ -42,7 +43,7 @@ struct ElementInputs {
     MaterialConstants material_of(std::size_t block) const {
         return part_of(constants[static_cast<std::size_t>(material[block])], part[block]);
     }
-    /// True if a block is left out of this step.
+    /// True if the elements of a block are left out of this step.
     bool is_left_out(std::size_t block) const {
         return (!body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[block])]) ||
                (!body_unstrained.empty() && body_unstrained[static_cast<std::size_t>(body[block])]);
@@ -55,7 +56,8 @@ struct ElementInputs {
         elements.implicit_modulus = binder.read(element.implicit_modulus);
         return elements;
     }
-    /// Binds all elements and marks those that are left out of a step. `any_asleep`: true if some body is asleep.
+    /// Binds all elements, and the flags that show which elements are left out of a step. `any_asleep`: true if at
+    /// least one body is asleep.
     static ElementInputs bind(const Binder& binder, const ElementBlockTable& element, const ElementNodeTable& nodes,
                               const MaterialTable& material, const BodyTable& body, const bool& any_asleep) {
         ElementInputs elements = bind(binder, element, nodes, material);
@@ -63,7 +65,7 @@ struct ElementInputs {
         elements.body_unstrained = binder.read(body.unstrained);
         return elements;
     }
-    /// Binds all elements without implicit_modulus, for readers that need not wait until it is written.
+    /// Binds all elements without implicit_modulus, for readers that need not wait for its writer.
     static ElementInputs bind_explicit(const Binder& binder, const ElementBlockTable& element,
                                        const ElementNodeTable& nodes, const MaterialTable& material) {
         return {.first = binder.read(element.first),
@@ -87,22 +89,23 @@ struct ElementInputs {
     }
 };
 
-/// Fraction of the assumed stiffness of an implicit element. If the quick bound is above it, the stiffness is computed
-/// accurately.
+/// Limit on the quick stiffness bound of an implicit element, as a fraction of the assumed stiffness. Above this limit
+/// the stiffness is computed accurately.
 inline constexpr Real near_stiffness = 0.7;
 
-/// The patches and the columns of their sums.
+/// Patches, and the columns for their sums of forces and of dissipated energy.
 struct PatchForces {
     std::span<const Range> blocks, slots;
     std::span<const Index> node;                            // by slot
-    std::span<const NodeLane> slot;                         // by row of ElementNodeTable: slot_width times the slot
+    std::span<const NodeLane> slot;                         // slot of each element node, times slot_width
     std::span<PaddedVec3> position;                         // m, by slot; scratch
     std::span<PaddedVec3> force;                            // N, by slot
-    std::span<ElementViscousImpulse> viscous_impulse = {};  // by block; empty: nothing is viscous
-    std::span<std::uint8_t> viscous = {};                   // by block: 1 if it has a viscous impulse in this step
-    // by block that is not left out: 1 if the quick bound of an implicit element is above near_stiffness
+    std::span<ElementViscousImpulse> viscous_impulse = {};  // impulse by block; empty if no element is viscous
+    std::span<std::uint8_t> viscous = {};                   // 1 if the block has a viscous impulse in this step
+    // 1 if the quick stiffness bound of an implicit element of the block is above near_stiffness. Blocks that are left
+    // out are not written.
     std::span<std::uint8_t> stiffening = {};
-    std::span<Real> relaxed = {};  // energy that relaxed, by patch; empty: nothing relaxes [J]
+    std::span<Real> relaxed = {};  // energy that the dashpots of a patch dissipate; empty if none exist [J]
 
     static PatchForces bind(const Binder& binder, ElementPatches& patches, const ElementNodeTable& nodes) {
         return {.blocks = binder.read(patches.blocks),
@@ -118,10 +121,11 @@ struct PatchForces {
     }
 };
 
-/// State of the elements that this step writes for the next one.
+/// State of the elements that a step writes for the next step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // Viscous strain after this step; until that is written, the one before the last step. Empty: nothing relaxes.
+    // Viscous strain after this step. Until this step writes the column, it holds the viscous strain before the last
+    // step. Empty if no stress relaxes.
     std::span<ElementStrain> viscous_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
@@ -130,13 +134,15 @@ struct ElementMemory {
     }
 };
 
-/// Sums over each patch the forces of its elements on its nodes, from the first Piola-Kirchhoff stress P(F),
-/// F = sum_k (x_k - x_0) (x) g_k: f_k = -V P g_k, f_0 = -(f_1 + f_2 + ...). Sums go in the order of the blocks, and
-/// lane by lane: the same bits on any number of workers. Corotational elements start the extraction of their frame from
-/// `rotation` and write next.rotation; other models write no frame. Patches of bodies that are left out keep their
-/// forces. `kick`: time for which forces act [s]. `kick_over_last`: `kick` over that of the step before; 0 if
-/// next.viscous_strain no longer holds the strain from before that step. With 0 the dissipated energy is exact to
-/// first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel over patches.
+/// Computes the forces of the elements on their nodes, and sums the forces over each patch. The first Piola-Kirchhoff
+/// stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions x_k and the gradients g_k
+/// at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 + f_2 + ...). Sums run block
+/// by block and lane by lane, so that the bits do not depend on the number of workers. Corotational elements start the
+/// search for their frame from `rotation` and write next.rotation; other laws write no frame. Patches of bodies that
+/// are left out keep their forces. `kick`: time for which forces act [s]. `kick_over_last`: this kick over the kick of
+/// the step before; 0 if next.viscous_strain no longer holds the strain from before that step. With 0 the dissipated
+/// energy is exact to first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel
+/// over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, Real kick_over_last,
                             std::span<const ElementRotation> rotation, const ElementMemory& next,

@@ -1,4 +1,4 @@
-// Operations of the kernels on a block: fetch its nodes, form F, write its forces.
+// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// A position and the number that follows it in memory.
+/// Loads a position and the number that follows it in memory.
 [[gnu::always_inline]] inline Real4 load_position(const Vec3* at) {
     return half_at(at->data());
 }
@@ -19,8 +19,9 @@ namespace skerry {
     return *reinterpret_cast<const Real4*>(at->lane);
 }
 
-/// Positions of the nodes of a patch, or forces on them. A slot is the offset of the first number of its row
-/// (ElementNodeTable), not the row: processors scale addresses by at most eight bytes, and a row is longer.
+/// Positions of the nodes of a patch, or forces on these nodes. A slot is the offset of the first number of a row
+/// (ElementNodeTable), not the index of the row. Processors scale addresses by at most eight bytes, and a row is
+/// longer.
 template <class Number>
 struct PatchRows {
     Number* first;
@@ -31,10 +32,11 @@ struct PatchRows {
     }
 };
 
-/// Positions of one node in as many lanes as the kernel takes at once, in the order that the transposes below need. One
-/// full-width load per node and a few shuffles replace three gathers, which cost one load per lane each.
+/// Corner: positions of one corner of several elements, as many as a kernel computes at once, in the order that the
+/// transposes below need. One full-width load per position and a few shuffles replace three gathers, which cost one
+/// load per lane each.
 #ifdef __AVX512VL__
-/// (x, y, z, next node's x) of lanes 0 4, 1 5, 2 6, 3 7
+/// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
     Real8 pair[4];
 };
@@ -48,7 +50,7 @@ template <class Positions>
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
-/// load_corner for a block that contains the last node, whose position no number follows.
+/// Variant of load_corner for a block that contains the last node, whose position is the end of the array.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t, const Vec3* position) {
     const auto pair = [&](std::size_t l) {
         const Vec3 &a = position[node[l]], &b = position[node[l + 4]];
@@ -57,12 +59,14 @@ template <class Positions>
     return {{pair(0), pair(1), pair(2), pair(3)}};
 }
 
-/// Corner minus corner 0, lanes side by side.
+/// Position of a corner minus the position of corner 0. Each component holds all lanes.
 [[gnu::always_inline]] inline LaneVec3<Real8> edge(const Corner& corner, const Corner& corner0) {
     const Real8 d04 = corner.pair[0] - corner0.pair[0], d15 = corner.pair[1] - corner0.pair[1];
     const Real8 d26 = corner.pair[2] - corner0.pair[2], d37 = corner.pair[3] - corner0.pair[3];
-    const Real8 low01 = __builtin_shufflevector(d04, d15, 0, 8, 2, 10, 4, 12, 6, 14);   // x0 x1 z0 z1 x4 x5 z4 z5
-    const Real8 high01 = __builtin_shufflevector(d04, d15, 1, 9, 3, 11, 5, 13, 7, 15);  // y0 y1 .. .. y4 y5 .. ..
+    // After the transposes, low01 holds x0 x1 z0 z1 x4 x5 z4 z5 and high01 holds y0 y1 .. .. y4 y5 .. .. (digits are
+    // lanes).
+    const Real8 low01 = __builtin_shufflevector(d04, d15, 0, 8, 2, 10, 4, 12, 6, 14);
+    const Real8 high01 = __builtin_shufflevector(d04, d15, 1, 9, 3, 11, 5, 13, 7, 15);
     const Real8 low23 = __builtin_shufflevector(d26, d37, 0, 8, 2, 10, 4, 12, 6, 14);
     const Real8 high23 = __builtin_shufflevector(d26, d37, 1, 9, 3, 11, 5, 13, 7, 15);
     return {__builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13),
@@ -71,7 +75,7 @@ template <class Positions>
 }
 #else
 struct Corner {
-    Real4 lane[4];  // x, y, z, next node's x
+    Real4 lane[4];  // x, y, z of a node, then x of the next node
 };
 
 template <class Positions>
@@ -81,7 +85,7 @@ template <class Positions>
              load_position(position + of[3])}};
 }
 
-/// load_corner for a block that contains the last node, whose position no number follows.
+/// Variant of load_corner for a block that contains the last node, whose position is the end of the array.
 [[gnu::noinline]] inline Corner load_corner_near_end(const NodeLane& node, std::size_t part, const Vec3* position) {
     const auto at = [&](std::size_t l) {
         const Vec3& p = position[node[4 * part + l]];
@@ -90,12 +94,13 @@ template <class Positions>
     return {{at(0), at(1), at(2), at(3)}};
 }
 
-/// Corner minus corner 0, lanes side by side.
+/// Position of a corner minus the position of corner 0. Each component holds all lanes.
 [[gnu::always_inline]] inline LaneVec3<Real4> edge(const Corner& corner, const Corner& corner0) {
     const Real4 d0 = corner.lane[0] - corner0.lane[0], d1 = corner.lane[1] - corner0.lane[1];
     const Real4 d2 = corner.lane[2] - corner0.lane[2], d3 = corner.lane[3] - corner0.lane[3];
-    const Real4 low01 = __builtin_shufflevector(d0, d1, 0, 4, 2, 6);   // x0 x1 z0 z1
-    const Real4 high01 = __builtin_shufflevector(d0, d1, 1, 5, 3, 7);  // y0 y1 .. ..
+    // After the transposes, low01 holds x0 x1 z0 z1 and high01 holds y0 y1 .. .. (digits are lanes).
+    const Real4 low01 = __builtin_shufflevector(d0, d1, 0, 4, 2, 6);
+    const Real4 high01 = __builtin_shufflevector(d0, d1, 1, 5, 3, 7);
     const Real4 low23 = __builtin_shufflevector(d2, d3, 0, 4, 2, 6);
     const Real4 high23 = __builtin_shufflevector(d2, d3, 1, 5, 3, 7);
     return {__builtin_shufflevector(low01, low23, 0, 1, 4, 5), __builtin_shufflevector(high01, high23, 0, 1, 4, 5),
@@ -103,7 +108,7 @@ template <class Positions>
 }
 #endif
 
-/// Joins the parts that the kernel takes at once to all lanes of a block.
+/// Joins the register-wide parts of a block, which a kernel computes one by one, to all lanes of the block.
 template <class Part>
 [[gnu::always_inline]] inline LaneMat3<Real8> joined(Part&& part_of_block) {
     if constexpr (kernel_parts == 1) {
@@ -122,8 +127,8 @@ template <class Part>
     }
 }
 
-/// True if no node is the last one, so that a number follows the position of each. Lanes are compared side by side: to
-/// find the highest node first would take a quarter of the time of a block.
+/// True if no node of the block is the last of `position`, so that a number follows every position. Lanes are compared
+/// side by side: finding the highest node first would take a quarter of the time of a block.
 [[gnu::always_inline]] inline bool clear_of_end(const NodeLane* node, Index count, std::span<const Vec3> position) {
     typedef Index Index8 __attribute__((vector_size(sizeof(NodeLane)), may_alias));
     typedef std::int64_t Bits __attribute__((vector_size(sizeof(NodeLane))));
@@ -134,7 +139,7 @@ template <class Part>
     return (two[0] | two[1]) == 0;
 }
 
-/// The columns of Ds: corners 1 to 3 minus corner 0.
+/// Edge vectors of the elements in one register-wide part of a block, as columns: corners 1 to 3 minus corner 0.
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> edges_of_part(const NodeLane* node, std::size_t part,
                                                                  Positions position, Load&& load_nodes) {
@@ -143,7 +148,7 @@ template <class Positions, class Load>
             edge(load_nodes(node[3], part, position), corner0)};
 }
 
-/// Edges of all lanes of a block of tetrahedra, as columns: corners 1 to 3 minus corner 0.
+/// Edge vectors of all tetrahedra of a block, as columns: corners 1 to 3 minus corner 0.
 inline LaneMat3<Real8> edges(const TetrahedronNodes& node, std::span<const Vec3> position) {
     const bool clear = clear_of_end(node.data(), 4, position);
     return joined([&](std::size_t part) {
@@ -161,7 +166,8 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
     return load_gradient<Real8>(gradient, 0);
 }
 
-/// sum_k (x_k - x_0) (x) g_k of four nodes; the columns of d are the edges from node 0.
+/// F = sum_k (x_k - x_0) (x) g_k of elements with four nodes. The columns of `d` are the edge vectors x_k - x_0, and
+/// g_k are the gradients at rest.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_edges(const BlockNodes& block, std::size_t part,
                                                                      const LaneMat3<KernelReal>& d) {
     const auto gradient = [&](Index k) { return load_gradient<KernelReal>(block.gradient[k], part); };
@@ -170,7 +176,8 @@ inline LaneVec3<Real8> load_gradient(const ElementGradient& gradient) {
             g1.z * d.c0 + g2.z * d.c1 + g3.z * d.c2};
 }
 
-/// sum_k (x_k - x_0) (x) g_k of a part of a block with any number of nodes.
+/// F = sum_k (x_k - x_0) (x) g_k of the elements in one register-wide part of a block, with any number of nodes. x_k
+/// are the node positions, g_k the gradients at rest.
 template <class Positions, class Load>
 [[gnu::always_inline]] inline LaneMat3<KernelReal> gradient_of_part(const BlockNodes& block, std::size_t part,
                                                                     Positions position, Load&& load_nodes) {
@@ -186,29 +193,31 @@ template <class Positions, class Load>
     return F;
 }
 
-/// F = sum_k (x_k - x_0) (x) g_k of a part of a block. If `position` holds velocities: the rate of F.
+/// Deformation gradient F of the elements in one register-wide part of a block. If `position` holds velocities, the
+/// result is the rate of F.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         std::span<const Vec3> position) {
     if (clear_of_end(block.node, block.count, position)) [[likely]]
         return gradient_of_part(block, part, position.data(), load_corner<const Vec3*>);
     return gradient_of_part(block, part, position.data(), load_corner_near_end);
 }
-/// F of a part of a block from the positions of a patch, which are padded.
+/// Deformation gradient F of the elements in one register-wide part of a block, from the padded node positions of a
+/// patch.
 [[gnu::always_inline]] inline LaneMat3<KernelReal> deformation_gradient(const BlockNodes& block, std::size_t part,
                                                                         PatchRows<const Real> position) {
     return gradient_of_part(block, part, position, load_corner<PatchRows<const Real>>);
 }
 
-/// F of all lanes of a block. If `position` holds velocities: the rate of F.
+/// Deformation gradient F of all elements of a block. If `position` holds velocities, the result is the rate of F.
 inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<const Vec3> position) {
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// One value for each part of a block.
+/// One value for each register-wide part of a block.
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
-/// Copies number by number. A rare call gets the copy, so that the original need not be in memory.
+/// Copies matrices number by number. A rare call gets the copy, so that the original need not be in memory.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
@@ -219,7 +228,7 @@ template <class T>
     return copy;
 }
 
-/// Sum over the lanes of a block. Its order does not depend on the number of lanes that are computed at once.
+/// Sum over the lanes of a block. The order of the sum does not depend on the register width.
 [[gnu::always_inline]] inline Real sum_of_parts(const std::array<Real4, 2>& lanes) {
     const Real4 half = lanes[0] + lanes[1];
     return (half[0] + half[1]) + (half[2] + half[3]);
@@ -229,15 +238,16 @@ template <class T>
     return sum_of_parts({__builtin_shufflevector(all, all, 0, 1, 2, 3), __builtin_shufflevector(all, all, 4, 5, 6, 7)});
 }
 
-/// Force Q g_k on node k.
+/// Force Q g_k on node k, where Q is the stress times minus the volume.
 [[gnu::always_inline]] inline LaneVec3<KernelReal> force_on_node(const LaneMat3<KernelReal>& Q, const BlockNodes& block,
                                                                  Index k, std::size_t part) {
     const LaneVec3<KernelReal> g = load_gradient<KernelReal>(block.gradient[k], part);
     return g.x * Q.c0 + g.y * Q.c1 + g.z * Q.c2;
 }
 
-/// Calls take(k, part, f_k) for f_k = Q g_k, Q = -V P, and f_0 = -(f_1 + f_2 + ...), lanes side by side. All parts of a
-/// node come before the next node, so that the order of sums does not depend on the width of a part.
+/// Calls take(k, part, f_k) with the forces on all nodes: f_k = Q g_k with Q = -V P, and f_0 = -(f_1 + f_2 + ...). V is
+/// the rest volume, P the stress, g_k the gradient at rest. All parts of one node come before the next node, so that
+/// the order of sums does not depend on the register width.
 template <class Take>
 [[gnu::always_inline]] inline void for_each_force(const Parts<LaneMat3<KernelReal>>& Q, const BlockNodes& block,
                                                   Take&& take) {
@@ -264,12 +274,12 @@ template <class Take>
         take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
 
-/// Adds f of lane l to force[slot[l]], one lane after the other: two may have the same node.
+/// Adds the force f of lane l to force[slot[l]], one lane after the other, because two lanes may have the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     const Real4 zero{};
-    const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // x0 y0 x2 y2
+    const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // digits are lanes: x0 y0 x2 y2
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // z0 0 z2 0
+    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // digits are lanes: z0 0 z2 0
     const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
     const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));

@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) holds. The extraction of a
-/// frame starts from the same lane of the block before, asked for or not, since neighbours rotate alike. Laws without a
-/// frame do not use it.
+/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) holds. The search for a
+/// corotational frame starts from the frame of the same lane of the block before, since neighbours rotate alike. The
+/// search therefore also runs for skipped blocks. Laws without a frame do not use it.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
                        Visit&& visit) {
@@ -40,10 +40,11 @@ void for_each_block(const ElementInputs& elements, Range blocks, std::span<const
         elements, blocks, position, [](std::size_t) { return true; }, visit);
 }
 
-/// Cauchy stress of the elements of a block.
+/// Writes the Cauchy stress of each element of a block [Pa]; zero in lanes without volume.
 void put_cauchy_stress(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P,
                        std::span<Mat3> stress) {
-    constexpr Real least_volume_ratio = 1e-6;  // below it the Cauchy stress has no meaning; the cap keeps it finite
+    // below this ratio the Cauchy stress has no meaning; the limit keeps it finite
+    constexpr Real least_volume_ratio = 1e-6;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Mat3 f = lane_of(F, static_cast<int>(l));
         const Real ratio = std::max(std::abs(f.col(0).dot(f.col(1).cross(f.col(2)))), least_volume_ratio);

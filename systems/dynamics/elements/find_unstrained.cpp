@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t bodies_per_job = 16;
 bool move_alike(std::span<const Vec3> velocity) {
     const Vec3& first = velocity.front();
-    // the last node is compared first: it is far from the first one, so that rotation and vibration show at once
+    // The last node is compared first: it is far from the first node, so that rotation and vibration show at once.
     if (velocity.back() != first) return false;
-    constexpr std::size_t at_once = 64;  // compared without a branch for each
+    constexpr std::size_t at_once = 64;  // number of velocities compared without a branch for each
     const Real x = first[0], y = first[1], z = first[2];
     for (std::size_t begin = 0; begin < velocity.size(); begin += at_once) {
         const Real* const v = velocity[begin].data();
@@ -38,7 +38,7 @@ bool is_zero(const ElementStrain& strain) {
     });
 }
 
-/// True if no element of a block is strained. Lanes without volume do not count; NaN counts as strained.
+/// True if no element of a block is strained or rotated. Lanes without volume do not count. NaN counts as strained.
 bool is_unstrained(const LaneMat3<Real8>& F, const ElementLane& volume) {
     const Real8 strain[9] = {F.c0.x - 1.0, F.c0.y, F.c0.z, F.c1.x, F.c1.y - 1.0, F.c1.z, F.c2.x, F.c2.y, F.c2.z - 1.0};
     for (std::size_t l = 0; l < element_lanes; ++l)

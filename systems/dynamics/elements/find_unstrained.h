@@ -1,4 +1,4 @@
-// Finds bodies in pure translation, whose elements can be left out (docs/methods/skipping.md 1.1).
+// Finds bodies in pure translation, whose elements can be left out of a step (docs/methods/skipping.md 1.1).
 #pragma once
 
 #include <span>
@@ -12,12 +12,13 @@
 
 namespace skerry {
 
-/// An element is strained or rotated if an entry of F differs from that of the unit matrix by more than this. It is
-/// some hundred times the rounding error of elements of a centimetre at a metre from the origin.
+/// Tolerance for the entries of F. An element counts as strained or rotated if an entry of F differs by more from the
+/// unit matrix. The tolerance is about a hundred times the rounding error of F for elements of 1 cm at 1 m from the
+/// origin.
 inline constexpr Real unstrained_within = 1e-11;
 
-/// Steps until an unstrained body is checked again. In as many steps rounding moves a node by at most as many half
-/// units in the last place of its position.
+/// Number of steps until the strains of an unstrained body are checked again. In n steps rounding moves a node by at
+/// most n half units in the last place of its position.
 inline constexpr std::uint16_t unstrained_steps = 1024;
 
 struct UnstrainedInputs {
@@ -51,10 +52,11 @@ struct UnstrainedOutputs {
     }
 };
 
-/// A body is unstrained if all its nodes have bitwise the same velocity and none of its elements is strained or has a
-/// viscous strain. It stays unstrained while the velocities are equal; strains are checked again every unstrained_steps
-/// steps. Its elements keep their memory for the next step. Code that moves nodes other than by their velocities has to
-/// set `unstrained` to 0. Returns the number of unstrained bodies. Parallel over bodies.
+/// Finds the awake bodies that are unstrained. All nodes of an unstrained body have bitwise the same velocity, and none
+/// of its elements is strained, rotated or has a viscous strain. A body stays unstrained while its velocities are
+/// equal; its strains are checked again every unstrained_steps steps. Its elements keep their rotation and viscous
+/// strain for the next step. Code that moves nodes other than by their velocities must set `unstrained` to 0. Returns
+/// the number of unstrained bodies. Parallel over bodies.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry

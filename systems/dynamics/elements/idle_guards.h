@@ -1,4 +1,4 @@
-// Finds guards that do not act (docs/methods/elasticity.md 7.7).
+// Finds inversion barriers (guards) that do not act (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// True for the blocks of a patch of guards if none of them acts. Guards that act have a viscous time.
+/// True if the blocks `begin` to `end` of a patch are inversion barriers (guards) and none of them acts. Barriers that
+/// act have a positive viscous time.
 inline bool is_idle(const ElementInputs& elements, std::size_t begin, std::size_t end) {
     return elements.part[begin] == ElementPart::guard && !elements.viscous_time.empty() &&
            std::ranges::all_of(elements.viscous_time.subspan(begin, end - begin), [](Real time) { return time == 0; });

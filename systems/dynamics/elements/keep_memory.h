@@ -1,4 +1,4 @@
-// Memory of the elements after a committed step in which some bodies were asleep.
+// Updates the memory of the elements (rotation, viscous strain) after a committed step with sleeping bodies.
 #pragma once
 
 #include <span>
@@ -7,8 +7,9 @@
 
 namespace skerry {
 
-/// Sets rotation and viscous_strain to those of the step, and viscous_strain_next to the one before the step, for
-/// blocks that were not left out and whose law or losses use them. Other blocks stay as they are. Parallel over blocks.
+/// Sets `rotation` and `viscous_strain` to their values after the step, and viscous_strain_next to the value before the
+/// step. Changes only the columns that the material of a block uses. Blocks that were left out of the step stay
+/// unchanged. Parallel over blocks.
 void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlockTable& table);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// A cheap bound on the present stiffness of elements, for implicit elements, which have an assumed stiffness
+// Cheap bound on the present stiffness of elements, for comparison with the assumed stiffness of implicit elements
 // (docs/methods/clusters.md 3).
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Upper bound of the stiffness bound of the law in each lane; 0 if the stiffness of the law is constant [Pa].
+/// Cheap upper bound on the stiffness of a material law in each lane; 0 if the stiffness of the law is constant [Pa].
 /// `square`: |F|^2, `J`: det F.
 template <class T>
 [[gnu::always_inline]] inline T quick_stiffness(const MaterialConstants& material, const T& square, const T& J) {

@@ -1,4 +1,5 @@
-// Stress and strain of tetrahedra and of nodes, from those of the elements (docs/methods/elasticity.md 7.5).
+// Computes stress and strain of tetrahedra and of nodes from the values of the elements (docs/methods/elasticity.md
+// 7.5).
 #pragma once
 
 #include <array>
@@ -11,32 +12,38 @@
 
 namespace skerry {
 
-/// The elements of a body by place: lane by lane of its blocks in ElementInputs, unused lanes included.
+/// Tetrahedra that the elements of a body cover, lane by lane of the body's blocks, including unused lanes. Tetrahedra
+/// are numbered within the body.
 struct ElementCover {
     std::span<const ElementPart> part;  // of each block
-    RaggedView<Index> tetrahedra;       // covered by the element at each place; numbered within the body
+    RaggedView<Index> tetrahedra;       // tetrahedra that the element of each lane covers
 };
 
-/// The tetrahedra around some nodes of a body and the elements that cover these: the sources of fields at the nodes.
+/// Tetrahedra around some nodes of a body, and the elements that cover these tetrahedra. Fields at the nodes are
+/// computed from these elements.
 struct ElementsAround {
-    std::vector<Index> block;                   // blocks of these elements, counted within the body, ascending
+    std::vector<Index> block;                   // blocks of the elements, counted within the body, ascending
     std::vector<ElementPart> part;              // of each block
-    Ragged<Index> covered;                      // by the element at each place of the blocks: places in `tetrahedron`
-    std::vector<Index> tetrahedron;             // numbered within the body, ascending
-    std::vector<std::array<Index, 4>> corners;  // by tetrahedron: places in `nodes`, or its length
+    Ragged<Index> covered;                      // tetrahedra that each lane covers: indices into `tetrahedron`
+    std::vector<Index> tetrahedron;             // tetrahedra around the nodes, numbered within the body, ascending
+    std::vector<std::array<Index, 4>> corners;  // index of each corner in `nodes`; nodes.size() if absent
 };
 
-/// Finds the tetrahedra and elements around `nodes`, which must be distinct. `tetrahedra`: all of the body.
+/// Finds the tetrahedra around `nodes`, which must be distinct, and the elements that cover these tetrahedra.
+/// `tetrahedra`: all tetrahedra of the body.
 ElementsAround elements_around(const ElementCover& cover, std::span<const std::array<Index, 4>> tetrahedra,
                                std::span<const Index> nodes, std::size_t node_count);
 
-/// Stress by tetrahedron: for each part of the stress the mean of the elements that cover it, summed over the parts.
+/// Stress of each tetrahedron: the mean over the elements that cover it, for each part of the stress, summed over the
+/// parts [Pa].
 std::vector<Mat3> stress_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 
-/// Strain by tetrahedron: the mean of the elements that cover it, except those that carry the volumetric part only.
+/// Strain of each tetrahedron: the mean over the elements that cover it. Elements with only the volumetric part of the
+/// stress do not count.
 std::vector<Mat3> strain_of_tetrahedra(const ElementCover& cover, std::span<const Mat3> of_elements, std::size_t count);
 
-/// Field by node: the mean of the tetrahedra around it, weighted with their volume at rest [m^3].
+/// Field at each node: the mean over the tetrahedra around the node, weighted with the rest volumes of the tetrahedra
+/// [m^3].
 std::vector<Mat3> means_of_nodes(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> volume,
                                  std::span<const Mat3> of_tetrahedra, std::size_t node_count);
 

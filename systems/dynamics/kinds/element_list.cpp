@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Appends elements; their tetrahedron t becomes tetrahedra[t].
+/// Appends elements to another list. Tetrahedron t of the appended elements becomes tetrahedra[t].
 void append(const ElementList& from, std::span<const Index> tetrahedra, ElementList& to) {
     const auto append_all = [](const auto& more, auto& column) {
         column.insert(column.end(), more.begin(), more.end());
@@ -66,7 +66,7 @@ ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zone
 
 void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list) {
     if (std::ranges::all_of(zones, [](const MaterialZone& zone) { return zone.kind == ElementKind::linear; })) return;
-    Real whole = 0;  // six times the volume, like the values that are compared with it
+    Real whole = 0;  // six times the volume of the mesh, for comparison with six_volumes() [m^3]
     for (const auto& tetrahedron : mesh.tetrahedra) whole += six_volumes(tetrahedron, mesh.position);
     const Real bound = guarded_volume * whole / static_cast<Real>(mesh.tetrahedra.size());
     const std::vector<std::uint8_t> sliver = sliver_tetrahedra(mesh);

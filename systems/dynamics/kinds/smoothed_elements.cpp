@@ -1,4 +1,6 @@
-// Elements over several tetrahedra: W = sum_e w V_e, g_k = sum_e (w V_e / W) g_ek (docs/methods/elasticity.md 7).
+// Elements that average F over several tetrahedra. Each tetrahedron e gives a fraction w of its volume V_e to the
+// element. The element then has the volume W = sum_e w V_e, and its node k has the gradient g_k = sum_e (w V_e / W)
+// g_ek (docs/methods/elasticity.md 7).
 #include <algorithm>
 #include <unordered_map>
 
@@ -8,9 +10,9 @@ namespace skerry {
 
 namespace {
 
-using Group = std::vector<Index>;  // the tetrahedra of one element
+using Group = std::vector<Index>;  // tetrahedra that one element covers
 
-/// Gradients by node of an element under construction.
+/// Nodes and gradients of an element under construction.
 struct Gradients {
     std::vector<Index> node;
     std::vector<Vec3> gradient;
@@ -25,8 +27,9 @@ struct Gradients {
         }
     }
 
-    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding leaves 1e-16 of
-    /// them, which moves nothing but would count in the bound on the step, however small it is.
+    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding leaves a remainder
+    /// of about 1e-16 of a gradient. The remainder moves nothing, but would count in the bound on the step, however
+    /// small it is.
     void drop_nothings() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;
@@ -58,7 +61,7 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
                 element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
         element.drop_nothings();
-        // bitwise the gradient of node 0 that the kernel uses
+        // The gradient of node 0 is computed bitwise as in the kernel.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
         element.gradient.front() = -others;
@@ -75,7 +78,7 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
 }  // namespace
 
 void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list) {
-    // edges in the order of their first tetrahedra, so that neighbours stay close
+    // Edges are ordered by their first tetrahedra, so that neighbouring edges stay close in memory.
     std::vector<Group> groups;
     std::unordered_map<std::uint64_t, std::size_t> group_of;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

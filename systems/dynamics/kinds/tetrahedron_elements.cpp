@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Columns: corners 1 to 3 minus corner 0.
+/// Edge vectors of a tetrahedron at rest, as columns: corners 1 to 3 minus corner 0.
 Mat3 rest_edges(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> position) {
     const auto at = [&](std::size_t a) -> const Vec3& { return position[static_cast<std::size_t>(tetrahedron[a])]; };
     Mat3 Dm;
@@ -24,7 +24,8 @@ Real six_volumes(const std::array<Index, 4>& tetrahedron, std::span<const Vec3> 
 
 std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh) {
     std::vector<Real> six_volume;
-    std::vector<Real> mean(mesh.position.size()), around(mesh.position.size());  // of the tetrahedra around each node
+    // Six times the mean volume of the tetrahedra around each node, and the number of these tetrahedra.
+    std::vector<Real> mean(mesh.position.size()), around(mesh.position.size());
     for (const auto& tetrahedron : mesh.tetrahedra) {
         six_volume.push_back(six_volumes(tetrahedron, mesh.position));
         for (const Index n : tetrahedron) {

@@ -1,6 +1,8 @@
-// The eigenvalues of M^-1/2 K M^-1/2 that are not zero are those of the 9x9 matrix A(Y) = V H(Y L^T) L with L L^T = Q
-// and Y a 3x3 matrix. H, or an upper bound on it, is a sum of few terms that become blocks of A in closed form, and
-// lambda_max(A) <= (tr A^16)^(1/16). It is cheaper to test for some c: lambda_max(A) < c if c - A is positive definite.
+// Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K. The nonzero
+// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and
+// L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term becomes a
+// closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). To test for a given c is cheaper:
+// lambda_max(A) < c if c - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -12,13 +14,15 @@ namespace skerry {
 
 namespace {
 
-/// Symmetric 9x9 matrix without its entries above the diagonal. Row 3 p + i is component i of column p of Y.
+/// Symmetric 9x9 matrix without the entries above the diagonal. It acts on 3x3 matrices Y: row 3 p + i belongs to
+/// component i of column p of Y.
 template <class T>
 struct Matrix9 {
     T a[9][9];
 };
 
-/// Part `part` of the lanes, as many as a register holds. 9x9 matrices of more lanes would go through memory twice.
+/// Selects the part `part` of the lanes, as many as a register holds. 9x9 matrices of more lanes would go through
+/// memory twice.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
     store(x, all);
@@ -35,8 +39,8 @@ LaneSymmetric<KernelReal> lanes_in(const LaneSymmetric<Real8>& s, std::size_t pa
             lanes_in(s.xy, part), lanes_in(s.yz, part), lanes_in(s.zx, part)};
 }
 
-/// Lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive one, which only enlarges
-/// Q.
+/// Cholesky factor of Q: lower triangular L with L L^T = Q. A pivot lost to rounding is raised to a small positive
+/// number, which only enlarges Q.
 template <class T>
 LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
     const T least = 1e-14 * (Q.c0.x + Q.c1.y + Q.c2.z) + 1e-300;
@@ -51,13 +55,14 @@ LaneMat3<T> cholesky(const LaneMat3<T>& Q) {
     return L;
 }
 
-/// A(Y) = H(Y L^T) L, summed up term by term as a law adds them.
+/// Builds the 9x9 matrix A(Y) = H(Y L^T) L from the terms that a material law adds to H = dP/dF. Y is a 3x3 matrix, and
+/// L L^T is the tensor of inverse masses.
 template <class T>
 class StiffnessTerms {
 public:
     StiffnessTerms(const LaneMat3<T>& L, Matrix9<T>& A) : L_(L), A_(A) { A_ = {}; }
 
-    /// H += s identity: s (L^T L)_pq I.
+    /// Adds s times the identity to H. Block (p, q) of A grows by s (L^T L)_pq I.
     void add_identity(const T& s) {
         const LaneVec3<T> c[3] = {L_.c0, L_.c1, L_.c2};
         for (int p = 0; p < 3; ++p) {
@@ -68,7 +73,7 @@ public:
         }
     }
 
-    /// H += s X X^T, X a matrix as a vector of nine: the dyad of X L.
+    /// Adds s times the dyad X X^T to H, with the matrix X as a vector of nine. A grows by s times the dyad of X L.
     template <class Matrix>
     void add_dyad(const T& s, const Matrix& X) {
         const LaneMat3<T> XL = multiply(X, L_);
@@ -77,7 +82,7 @@ public:
             for (int c = 0; c <= r; ++c) A_.a[r][c] += s * x[r] * x[c];
     }
 
-    /// H += s (X -> R X^T R): the block (p, q) is the dyad of columns q and p of R L.
+    /// Adds the map X -> s R X^T R to H. Block (p, q) of A grows by s times the dyad of columns q and p of R L.
     template <class Matrix>
     void add_turned_transpose(const T& s, const Matrix& R) {
         const LaneMat3<T> RL = multiply(R, L_);
@@ -88,7 +93,8 @@ public:
                     for (int k = 0; k < (p == q ? i + 1 : 3); ++k) A_.a[3 * p + i][3 * q + k] += s * x[q][i] * x[p][k];
     }
 
-    /// H += s d(cof F)/dF: the block (p, q) is -[F cof(L)_m]x for (p, q, m) cyclic and plus that for (q, p, m).
+    /// Adds s d(cof F)/dF to H. Let e_m be column m of F cof(L), and [e]x the matrix of the cross product with e. Block
+    /// (p, q) of A changes by -s [e_m]x for (p, q, m) cyclic, and by s [e_m]x for (q, p, m) cyclic.
     void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {
         const LaneMat3<T> E = multiply(F, cofactor(L_));
         const LaneVec3<T> e[3] = {E.c0, E.c1, E.c2};
@@ -111,8 +117,9 @@ private:
     Matrix9<T>& A_;
 };
 
-/// H of the viscous parts, whose stress is F S: X -> F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and
-/// S are replaced by bounds of their eigenvalues; that of F F^T is the mean of F^T F plus twice its spread.
+/// Adds H = dP/dF of the viscous parts, whose stress is P = F S. This H maps X to F (2 mu sym(F^T X) + (lambda + bulk)
+/// tr(F^T X) I) + X S. F F^T and S are replaced by upper bounds on their eigenvalues. The bound for F F^T is the mean
+/// eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is the deviator of F^T F.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -129,8 +136,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// A = D A D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, s = R L as a vector of nine. The result is A in units of a mass
-/// with b (R:X)^2 in addition to |Y|^2. (R:X = R L : Y with X = Y L^T.)
+/// Adds the mass b (R:X)^2 of an element, where X = Y L^T is the displacement gradient. A becomes D A D with
+/// D = (1 + b s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine. The mass of Y was |Y|^2 before, and
+/// R:X = (R L):Y.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
@@ -149,13 +157,13 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// For each lane of this part: true if the eigenvalues of volume A are below `limit`. That is so if limit - volume A
-/// has a Cholesky decomposition L D L^T with D > 0, by more than rounding. Ends early if no lane is below.
+/// For each lane of this part: true if all eigenvalues of volume * A are below `limit`. The test is whether limit -
+/// volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding. It ends early if no lane passes.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
     auto below = limit > 0.0;
-    T m[9][9];     // L D below the diagonal
+    T m[9][9];     // entries of L D below the diagonal
     T inverse[9];  // of D
     for (int c = 0; c < 9; ++c) {
         T scaled[9];  // row c of L
@@ -176,7 +184,8 @@ auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     return below;
 }
 
-/// (tr A^16)^(1/16), after scaling by the norm so that nothing overflows. Fills the entries above the diagonal.
+/// Upper bound (tr A^16)^(1/16) on the largest eigenvalue of A. Scaling by the norm of A prevents overflow. A is
+/// overwritten.
 template <class T>
 T largest_eigenvalue_bound(Matrix9<T>& A) {
     for (int r = 0; r < 9; ++r)
@@ -215,8 +224,9 @@ LaneMat3<KernelReal> everywhere(const Mat3& m) {
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
-/// Upper bounds on the largest eigenvalues of volume A, by bisection between `low` and `high`; close to `low` for
-/// eigenvalues below it. Every lane is bisected by itself: the width of a part changes no bit.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high`. The bound
+/// is close to `low` for an eigenvalue below `low`. Every lane is bisected by itself, so that the register width
+/// changes no bit.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
         for (int i = 0; i < halvings; ++i) {
@@ -228,8 +238,8 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalues of volume A, where some are above `enough`, probably not by much. The
-/// greatest of the bounds is at most 0.3 % too large.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that some lanes are above `enough`,
+/// probably by little. The greatest of these bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -253,8 +263,8 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
     return bisected(A, volume, least, most, 6);
 }
 
-/// For each lane the least of enough, 1.1 enough, 1.21 enough... that all eigenvalues of volume A are below; infinity
-/// if none is.
+/// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits enough, 1.1 enough, 1.21
+/// enough ... that is above the eigenvalue. The bound is infinite if no limit is.
 BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     constexpr Real growth = 1.1;
     constexpr int steps = 25;
@@ -291,7 +301,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
             if (frame) count_in(everywhere(frame->rotation), lanes_in(frame->b, part), L, A[part]);
         }
     });
-    // All lanes of the block are tested together, so that the number of parts changes no bit.
+    // All lanes of the block are tested together, so that the register width changes no bit.
     bool below = enough > 0;
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
         below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + enough));

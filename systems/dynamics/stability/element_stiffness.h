@@ -1,5 +1,5 @@
-// Rigorous bound on the highest frequency of one element in its present shape, element_lanes elements side by side
-// (docs/methods/stable_step.md 3, 4).
+// Rigorous bound on the highest frequency of each element of a block in its present shape (docs/methods/stable_step.md
+// 3, 4).
 #pragma once
 
 #include "components/material_table.h"
@@ -9,29 +9,34 @@
 
 namespace skerry {
 
-/// Viscous stiffness of an element in addition to its law; moduli of zero: none.
+/// Viscous stiffness of an element in addition to the stiffness of its law. Zero moduli mean no viscous stiffness.
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // parts of the moduli that count
+    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // fractions of the moduli that count
 };
 
-/// Mass b (R:X)^2 of an element, with the gradient X of displacements, in addition to that of Q (frame_masses.h).
+/// Mass b (R:X)^2 of an element in addition to its other mass (frame_masses.h). R is `rotation`, X the gradient of
+/// displacements.
 struct FramePart {
     Mat3 rotation = Mat3::Identity();
     Real8 b{};  // [kg m^2]
 };
 
-/// Upper bound on lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]. K = V G^T H G with the rest gradients G and H =
-/// dP/dF at F; M are the corners' shares of mass; `Q` = sum over the corners of g_a g_a^T / m_a. With `frame` elements
-/// have that mass, too. `q` is the start of the frame of an element whose law has one, and is left at the frame found.
-/// Lanes without volume get 0. If all eight lanes are below `enough` [1/s^2] they get `enough`, in a tenth of the time.
+/// Accuracy of frequency_squared_bound().
 enum class Sharpness {
-    trace,     // at most 15 % too large
-    bisected,  // at most 0.3 % too large, in twice the time
-    compared,  // infinity unless all eight lanes are below `enough`
-    stepped    // at most 10 % too large, in steps of 10 % from `enough` on; infinity beyond ten times `enough`
+    trace,     // bound is at most 15 % too large
+    bisected,  // bound is at most 0.3 % too large; takes twice the time
+    compared,  // bound is infinite unless all eight lanes are below `enough`
+    // The bound is one of `enough`, 1.1 `enough`, 1.21 `enough` ... and at most 10 % too large. It is infinite beyond
+    // ten times `enough`.
+    stepped
 };
+/// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]. The stiffness is K
+/// = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M holds the mass shares m_a of the corners a,
+/// and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the elements have that additional mass. `q` is
+/// the initial guess of the corotational frame of a law that has one, and receives the frame found. Lanes without
+/// volume get 0. If all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,
                               Sharpness sharpness = Sharpness::trace, const FramePart* frame = nullptr);

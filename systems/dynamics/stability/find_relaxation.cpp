@@ -22,16 +22,17 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
     for (std::size_t n = 0; n < position.size(); ++n)
         moment += mass[n] * (position[n] - center) * (position[n] - center).transpose();
     const Vec3 squares = Eigen::SelfAdjointEigenSolver<Mat3>(moment / total, Eigen::EigenvaluesOnly).eigenvalues();
-    // A box of length L has the radius of gyration L / sqrt(12).
+    // A box of length L has the radius of gyration L / sqrt(12) along its length.
     const Real length = std::sqrt(12 * squares[2]), thickness = std::sqrt(12 * std::max(squares[0], Real{0}));
-    // Lowest frequencies: 22.4 / L^2 sqrt(E I / (rho A)) of a free beam; 3 c / L, about, of a ball or a cube.
+    // Lowest angular frequencies: 22.4 / L^2 sqrt(E I / (rho A)) of a free beam of length L, and about 3 c / L of a
+    // ball or a cube of size L, where c = sqrt(E / rho) is the speed of sound.
     constexpr Real of_beam = 22.4 / 3.4641016151377544, of_ball = 3;
     return std::min(of_beam * thickness / length, of_ball) * speed / length;
 }
 
 namespace {
 
-/// Edge of a cube with the mean volume of the elements [m].
+/// Mean size of the elements: edge of a cube with the mean volume of the elements [m].
 Real mean_size(std::span<const ElementLane> volume) {
     Real sum = 0, count = 0;
     for (const ElementLane& lanes : volume)
@@ -48,15 +49,16 @@ Vec3 middle_of(const BlockNodes& nodes, std::size_t lane, std::span<const Vec3> 
     Vec3 sum = position[static_cast<std::size_t>(anchor)];
     Real count = 1;
     for (Index k = 1; k < nodes.count; ++k) {
-        if (nodes.node[k][lane] == anchor) continue;  // padding: the element has fewer nodes
+        if (nodes.node[k][lane] == anchor) continue;  // padding, since the element has fewer nodes
         sum += position[static_cast<std::size_t>(nodes.node[k][lane])];
         ++count;
     }
     return sum / count;
 }
 
-/// Number from 0 to 1 for every place. The fractional parts of multiples of these three fill an interval evenly, along
-/// a row of elements as well as in a cloud of them (the roots of x^4 = x + 1, Roberts 2018).
+/// Maps a place, in units of the element size, to a number from 0 to 1. The fractional parts of multiples of these
+/// three constants fill an interval evenly, along a row of elements as well as in a cloud of elements. The constants
+/// are inverse powers of the root of x^4 = x + 1 (Roberts 2018).
 Real share_of_place(const Vec3& place) {
     const Real sum = 0.8191725133961645 * place.x() + 0.6710436067037893 * place.y() + 0.5497004779019703 * place.z();
     return sum + 0.38196601125 - std::floor(sum + 0.38196601125);

@@ -1,6 +1,8 @@
-// H = 2 mu 1 + lambda 1 1^T is an upper bound on the law at rest, where rotations have no stiffness. The highest modes
-// of a mesh rotate little: its highest frequency is within some per cent that of the body. Masses in proportion to this
-// stiffness, 1/c of it, add up to no more than those of the nodes if c is above the highest eigenvalue of the whole.
+// H = 2 mu 1 + lambda 1 1^T is an upper bound on dP/dF of the material law at rest. This bound gives stiffness to
+// rotations, the law does not. Since the highest modes of a mesh rotate little, the highest frequency with H is within
+// some per cent of the highest frequency of the body. Each element takes the mass K_e / c, where K_e is its stiffness
+// with H. These masses add up to no more than the masses of the nodes if c is above the highest eigenvalue of the whole
+// body.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -20,14 +22,16 @@ namespace skerry {
 
 namespace {
 
-constexpr Real longer_in_frame = 2;  // ratio of the step to that by bounds of single elements
+// Estimated ratio of the step with frame masses to the step that bounds of single elements allow.
+constexpr Real longer_in_frame = 2;
 
-// Plain sums: the bits do not depend on how a library vectorises them.
+// The sum is written out, so that the bits do not depend on how a library vectorises it.
 Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Stiffness M^-1/2 K M^-1/2 of a body at rest with H = 2 mu 1 + lambda 1 1^T, in coordinates 3 n + i of its nodes n.
+/// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M and the stiffness K for H = 2 mu 1 + lambda 1 1^T. Row 3 n
+/// + i belongs to component i of node n, where nodes are numbered along the body.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -49,13 +53,13 @@ public:
         }
     }
 
-    /// Multiplications of a decomposition.
+    /// Number of multiplications in a Cholesky decomposition of the matrix.
     Real products() const {
         const auto size = static_cast<Real>(3 * nodes_), width = static_cast<Real>(3 * width_);
         return size * width * width / 2;
     }
 
-    /// Lower bound on the highest eigenvalue, by the method of Lanczos (1950) [1/s^2].
+    /// Lower bound on the highest eigenvalue of the matrix, by the method of Lanczos (1950) [1/s^2].
     Real highest() const {
         constexpr int most_products = 40;
         SplitMix noise(1);
@@ -90,13 +94,13 @@ public:
         return highest_of(diagonal, beside);
     }
 
-    /// True if all eigenvalues are below a limit.
+    /// True if all eigenvalues of the matrix are below `limit` [1/s^2].
     bool is_below(Real limit, BandDecomposition& decomposition) const {
         const auto add_rows = [&](std::size_t node, Real* rows, std::size_t stride) { add(node, rows, stride); };
         return decomposition.is_below({3 * nodes_, 3 * width_, 3, add_rows}, limit);
     }
 
-    /// Computes q and b of all elements for this bound.
+    /// Computes the masses q and b of all elements from an upper bound on the eigenvalues [1/s^2].
     void share(Real bound, std::span<FrameMass> mass) const {
         for (std::size_t i = 0; i < mass.size(); ++i) {
             const std::size_t block = static_cast<std::size_t>(blocks_.begin) + i;
@@ -110,7 +114,8 @@ public:
     }
 
 private:
-    /// Volume [m^3] and moduli times volume [Pa m^3] of the elements of a block; 0 for elements that take no mass.
+    /// Rest volume [m^3], and moduli times volume [Pa m^3], of the elements of a block. Elements that take no mass have
+    /// 0.
     struct Weights {
         ElementLane volume, shear, volumetric;
     };
@@ -126,7 +131,8 @@ private:
         }
     };
 
-    /// Adds the three rows of the node at a place, each from its diagonal on.
+    /// Adds to three zero rows the entries of the node at position `place` along the body. Each row begins at its
+    /// diagonal.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
@@ -158,7 +164,7 @@ private:
         const Weights& of_block = weights_[block - static_cast<std::size_t>(blocks_.begin)];
         return {nodes, lane, nodes.count, first_node_, of_block.shear[lane], of_block.volumetric[lane]};
     }
-    /// Calls visit(element, block) for the elements that take mass.
+    /// Calls visit(element, block) for each element that takes mass.
     void for_each_element(auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -179,7 +185,8 @@ private:
         }
     }
 
-    /// Finds the places of the nodes along the body, and the bandwidth: how far apart nodes of one element are.
+    /// Numbers the nodes along the body. Finds the bandwidth: the greatest difference between the numbers of two nodes
+    /// of one element, plus 1.
     void number(std::span<const Vec3> position) {
         std::vector<char> seen(position.size(), 0);
         std::vector<Index> nodes;
@@ -207,14 +214,15 @@ private:
         });
     }
 
-    /// Data of the elements that take mass for products with a vector, one element after the other.
+    /// Data for products of the matrix with a vector, one element after the other. Only elements that take mass are
+    /// included.
     struct Factors {
         struct Element {
             Real shear, volumetric;
-            std::size_t end;  // end of its corners
+            std::size_t end;  // end of the element's range in `corner`
         };
         struct Corner {
-            Real4 gradient;  // times the root of the inverse mass of its node; then a zero
+            Real4 gradient;  // gradient over the root of the node's mass, then a zero
             std::size_t node;
         };
         std::vector<Element> element;
@@ -232,14 +240,14 @@ private:
         return factors;
     }
 
-    /// product = M^-1/2 K M^-1/2 vector
+    /// Computes product = M^-1/2 K M^-1/2 vector.
     static void multiply(const Factors& factors, const std::vector<Real4>& vector, std::vector<Real4>& product) {
         std::ranges::fill(product, Real4{});
         std::size_t first = 0;
         for (const Factors::Element& e : factors.element) {
             const std::span<const Factors::Corner> corners = std::span(factors.corner).subspan(first, e.end - first);
             first = e.end;
-            std::array<Real4, 3> slope{};  // gradient of vector, by direction
+            std::array<Real4, 3> slope{};  // gradient of `vector` in the element, by direction
             for (const Factors::Corner& corner : corners)
                 for (int i = 0; i < 3; ++i)
                     slope[static_cast<std::size_t>(i)] += corner.gradient[i] * vector[corner.node];
@@ -251,8 +259,8 @@ private:
         }
     }
 
-    /// Highest eigenvalue of a symmetric matrix with these numbers on its diagonal and beside it. A number is above it
-    /// if the matrix, subtracted from it, has no negative pivot (Sturm).
+    /// Highest eigenvalue of a symmetric tridiagonal matrix T with the diagonal `diagonal` and the off-diagonal
+    /// `beside`. A number x is above all eigenvalues if the elimination of x - T has positive pivots only (Sturm).
     static Real highest_of(const std::vector<Real>& diagonal, const std::vector<Real>& beside) {
         const auto is_above = [&](Real x) {
             Real pivot = x - diagonal[0];
@@ -274,7 +282,8 @@ private:
     Range blocks_;
     RestModuli moduli_;
     Index first_node_ = 0;
-    std::vector<Real> root_;  // root of the inverse mass, by node from the first [1/sqrt(kg)]
+    // Inverse root of the mass by node, from the first node of the body [1/sqrt(kg)].
+    std::vector<Real> root_;
     std::vector<std::size_t> place_;
     std::size_t nodes_ = 0, width_ = 0;
     std::vector<Weights> weights_;   // by block
@@ -292,7 +301,7 @@ void find_frame_masses(const ElementInputs& elements, Range blocks, std::span<co
     if (blocks.size() == 0) return;
     const RestStiffness stiffness(elements, blocks, position, mass);
     if (!(stiffness.products() <= most_products)) return;
-    constexpr Real above = 1.005;  // margin for modes that the vectors have not found yet
+    constexpr Real above = 1.005;  // margin for modes that the Lanczos vectors have not found yet
     BandDecomposition decomposition;
     Real limit = above * stiffness.highest();
     for (Real growth = above; std::isfinite(limit) && limit > 0 && !stiffness.is_below(limit, decomposition);

@@ -1,4 +1,4 @@
-// The greatest length among many vectors, several at a time.
+// Finds the greatest length among many vectors, several vectors at a time.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace skerry {
 
-/// Greatest squared length of `count` vectors less `origin`, where component(3 n + i) is component i of vector n. It is
-/// infinite or not a number as soon as one of them is: bit patterns of squares order as the squares do, with non-finite
-/// values on top. They are compared as integers, in any order and in the lanes of a register. Comparisons of
-/// floating-point numbers would have to wait for each other.
+/// Greatest squared length of `count` vectors minus `origin`. component(3 n + i) is component i of vector n. The result
+/// is infinite or NaN as soon as one squared length is. Bit patterns of squares have the same order as the squares,
+/// with non-finite values on top, so they are compared as integers. Integers can be compared in any order and in the
+/// lanes of a register; comparisons of floating-point numbers would have to wait for each other.
 template <class Component>
 [[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component,
                                                           const Vec3& origin = Vec3::Zero()) {
@@ -28,8 +28,8 @@ template <class Component>
     return std::bit_cast<Real>(largest);
 }
 
-/// Greatest squared lengths of the vectors themselves and of the vectors less `origin`. The component must be passed by
-/// value: through a reference the loop is not vectorised.
+/// Greatest squared length of the vectors, and of the vectors minus `origin`. `component` must be passed by value:
+/// through a reference the loop is not vectorised.
 template <class Component>
 [[gnu::always_inline]] inline std::array<Real, 2> largest_squared_lengths(std::size_t count, Component component,
                                                                           const Vec3& origin) {

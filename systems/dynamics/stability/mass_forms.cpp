@@ -1,8 +1,10 @@
-// With W = lambda Q^-1 / V an element's stiffness is below G V W G^T, a form of scalars: one number a node, the same
-// for x, y and z. So the coupling of all elements is a matrix a third as wide as the stiffness, and not every element
-// is taken at its worst alone. W = 2 mu 1 + lambda tr(Z) Z^-1, with Lame's lambda, is an upper bound on the law at rest
-// for every positive Z. A good Z is the root of the mean of grad u grad u^T over the highest modes, which are found
-// together with it, round by round.
+// Chooses the matrix Q of the mass form G Q^-1 G^T of each element. G holds the gradients of the element at rest, V is
+// its volume. For the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W G^T. This
+// stiffness has one number per node, the same for x, y and z. The coupled matrix of all elements is therefore a third
+// as wide as the true stiffness, and its eigenvalues are sharper than the worst case of each single element.
+// W = 2 mu 1 + lambda tr(Z) Z^-1, with Lame's mu and lambda, is an upper bound on dP/dF at rest for every positive
+// definite Z. A good Z is the root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find Z
+// and these modes together.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>
@@ -32,7 +34,8 @@ Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
     return {mean(a.xx, b.xx), mean(a.yy, b.yy), mean(a.zz, b.zz), mean(a.xy, b.xy), mean(a.yz, b.yz), mean(a.zx, b.zx)};
 }
 
-/// Approximate root of a positive matrix whose trace is 1 (Denman and Beavers 1976), too large where it is below 0.03.
+/// Approximate square root of a positive definite matrix of trace 1 (Denman and Beavers 1976). Eigenvalues of the root
+/// below 0.03 come out too large.
 Symmetric root_of(const Symmetric& s) {
     constexpr int passes = 6;
     Symmetric root = s, inverse{Real8{} + 1.0, Real8{} + 1.0, Real8{} + 1.0, {}, {}, {}};
@@ -53,17 +56,18 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-constexpr Real longer_by_forms = 1.5;  // ratio of the step to that by bounds of single elements
+// Estimated ratio of the step with mass forms to the step that bounds of single elements allow.
+constexpr Real longer_by_forms = 1.5;
 
-/// Group of elements that share the mass of their nodes among themselves alone.
+/// Group of elements. The mass that a group has of its nodes is shared among the elements of this group alone.
 struct ElementGroup {
     Range blocks;
-    std::vector<Index> node{};     // nodes along the group; 0: the first node of the body
-    std::size_t width = 0;         // bandwidth of its matrix: greatest distance of nodes of one element, plus 1
-    std::vector<Real> mass{};      // mass that the group has of its nodes [kg]
-    std::vector<Real> diagonal{};  // diagonal of its form
+    std::vector<Index> node{};     // nodes along the group, numbered from the first node of the body
+    std::size_t width = 0;         // bandwidth: greatest distance of two nodes of an element, plus 1
+    std::vector<Real> mass{};      // mass that the group has of each of its nodes [kg]
+    std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
     std::vector<Real4> vector{};   // approximate highest modes
-    Real highest = 0;              // lower bound on the greatest eigenvalue of its form [1/s^2]
+    Real highest = 0;              // lower bound on the highest eigenvalue of the group [1/s^2]
 };
 
 class FormSearch {
@@ -90,11 +94,11 @@ public:
         place_.resize(count, no_index);
     }
 
-    /// Chooses Z, stored in the place of the forms, and the weights V W that go with it.
+    /// Chooses Z, which form_ holds for now, and computes the weights V W from Z.
     void choose() {
         constexpr int rounds = 16, products = 5;
-        constexpr Real noise_part = 0.3;  // noise added in each round, relative to the vectors, for missing modes
-        // starts from the identity; the result is a mean over the rounds
+        constexpr Real noise_part = 0.3;  // noise added to the vectors in each round, to find missing modes
+        // Z starts as a multiple of the identity. The result is a mean over the rounds.
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
@@ -106,7 +110,7 @@ public:
             for (int p = 0; p < products; ++p) {
                 std::ranges::fill(product_, Real4{});
                 add_product(blocks_);
-                Real size = 0;  // squared size of all vectors, scaled to that of noise below
+                Real size = 0;  // squared norm of all vectors; they are scaled to the norm of the noise
                 for (std::size_t n = 0; n < vector_.size(); ++n) {
                     vector_[n] = mass_[n] > 0 ? product_[n] / mass_[n] : Real4{};
                     size += mass_[n] * sum_of(vector_[n] * vector_[n]);
@@ -119,8 +123,8 @@ public:
         weigh();
     }
 
-    /// Upper bound on the squared highest frequency of the form [1/s^2]. The forms divided by it add up to at most the
-    /// masses of the nodes.
+    /// Upper bound on the squared highest frequency with the stiffness sum_e G V W G^T [1/s^2]. This stiffness, divided
+    /// by the bound, is at most the mass of the nodes.
     Real bound() {
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
@@ -139,7 +143,7 @@ public:
         return bound;
     }
 
-    /// Computes Q from V W and the bound.
+    /// Computes Q from the weights V W and the bound: Q = bound (V W)^-1.
     void finish(Real bound) {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const Real8 volume = load(elements_.volume[first_block() + i]);
@@ -162,14 +166,14 @@ private:
                 for (const Index node : nodes.node[k].lane) visit(node);
         }
     }
-    /// Calls visit(block, lane, nodes) for each element.
+    /// Calls visit(block, lane, nodes) for each element in a range of blocks.
     void for_each_element(Range blocks, auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
             for (std::size_t l = 0; l < element_lanes; ++l)
                 if (elements_.volume[b][l] > 0) visit(b, l, elements_.nodes_of(b));
     }
 
-    /// V W = V (2 mu 1 + lambda tr(Z) Z^-1)
+    /// Computes the weights V W = V (2 mu 1 + lambda tr(Z) Z^-1); zero for implicit elements.
     void weigh() {
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const auto [shear, volumetric] = moduli_.of(first_block() + i);
@@ -182,7 +186,7 @@ private:
                        weight_[i]);
         }
     }
-    /// Gradients of the vectors in one element.
+    /// Gradients of the iterated vectors in one element, by direction.
     std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
         std::array<Real4, 3> t{};
         for (Index k = 0; k < nodes.count; ++k) {
@@ -191,11 +195,11 @@ private:
         }
         return t;
     }
-    /// product += sum_e G V W G^T vector
+    /// Adds the product of the stiffness sum_e G V W G^T with the vectors to product_.
     void add_product(Range blocks) {
         for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
             const ElementForm& w = weight_[b - first_block()];
-            if (w[0][l] == 0) return;  // a cluster carries it
+            if (w[0][l] == 0) return;  // an implicit element takes no mass
             const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
             const Real4 x = w[0][l] * t[0] + w[3][l] * t[1] + w[5][l] * t[2];
             const Real4 y = w[3][l] * t[0] + w[1][l] * t[1] + w[4][l] * t[2];
@@ -206,9 +210,10 @@ private:
             }
         });
     }
-    /// Moves Z by this part towards the root of the sum of grad v grad v^T over the vectors v.
+    /// Moves Z by the fraction `part` towards the square root of the sum of grad v grad v^T over the iterated vectors
+    /// v. Z and the root are scaled to trace 1.
     void follow(Real part) {
-        constexpr Real even = 0.03;  // isotropic part of the target
+        constexpr Real even = 0.03;  // isotropic fraction of the target
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const std::size_t b = first_block() + i;
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -234,7 +239,8 @@ private:
         }
     }
 
-    /// Cuts the elements into groups that lie close together, as large as the decomposition of their matrix may cost.
+    /// Splits the elements into compact groups, as large as the allowed cost of decomposing the matrix of a group
+    /// permits.
     void cut(Range blocks, std::vector<ElementGroup>& groups) {
         ElementGroup group{.blocks = blocks};
         for_each_node(blocks, [&](Index node) {
@@ -271,8 +277,8 @@ private:
         for (const Index n : group.node) place_[static_cast<std::size_t>(n)] = no_index;
     }
 
-    /// Shares the masses of nodes that groups have in common; shares are evened out like those of elements
-    /// (stable_step.h).
+    /// Shares the masses of nodes that several groups have in common. The shares are evened out like the mass shares of
+    /// elements (stable_step.h).
     void share(std::vector<ElementGroup>& groups) {
         constexpr int rounds = 4, products = 8;
         std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);
@@ -312,7 +318,8 @@ private:
         });
         for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
     }
-    /// Rayleigh quotient of the group's vectors after some products. The highest eigenvalue is not below it.
+    /// Rayleigh quotient of the vectors of a group after some products with its matrix. It is a lower bound on the
+    /// highest eigenvalue of the group [1/s^2].
     Real highest_of(ElementGroup& group, int products) {
         Real highest = 0;
         for (int p = 0; p < products; ++p) {
@@ -337,12 +344,12 @@ private:
         return highest;
     }
 
-    /// Data from which M^-1/2 sum_e G V W G^T M^-1/2 of a group is computed.
+    /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group.
     struct GroupMatrix {
-        std::vector<Real> scale;        // root of the inverse mass, by node along the group [1/sqrt(kg)]
-        Ragged<ElementCorner> corners;  // by node along the group
+        std::vector<Real> scale;        // inverse root of the mass, by node along the group [1/sqrt(kg)]
+        Ragged<ElementCorner> corners;  // corners of elements at each node along the group
     };
-    /// Collects the data of a group's matrix, and numbers the nodes of the group.
+    /// Collects the data of the matrix of a group, and numbers the nodes of the group.
     GroupMatrix matrix_of(const ElementGroup& group) {
         number(group);
         GroupMatrix matrix{
@@ -377,13 +384,13 @@ private:
     Range blocks_;
     Real most_products_;
     Index first_node_ = 0;
-    std::span<const Vec3> position_;       // from the first node of the body [m]
-    std::span<const Real> mass_;           // from the first node of the body [kg]
+    std::span<const Vec3> position_;       // positions from the first node of the body on [m]
+    std::span<const Real> mass_;           // masses from the first node of the body on [kg]
     std::span<ElementForm> form_;          // Z, then Q
-    std::vector<ElementForm> weight_;      // V W [Pa m^3]
+    std::vector<ElementForm> weight_;      // weights V W [Pa m^3]
     std::vector<Real4> vector_, product_;  // by node
     RestModuli moduli_;
-    std::vector<Index> place_;  // place of each node in a group
+    std::vector<Index> place_;  // number of each node along its group
     BandDecomposition decomposition_;
 };
 

@@ -1,4 +1,4 @@
-// Common parts of the searches for the masses that elements take (mass_forms.h, frame_masses.h).
+// Common parts of the searches for the masses that elements take from their nodes (mass_forms.h, frame_masses.h).
 #pragma once
 
 #include <array>
@@ -25,37 +25,37 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
             scale * xy, scale * (s.xy * s.zx - s.xx * s.yz), scale * zx};
 }
 
-/// Stiffness of explicit elements at rest. Relaxing parts count as in steps of about the length that bounds of single
-/// elements allow, times `longer`.
+/// Moduli of explicit elements at rest. Springs of Maxwell elements count with the stiffness that they have in steps of
+/// a certain length: `longer` times the step that bounds of single elements allow.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
 
-    /// 1 for explicit elements, 0 for those that clusters carry, which take no mass.
+    /// 1 for explicit elements, 0 for implicit elements. An implicit element is carried by a cluster and takes no mass.
     Real8 of_explicit(std::size_t block) const;
 
     struct Moduli {
-        Real8 shear, volumetric;  // 2 mu and lambda [Pa]
+        Real8 shear, volumetric;  // moduli 2 mu and lambda [Pa]
     };
     Moduli of(std::size_t block) const;
 
 private:
     const ElementInputs& elements_;
     Real stiffest_ = 0;       // greatest modulus [Pa]
-    Real relaxing_step_ = 0;  // length of the steps in which springs relax [s]
+    Real relaxing_step_ = 0;  // step length for which springs of Maxwell elements count [s]
 };
 
-/// Sorts nodes along the longest side of their bounding box.
+/// Sorts nodes by position along the longest side of their bounding box.
 void sort_along(std::span<const Vec3> position, std::span<Index> nodes);
 
-/// Corner of an element that is at a node.
+/// Corner of an element: the element in lane `lane` of block `block`, and the number of the corner.
 struct ElementCorner {
     std::size_t block, lane;
     Index corner;
 };
 
-/// Lists the corners at each of some places, element by element. `for_each_corner(visit)` calls visit(place, corner)
-/// for all, in the order of elements.
+/// Lists the element corners at each of `places` nodes, in the order of elements. for_each_corner(visit) must call
+/// visit(place, corner) for all corners, in the order of elements.
 inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
     corners.offset.resize(places + 1);
@@ -69,32 +69,34 @@ inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corn
     return corners;
 }
 
-/// Symmetric matrix with zeros outside of a band around the diagonal. A row is stored from the diagonal to the end of
-/// the band. Rows come in groups, and are computed when they are needed.
+/// Symmetric band matrix: all entries outside a band around the diagonal are zero. A row is stored from the diagonal to
+/// the end of the band. Rows come in groups, which are computed when they are needed.
 struct BandMatrix {
     std::size_t size;   // rows; whole groups
-    std::size_t width;  // stored numbers of a row
-    std::size_t group;  // rows of a group
-    /// Adds the rows of a group to zeros; each row is `stride` numbers behind the one before.
+    std::size_t width;  // numbers stored per row
+    std::size_t group;  // number of rows per group
+    /// Adds the entries of the rows of a group to `rows`, which holds zeros. Each row begins `stride` numbers after the
+    /// row before.
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Tests if limit - matrix has a Cholesky decomposition, by more than rounding. Keeps only the rows that reach each
-/// other: a window that moves along the diagonal.
+/// Tests if limit I - matrix has a Cholesky decomposition, by more than rounding, where I is the identity. Only rows
+/// that influence each other are stored, in a window that moves along the diagonal.
 class BandDecomposition {
 public:
     bool is_below(const BandMatrix& matrix, Real limit);
 
 private:
-    static constexpr std::size_t pivots = 4;    // eliminated at once: each row is loaded and stored once for them
+    // pivot rows used at once: each other row is loaded and stored once for all
+    static constexpr std::size_t pivots = 4;
     static constexpr std::size_t row_step = 8;  // numbers in the widest register
 
-    /// Consecutive pivot rows from `first` on; each row begins at its diagonal.
+    /// Consecutive pivot rows, beginning with row `first`. Each row begins at its diagonal.
     struct Pivots {
         std::size_t first;
         std::array<Real*, pivots> row{};
         std::array<Real, pivots> inverse{};
-        std::size_t end;  // end of the columns that they reach
+        std::size_t end;  // end of the columns that the pivot rows reach
 
         Real factor(std::size_t p, std::size_t r) const { return row[p][r - (first + p)] * inverse[p]; }
         bool reach(std::size_t r) const;
@@ -103,16 +105,17 @@ private:
         }
     };
     void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
-    /// Subtracts multiples of the pivots from one row, or from two with one load of the pivots.
+    /// take() subtracts multiples of the pivot rows from row r. take_from_two() does so for rows r and r + 1, and loads
+    /// the pivot rows once.
     void take(const Pivots& pivots_of, std::size_t r);
     void take_from_two(const Pivots& pivots_of, std::size_t r);
-    /// Pointer to column r of row r. Rows are laid out so that the same columns fill a register in all of them.
+    /// Pointer to the diagonal of row r. Each column has the same place within a register in all rows.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
-    std::size_t rows_ = 0, stride_ = 0;  // rows of the window, and numbers of a row
+    std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and numbers per row
     Column<Real> window_;
     std::vector<Real> rows_of_group_;
-    std::vector<std::size_t> used_;  // used numbers of each row of the window; zeros follow
+    std::vector<std::size_t> used_;  // number of used entries in each row of the window; zeros follow
 };
 
 }  // namespace skerry

@@ -21,27 +21,27 @@ namespace skerry {
 
 namespace {
 
-/// Number of blocks whose stiffness is summed in one piece. It takes as long as the bound of one block.
+/// Number of blocks whose stiffness is summed in one piece. This sum takes as long as the bound of one block.
 constexpr Index blocks_summed = 8;
 
 Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
-/// Kinds of pieces of a look: sums over all elements, bounds with frame masses (frame_masses.h), and bounds with forms
-/// or shares. A body with frame masses is bounded with these first.
+/// Kinds of work in a piece of a stable-step check: sums over elements, bounds with frame masses (frame_masses.h), and
+/// bounds with mass forms or mass shares. In a body with frame masses, the bounds with frame masses come first.
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
-/// Pieces of a look that do not wait for each other: sums, or bounds of one wave of blocks. Waves hold 1, 1, 2, 4, 8...
-/// blocks, so that few bounds in each exceed all bounds of the waves before.
+/// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one wave of blocks.
+/// Waves hold 1, 1, 2, 4, 8... blocks, so that few bounds in a wave exceed all bounds of the waves before.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
     Range blocks;
-    std::uint64_t end;  // the piece after the last
+    std::uint64_t end;  // one after the last piece
 };
 
-/// The run of pieces that starts at `from`, which is before `until`.
+/// Run of pieces that starts at `from` and ends at `until` or before.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto place = static_cast<Index>(from);
@@ -61,7 +61,7 @@ PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t u
         in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
 }
 
-/// Work of the pieces of a look.
+/// Does the work of the pieces of a stable-step check.
 struct Pieces {
     const ElementInputs& elements;
     std::span<const Vec3> position;
@@ -86,7 +86,8 @@ struct Pieces {
         for (std::size_t i = 0; i < 9; ++i)
             for (std::size_t l = 0; l < element_lanes; ++l) sum[i] += elements.volume[b][l] * entry[i][l];
     }
-    /// Version of bound() with frame masses, in the rotation of the body.
+    /// Calls visit(block, bound of omega^2 by lane) for each block. The bounds use frame masses in the rotation of the
+    /// body. Bounds below `enough` [1/s^2] may be given as `enough`.
     void bound_in_frame(Range blocks, const Mat3& rotation, Real enough, auto&& visit) const {
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
@@ -94,10 +95,11 @@ struct Pieces {
                   frequency_squared_in_frame(elements, b, deformation_of(elements, b, position), rotation, q, enough));
         });
     }
-    /// Calls visit(block, bound of omega^2 by lane). Bounds below `enough` [1/s^2] need not be known.
+    /// Calls visit(block, bound of omega^2 by lane) for each block. Bounds below `enough` [1/s^2] may be given as
+    /// `enough`.
     void bound(Range blocks, Real enough, auto&& visit) const {
-        // The frame of a corotational element starts from the same lane of the block before it: neighbours rotate
-        // together.
+        // The search for the frame of a corotational element starts from the same lane of the block before, since
+        // neighbours rotate alike.
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
@@ -107,7 +109,7 @@ struct Pieces {
     }
 };
 
-/// Greatest bound so far, and its element.
+/// Greatest bound of omega^2 found so far, and the element that has this bound.
 struct Greatest {
     Real& bound;  // [1/s^2]
     Index& element;
@@ -117,7 +119,7 @@ Greatest greatest_of(StepLook& look, const PieceRun& run) {
     return {look.highest, look.element};
 }
 
-/// Updates the greatest bound with those of a block.
+/// Updates the greatest bound of omega^2 with the bounds of a block.
 void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLook& look) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Index here = static_cast<Index>(block * element_lanes + l);
@@ -130,22 +132,24 @@ void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLo
     }
 }
 
-/// Rotation nearest to the mean deformation of a body.
+/// Rotation nearest to the mean deformation gradient of a body.
 Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
     const std::array<Real, 4> turn = nearest_rotation(Mat3(deformation.data()), {1, 0, 0, 0});
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
-/// Factor on the bound at rest. Below it the body is not bounded with forms and shares, which are hardly sharper.
+/// Limit on the bound with frame masses, as a multiple of the bound at rest. Below this limit the body is not bounded
+/// with mass forms and mass shares, because these are hardly sharper.
 constexpr Real well_in_frame = 1.25;
 
-/// Continues a look; the blocks of a wave are cut by in_chunks(run, body(begin, end, look of this chunk)).
+/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) cuts the blocks of a wave into
+/// chunks and calls body(begin, end, StepLook of the chunk) for each.
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
-    std::optional<Mat3> rotation;  // found once for all waves of this call
+    std::optional<Mat3> rotation;  // of the body; computed once for all waves of this call
     while (look.piece < until) {
         const PieceRun run = run_from(blocks, at_rest > 0, look.piece, until);
         if (run.opens_wave) look.known = greatest_of(look, run).bound;
@@ -174,7 +178,7 @@ void clear_stiffness(const ElementInputs& elements, Range blocks, std::span<Real
         clear_stiffness(elements, static_cast<std::size_t>(b), stiffness_sum);
 }
 
-/// Stable step of an element with this bound of omega^2 [s].
+/// Stable step of an element with the given bound of omega^2 [s].
 Real step_of(Real bound) {
     return step_times_frequency / std::sqrt(bound);
 }
@@ -189,7 +193,8 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
 
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
-    constexpr Index least = 8, most_chunks = 64;  // blocks, some 20 us; chunks that fit on the stack
+    // `least`: blocks of a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on the stack.
+    constexpr Index least = 8, most_chunks = 64;
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
         const Index size = std::max(least, (count + most_chunks - 1) / most_chunks);
@@ -220,7 +225,7 @@ StableStep result_of(const StepLook& look) {
     StableStep found{std::numeric_limits<Real>::infinity(), no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
-    // Both bounds hold if the body was bounded in both ways.
+    // If the body was bounded in both ways, both bounds are valid and the longer step is taken.
     const Real step = step_of(look.in_frame);
     if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;
@@ -267,7 +272,7 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;
-    constexpr Real least = 1e-3;  // part of the share before: elements that bound nothing keep some mass
+    constexpr Real least = 1e-3;  // least factor on a share per round, so that all elements keep some mass
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
@@ -283,13 +288,13 @@ void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<con
 Real estimate_max_frequency_squared(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> inverse_mass, int iterations) {
     std::vector<Vec3> u(position.size()), next(position.size());
-    // Start vector that no symmetry of the mesh makes orthogonal to the highest mode.
+    // No symmetry of the mesh makes this start vector orthogonal to the highest mode.
     for (std::size_t n = 0; n < u.size(); ++n)
         u[n] = Vec3(std::sin(12.9898 * static_cast<Real>(n + 1)), std::sin(78.233 * static_cast<Real>(n + 1)),
                     std::sin(37.719 * static_cast<Real>(n + 1)));
     Real estimate = 0;
     for (int i = 0; i < iterations; ++i) {
-        // Rayleigh quotient of M^-1/2 K M^-1/2 at w = M^1/2 u, and u <- M^-1 K u.
+        // Computes the Rayleigh quotient of M^-1/2 K M^-1/2 at w = M^1/2 u, then replaces u by M^-1 K u.
         for (Vec3& x : next) x.setZero();
         for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
             const MaterialConstants material = elements.material_of(b);

@@ -10,7 +10,8 @@ namespace skerry {
 
 namespace {
 
-/// Sum over the nodes of g_k g_k^T / m_k.
+/// Tensor Q of inverse masses of each element: sum of g_k g_k^T / m_k over the nodes k, with the gradient g_k and the
+/// mass share m_k of node k.
 LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                     std::span<const Real> mass, std::span<const Real> stiffness_sum) {
     const BlockNodes nodes = elements.nodes_of(block);
@@ -22,8 +23,7 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
         Real8 inverse{};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const std::size_t n = static_cast<std::size_t>(nodes.node[k][l]);
-            // A node without mass never moves. A node without stiffness does not exist, or the element does not hold
-            // it.
+            // A node without mass never moves. A node without stiffness is padding, or the element does not act on it.
             if (!(mass[n] > 0 && elements.volume[block][l] > 0)) continue;
             if (stiffness_sum.empty())
                 inverse[l] = 1 / mass[n];
@@ -41,25 +41,26 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
 }
 
-/// Springs that relax within a step count less: the longer the step, the less.
+/// Sets the fractions with which the springs of Maxwell elements count in steps of length `step` [s]. The longer the
+/// step, the less a spring counts.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
 }
 
-/// Bound of omega^2 of each element of a block with the masses given by Q.
+/// Upper bound of omega^2 of each element of a block with the inverse masses Q [1/s^2].
 Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const LaneMat3<Real8>& Q,
                LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
-    // Zero, or not a number if F is not finite: not every bound depends on F.
+    // Zero, or NaN if F is not finite. It is added because not every bound depends on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step that others allow: no more has to be known of them. With springs in full
-    // next to none of them would be below, as all allow about the same step at rest.
+    // Most elements are stable at the step that other elements allow, so that their bound need not be known. With
+    // unrelaxed springs almost no element would pass this test, since all elements allow about the same step at rest.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =
@@ -67,7 +68,8 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         if (all(compared <= enough)) return compared + nothing;
         viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
     }
-    // the step with springs in full is a safe estimate of it
+    // The stable step with unrelaxed springs is shorter than the stable step with relaxing springs. It is therefore a
+    // safe estimate of the step in which springs relax.
     const Real8 in_full = frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame);
     count_in(step_times_frequency / square_root(in_full > 0.0 ? in_full : Real8{} + 1.0));
     return frequency_squared_bound(material, F, viscous, volume, Q, q, enough, sharpness, frame) + nothing;
@@ -143,7 +145,7 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
     }
     return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
                                    enough, Sharpness::stepped) +
-           0.0 * inner_product(F, F);  // not a number if F is not finite
+           0.0 * inner_product(F, F);  // NaN if F is not finite
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
@@ -157,7 +159,7 @@ Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t bloc
 
 namespace {
 
-/// Frequency bound with masses of 1 in place of shared ones, and `volume` in place of the volumes of elements.
+/// Calls frequency_squared_bound() with unit masses, and with `volume` in place of the volumes of the elements.
 Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
                     LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);

@@ -1,5 +1,5 @@
-// Shares of the mass of each node for its elements, in proportion to their stiffness, and the frequency that bounds
-// each element then (docs/methods/stable_step.md 2).
+// Shares the mass of each node among its elements in proportion to their stiffness, and bounds the frequency of each
+// element with its share (docs/methods/stable_step.md 2).
 #pragma once
 
 #include <span>
@@ -11,22 +11,24 @@
 
 namespace skerry {
 
-/// Product of a stable step and the frequency bound: a tenth below the limit of symplectic Euler, which is 2.
+/// Product of the stable step and the bound on the frequency. It is a tenth below 2, the limit of symplectic Euler.
 inline constexpr Real step_times_frequency = 0.9 * 2;
 
-/// Deformation gradients F of a block of elements.
+/// Deformation gradients F of the elements of a block.
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
-/// Weight of an element when the mass of its nodes is shared: its mass_share times V, times the bound of the material's
-/// Hessian if deformation changes it much. Node k counts with |g_k|^2 times this weight.
+/// Weight of each element for sharing the mass of its nodes: mass_share times the volume. If deformation changes the
+/// stiffness of the material law, the weight also has the bound of the material Hessian as a factor. At node k the
+/// element counts with |g_k|^2 times the weight, where g_k is its gradient.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
-/// Sets the initial mass_share. In a body with several materials an element whose law leaves its stiffness out of the
-/// weight has it here: relative to the greatest of the body, or in Pa beside laws that have it in their weight.
-/// Otherwise the share is 1. Inversion barriers (guards) take no mass: they act only where a cluster carries them.
+/// Sets the initial mass_share of each element. In a body with several materials, the share is the stiffness of the
+/// material if this stiffness is not already part of the weight. The share is relative to the greatest stiffness of the
+/// body, or in Pa if the weights of other materials include their stiffness. In all other cases the share is 1.
+/// Inversion barriers (guards) get 0, since they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
-/// stiffness_sum[node] += the stiffness of each element of the block at the node, for lanes with counts(lane).
+/// Adds the stiffness of each element of a block at its nodes to stiffness_sum, for lanes that satisfy counts(lane).
 template <class Counts>
 void add_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    std::span<Real> stiffness_sum, Counts&& counts) {
@@ -40,17 +42,18 @@ void add_stiffness(const ElementInputs& elements, std::size_t block, const LaneM
     }
 }
 
-/// stiffness_sum = 0 at the nodes of the block.
+/// Sets stiffness_sum to 0 at the nodes of a block.
 inline void clear_stiffness(const ElementInputs& elements, std::size_t block, std::span<Real> stiffness_sum) {
     const BlockNodes nodes = elements.nodes_of(block);
     for (Index k = 0; k < nodes.count; ++k)
         for (const Index node : nodes.node[k].lane) stiffness_sum[static_cast<std::size_t>(node)] = 0;
 }
 
-/// Bound of omega^2 of each element of a block [1/s^2], with masses m_k = mass k_k / stiffness_sum. Without
-/// stiffness_sum every element has all the mass of its nodes: that is no bound for a body, but shows the frequency of
-/// the element alone. Not a number if F is not finite. `q` is a start of the corotational frame and is left at the
-/// frame found. `enough` [1/s^2]: as in frequency_squared_bound().
+/// Upper bound of omega^2 of each element of a block [1/s^2]. The share of an element in the mass of node k is
+/// m_k = mass k_k / stiffness_sum, where k_k is the stiffness of the element at the node. Without stiffness_sum every
+/// element has the full mass of its nodes. The result is then no bound for a body, but shows the frequency of the
+/// element alone. It is NaN if F is not finite. `q` is the initial guess of the corotational frame and receives the
+/// frame found. `enough` [1/s^2]: see frequency_squared_bound().
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
                            Real enough = 0);
@@ -60,35 +63,36 @@ inline bool has_mass_form(const ElementInputs& elements, std::size_t block) {
     return !elements.mass_form.empty() && elements.mass_form[block][0][0] > 0;  // every block has an element in lane 0
 }
 
-/// Bound of omega^2 of each element of a block with the masses of mass_forms.h, at most 0.3 % too large [1/s^2].
+/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h, at most 0.3 % too large [1/s^2].
 Real8 frequency_squared_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                 LaneQuaternion<Real8>& q, Real enough = 0);
 
-/// Bound of omega^2 with the masses of mass_forms.h: the least of `enough`, 1.1 `enough`, 1.21 `enough`... that an
-/// element is below; infinity beyond ten times `enough` [1/s^2]. Springs relax as they do in steps of `step` [s], so
-/// that they count less in every longer step.
+/// Upper bound of omega^2 of each element of a block with the masses of mass_forms.h [1/s^2]. The bound is the least of
+/// `enough`, 1.1 `enough`, 1.21 `enough`... that is above omega^2, and infinite beyond ten times `enough`. Springs of
+/// Maxwell elements relax as in steps of length `step` [s], so that the bound is also valid for longer steps.
 Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                       LaneQuaternion<Real8>& q, Real enough, Real step);
 
-/// Bound of omega^2 at rest of a body with frame masses (frame_masses.h); 0 for other bodies [1/s^2].
+/// Upper bound of omega^2 at rest for a body with frame masses (frame_masses.h); 0 for other bodies [1/s^2].
 inline Real frame_bound(const ElementInputs& elements, Range blocks) {
     return elements.frame_bound.empty() || blocks.size() == 0
                ? 0
                : elements.frame_bound[static_cast<std::size_t>(blocks.begin)];
 }
 
-/// Bound of omega^2 of each element of a block with the masses of frame_masses.h, the body rotated by `rotation`, at
-/// most 0.3 % too large [1/s^2].
+/// Upper bound of omega^2 of each element of a block with the masses of frame_masses.h, at most 0.3 % too large
+/// [1/s^2]. `rotation`: rotation of the body as a whole.
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                  const Mat3& rotation, LaneQuaternion<Real8>& q, Real enough = 0);
 
-/// Bound of the material's Hessian of each element of a block, with all of its viscous parts [Pa]: K <= this V sum
-/// g_k.g_l.
+/// Upper bound h on the material Hessian of each element of a block, with all viscous parts [Pa]. The stiffness of the
+/// element between nodes k and l is then bounded by the matrix h V g_k.g_l, with the volume V and the gradients g_k.
 Real8 stiffness_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    LaneQuaternion<Real8>& q);
 
-/// True if every element of a block is less stiff than `times` its assumed stiffness (`modulus` [Pa]; 0: not tested).
-/// The Hessian itself is tested, which stiffness_of() bounds within 15 %, in a tenth of the time.
+/// True if every element of a block is less stiff than `times` its assumed stiffness. `modulus`: the assumed stiffness;
+/// 0 if the element is not tested [Pa]. The test of the Hessian is exact, while the bound stiffness_of() is up to 15 %
+/// too large. The test takes a tenth of the time.
 bool less_stiff_than(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& modulus,
                      Real times, LaneQuaternion<Real8>& q);
 

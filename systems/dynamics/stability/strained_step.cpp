@@ -1,7 +1,9 @@
-// With the forms M_e of the mass and bounds w_e of each element alone, K_e <= w_e M_e, so for any base
-//     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E ,
-// and E is below the mass times max_i ( sum_j |E_ij| d_j )/( m_i d_i ) for any positive d (Collatz 1942). Rows of E are
-// scalars, since forms are the same for x, y and z.
+// Bounds the stiffness K of a strained body. Element e has the mass form M_e and the bound w_e on its omega^2. Since
+// K_e <= w_e M_e, any number `base` satisfies
+//     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E .
+// M is the mass of the nodes, and E the excess over the base. E is below M times max_i ( sum_j |E_ij| d_j )/( m_i d_i )
+// for any positive weights d_i of the nodes (Collatz 1942). Rows of E are scalars, since mass forms are the same for x,
+// y and z.
 #include "systems/dynamics/stability/strained_step.h"
 
 #include <algorithm>
@@ -17,10 +19,13 @@ namespace skerry {
 
 namespace {
 
-constexpr Real above_asked = 1.1;  // factor on omega^2: most elements of a strained body stay below it
-constexpr int rounds = 4;          // of the iteration towards the d for which all rows are alike
+// Factor on omega^2 of the requested step. Most elements of a strained body stay below the product.
+constexpr Real above_asked = 1.1;
+// Rounds of the iteration towards weights d for which all row sums have the same ratio to mass times d.
+constexpr int rounds = 4;
 
-/// Parts of the work memory: `excess` of elements over the base [1/s^2]; by node the weight d, and the row sums of E.
+/// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
+/// d and row sum of E by node.
 struct Memory {
     std::span<Real> excess, weight, row;
 
@@ -32,7 +37,7 @@ struct Memory {
     }
 };
 
-/// Finds the excess of each element over the base [1/s^2]. Returns true if any has some.
+/// Finds the excess of omega^2 of each element over the base [1/s^2]. Returns true if any element has an excess.
 bool find_excess(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Real base, Real stands,
                  std::span<Real> excess) {
     LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
@@ -54,7 +59,8 @@ LaneVec3<Real8> multiply(const LaneSymmetric<Real8>& s, const LaneVec3<Real8>& x
             s.zx * x.x + s.yz * x.y + s.zz * x.z};
 }
 
-/// row[node] += sum over these elements and their nodes of |E_ij| d_j.
+/// Adds the elements of a block to the row sums of E: row[i] += sum_j |E_ij| d_j over the nodes i and j of each
+/// element.
 void add_rows(const BlockNodes& of, const LaneSymmetric<Real8>& form, Index first_node, std::span<const Real> weight,
               std::span<Real> row) {
     for (Index k = 0; k < of.count; ++k) {
@@ -87,9 +93,9 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         return step_times_frequency / std::sqrt(base);
     const std::span<const Real> of_nodes =
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
-    // Nodes without mass never move.
+    // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
-    Real least = std::numeric_limits<Real>::infinity();  // least of the bounds on E [1/s^2]
+    Real least = std::numeric_limits<Real>::infinity();  // least of the upper bounds on E relative to the mass [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(of.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
@@ -110,8 +116,8 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // Each d goes halfway, as a factor, to the value that its row gives. A small d is enough for nodes that E
-        // hardly touches.
+        // Each weight d is multiplied by the square root of r / r_max, where r is the row sum over mass times d, and
+        // r_max the greatest r. Nodes that E hardly touches need only a small weight.
         for (std::size_t n = 0; n < of_nodes.size(); ++n)
             of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
     }

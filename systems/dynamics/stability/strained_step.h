@@ -1,5 +1,5 @@
-// Stable step of a strained body with mass forms, sharper if few of its elements have stiffened, or only some regions
-// (docs/methods/stable_step.md 2.5).
+// Stable step of a strained body with mass forms. It is sharper than stable_step() if few elements have stiffened, or
+// only some regions (docs/methods/stable_step.md 2.5).
 #pragma once
 
 #include <span>
@@ -9,17 +9,17 @@
 namespace skerry {
 
 struct StrainedLook {
-    Real asked;   // longer steps need not be known [s]
-    Real stands;  // step known to be stable by other bounds; springs relax in it [s]
+    Real asked;   // longest step of interest; the result need not be longer [s]
+    Real stands;  // step known to be stable by other bounds; springs relax for this time [s]
 };
 
-/// Length of the work memory of strained_step().
+/// Number of entries in the work memory of strained_step().
 std::size_t strained_step_memory(Range nodes, Range blocks);
 
-/// Stable step of the explicit elements of a body with mass forms in this shape [s]; valid if it is more than
-/// `look.stands`. Elements that need no more than the forms give them for steps near `look.asked` count once, all
-/// together. The excess of the others is a matrix of its own, whose rows bound it. `nodes` has all nodes of the
-/// elements. Sequential.
+/// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. The result is valid if it
+/// is longer than `look.stands`. One common bound covers all elements whose mass forms suffice for steps near
+/// `look.asked`. The excess of all other elements forms a matrix, which is bounded by its row sums. `nodes`: range of
+/// all nodes of the elements. Sequential.
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
                    std::span<const Real> mass, const StrainedLook& look, std::span<Real> memory);
 

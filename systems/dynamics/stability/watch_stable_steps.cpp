@@ -9,7 +9,7 @@ namespace skerry {
 
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch) {
     parts.clear();
-    parts.reserve(inputs.body_blocks.size());  // enough for any later step
+    parts.reserve(inputs.body_blocks.size());  // this capacity is enough for any later step
     for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
         const std::uint64_t pieces = pieces_of_look(inputs.elements, inputs.body_blocks[b]);

@@ -1,4 +1,4 @@
-// Computation of the stable steps of bodies beside the other stages of steps (docs/methods/stable_step.md 6).
+// Computes the stable steps of bodies alongside the other stages of a step (docs/methods/stable_step.md 6).
 #pragma once
 
 #include <cstdint>
@@ -25,21 +25,22 @@ struct WatchInputs {
     }
 };
 
-/// Numbers of pieces of looks at bodies: those before the body in progress, those with a stored shape, and all.
+/// Numbers of pieces of stable-step checks: for the bodies before the body in progress, for the bodies whose shape is
+/// stored, and for all bodies.
 struct WatchPieces {
     std::uint64_t before = 0, kept = 0, total = 0;
 };
 
-/// Body whose stable step is computed in a step.
+/// Body whose stable step is being computed in a step, and the progress of this computation.
 struct WatchPart {
     Index body = no_index;
-    std::uint64_t until = 0;  // pieces done by the end of the step
-    bool whole = false;       // all pieces are done by then
+    std::uint64_t until = 0;  // number of pieces done by the end of the step
+    bool whole = false;       // true if all pieces are done by the end of the step
     StepLook look;
 };
 
-/// Computes the pieces that are due by the end of this step, of bodies whose shape is stored. Called again for the same
-/// step it does nothing. `parts` keeps its memory between steps.
+/// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape is stored. A
+/// second call for the same step does nothing. `parts` is scratch whose memory is reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

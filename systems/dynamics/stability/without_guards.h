@@ -1,11 +1,12 @@
-// Elements that bound steps and take mass: all but inversion barriers (guards) (docs/methods/elasticity.md 7.7).
+// Selects the elements that bound steps and take mass: all except inversion barriers (guards)
+// (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include "systems/dynamics/elements/compute_element_forces.h"
 
 namespace skerry {
 
-/// Blocks of a body without its inversion barriers (guards), which come after all others.
+/// Blocks of a body without inversion barriers (guards), whose blocks come after all others.
 inline Range without_guards(const ElementInputs& elements, Range blocks) {
     while (blocks.size() > 0 && elements.part[static_cast<std::size_t>(blocks.end - 1)] == ElementPart::guard)
         --blocks.end;
