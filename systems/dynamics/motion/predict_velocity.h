@@ -20,9 +20,8 @@ struct KickInputs {
     std::span<const PaddedVec3> patch_force;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
-    std::span<const Vec3> load = {};  // applied force; empty: no node has one [N]
-    std::span<const std::uint8_t> body_asleep =
-        {};  // BodyTable; nodes of sleeping bodies are skipped; empty: no body is asleep
+    std::span<const Vec3> load = {};                 // applied force; empty: no node has one [N]
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; sleeping bodies are skipped; empty: none is asleep
     // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty: no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 

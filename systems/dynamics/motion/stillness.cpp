@@ -24,8 +24,7 @@ int looks_due(Real part) {
 
 Vec3 mean_of(std::span<const Vec3> points) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& point : points)
-        sum += point - points[0];  // small differences avoid rounding errors far from the origin
+    for (const Vec3& point : points) sum += point - points[0];  // avoids rounding errors far from the origin
     return points[0] + sum / static_cast<Real>(points.size());
 }
 
@@ -79,7 +78,8 @@ public:
 private:
     /// True if the mean forces over the last two halves are in balance. Damping forces are not counted, since a body at
     /// rest has none. The mean acceleration of a node, with triangular weights over both halves, is the difference of
-    /// its displacements in them over the square of a half. The sum of the drifts is an upper bound of this difference.
+    /// its displacements in both halves over the square of a half. The sum of the drifts is an upper bound of this
+    /// difference.
     bool is_balanced(Real half) const {
         // A body with held nodes is damped towards zero velocity, and not towards its rigid motion.
         const bool held = bodies_.pinned_count[body_] > 0;

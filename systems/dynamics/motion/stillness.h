@@ -15,7 +15,8 @@ inline constexpr Real speed = 0.01;
 inline constexpr Real drift = 3e-3;
 /// Limit of the drift relative to the drift in the half before. Bodies that begin to slide, fall or buckle exceed it.
 inline constexpr Real growth = 2;
-/// Least drift for the comparison with other halves, as a fraction of the mean edge.
+/// Noise level of displacements, as a fraction of the mean edge. Limits of growth, steady motion and shape do not apply
+/// below it.
 inline constexpr Real noise = 2e-5;
 /// Largest imbalance of the forces on a node, as a fraction of its weight. Damping forces are not counted.
 inline constexpr Real imbalance = 1e-3;

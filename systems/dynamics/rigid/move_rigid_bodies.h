@@ -146,7 +146,7 @@ struct RigidImpulses {
 struct RigidTurns {
     std::span<Vec3> center_next;
     std::span<Mat3> rotation_next;
-    std::span<Vec3> velocity_next;  // by node: displacement in the step over its length, push-out included [m/s]
+    std::span<Vec3> velocity_next;  // by node: straight motion to the end position, with push-out [m/s]
 
     static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
         return {.center_next = binder.write(rigid.center_next),
