@@ -70,8 +70,8 @@ private:
     /// the element stable.
     Real need(std::size_t b, std::size_t l, Real step) const;
     void list_holds();
-    /// Compute the stable steps of all elements with their present mass shares. measure() uses the rigorous bound,
-    /// estimate() the change of the trace since the last bound.
+    /// measure() and estimate() compute the stable steps of all elements with their present mass shares: by the
+    /// rigorous bound, or by the change of the trace since the last rigorous bound.
     void measure();
     void estimate();
     /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends

@@ -33,7 +33,8 @@ private:
 class BodyElements {
 public:
     BodyElements() = default;
-    /// `constants`: by row of MaterialTable; `place`: position of each node in the elimination order.
+    /// `constants`: material constants by row of MaterialTable; `place`: position of each node in the elimination
+    /// order.
     BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
                  std::span<const Index> place);
 
@@ -43,7 +44,7 @@ public:
     Real largest_strain(const Displacements& displacement) const;
     /// Bound on the change of largest_strain() divided by the largest change of a node displacement [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
-    /// Elastic energy of all elements [J].
+    /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
     struct Misfit {
         // `linear`: energy of all elements by linear elasticity. `off`: sum over the elements of the absolute

@@ -1,4 +1,4 @@
-// Table rows of one implicit body, by node and by place of the node in the elimination order of the body's factor.
+// Table ranges of one implicit body, and the places of its nodes in the elimination order.
 #pragma once
 
 #include <span>

@@ -89,7 +89,8 @@ struct LongStep {
 class StiffBody {
 public:
     StiffBody() = default;
-    /// `constants`: by row of MaterialTable; `mass` [kg] and `rest_position` [m]: by node of the body.
+    /// `constants`: material constants by row of MaterialTable. `mass` [kg] and `rest_position` [m]: by node of the
+    /// body.
     StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants, std::span<const Real> mass,
               std::span<const Vec3> rest_position, std::span<const std::array<Index, 4>> tetrahedra,
               std::span<const Real> tetrahedron_mass);
@@ -192,8 +193,8 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    /// Tests the energies and the spin as becomes_large() does, but not |F - 1|. `part`: factor on the bounds of these
-    /// tests.
+    /// True if the energies of elements or the spin exceed the bounds of becomes_large() times `part`. Does not test
+    /// the strain |F - 1|.
     bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
     /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
@@ -212,27 +213,27 @@ private:
     std::vector<Index> node_;         // node of the body at each place
     std::vector<Real> mass_;          // by place [kg]
     std::vector<Vec3> arm_;           // rest position relative to the centre of mass, by place [m]
-    std::vector<std::uint8_t> held_;  // by place; empty: no node is held
+    std::vector<std::uint8_t> held_;  // 1 for held nodes, by place; empty: no node is held
     Real total_mass_ = 0;
-    Mat3 inverse_inertia_ = Mat3::Zero();        // of the nodal masses at rest [1/(kg m^2)]
-    Mat3 inverse_solid_inertia_ = Mat3::Zero();  // of the solid at rest [1/(kg m^2)]
+    Mat3 inverse_inertia_ = Mat3::Zero();        // inverse inertia of the nodal masses at rest [1/(kg m^2)]
+    Mat3 inverse_solid_inertia_ = Mat3::Zero();  // inverse inertia of the solid at rest [1/(kg m^2)]
     Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
     BodyShape shape_;  // set by stand_in()
     // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the arm a and the mass m of a node [1/(kg m^2)].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
-    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of M and K in A
+    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of masses and stiffness in the factored matrix
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    // A^-1 times the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by place.
+    // Velocity responses to the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by place.
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
     // Inputs and results of the last evaluation in becomes_large_in_places(); looked_at_ is empty before the first:
-    std::vector<Vec3> looked_at_;      // displacements, by place [m]
-    Vec3 looked_with_ = Vec3::Zero();  // angular momentum [kg m^2/s]
+    std::vector<Vec3> looked_at_;      // displacements at the last evaluation, by place [m]
+    Vec3 looked_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;
     bool large_there_ = false;
     // Slot in `columns_` with the column of each node of the body, or no_index:
@@ -240,7 +241,7 @@ private:
     std::vector<Index> node_in_;          // node of each slot
     std::vector<std::uint64_t> used_at_;  // value of uses_ at the last use of each slot
     std::uint64_t uses_ = 0, columns_made_ = 0;
-    std::vector<Mat3> columns_;  // size() blocks for each slot
+    std::vector<Mat3> columns_;  // velocity responses, size() blocks in each slot
     // Nodes of the body in the last call of responses(), and the result of this call:
     std::vector<Index> touched_;
     std::vector<Real> responses_;

@@ -10,8 +10,8 @@
 namespace skerry {
 
 struct JointMeasures {
-    Vec3 impulse = Vec3::Zero();  // from the world and from held bodies [N s]
-    Real work = 0;                // of motors and moving held bodies, minus the work absorbed by stops [J]
+    Vec3 impulse = Vec3::Zero();  // impulse from the world and from held bodies [N s]
+    Real work = 0;                // work of motors and moving held bodies, minus work absorbed by stops [J]
 };
 
 /// Joint blocks, and rigid bodies by row of RigidBodyTable, after the contact solve.

@@ -98,7 +98,7 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
 
 /// Angular velocity omega of a body's rigid motion. It solves (tr(S) I - S) omega = L with the unit matrix I, the
 /// angular momentum L about the present positions x, and S = sum m y x^T over nodes of mass m with the earlier
-/// positions y. Nodes on a line or in a point cannot rotate about it; omega then has no component in this direction.
+/// positions y. If all nodes are on one line, omega has no component along this line.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;

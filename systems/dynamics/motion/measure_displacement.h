@@ -42,7 +42,7 @@ struct DisplacementInputs {
 
 struct DisplacementOutputs {
     std::span<Vec3> origin;          // by node: position when the displacement of its body was last reset to zero [m]
-    std::span<std::uint8_t> rebase;  // by body, or empty: 1 requests a reset of the displacement; cleared by it
+    std::span<std::uint8_t> rebase;  // by body, or empty; 1: reset the displacement and clear this flag
     std::span<MovingFrame> frame;    // BodyTable
     std::span<Real> frame_speed, displacement, travel;
 

@@ -10,7 +10,7 @@ namespace skerry {
 namespace {
 
 bool are_parallel(const Vec3& a, const Vec3& b) {
-    constexpr Real parallel = 1e-12;  // sine of the angle between the axes
+    constexpr Real parallel = 1e-12;  // largest sine of the angle between parallel axes
     return a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm();
 }
 

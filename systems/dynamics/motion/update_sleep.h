@@ -24,7 +24,7 @@
 namespace skerry {
 
 struct SleepSettings {
-    Real speed = 0;           // a body is still while all of its nodes are slower [m/s]
+    Real speed = 0;           // speed limit: a body is still while all of its nodes are slower [m/s]
     bool own_limits = false;  // true: own_sleep_limits replace `speed` (stillness.h)
     Real time = 0.5;          // time for which a body and all that it touches must be still [s]
     Real gravity = 0;         // [m/s^2]
@@ -38,7 +38,7 @@ struct TouchInputs {
     std::span<const ContactState> state;
     std::span<const Real> gap;                             // [m]
     std::span<const Vec3> surface_velocity;                // [m/s]
-    std::span<const Index> joint_first{}, joint_second{};  // by joint: rows of BodyTable
+    std::span<const Index> joint_first{}, joint_second{};  // by joint: rows of its bodies in BodyTable
 
     static TouchInputs bind(const Binder& binder, const ContactTable& contact, const JointTable& joint) {
         return {.first_body = binder.read(contact.first_body),

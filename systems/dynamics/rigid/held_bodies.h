@@ -1,4 +1,5 @@
-// Rigid bodies that an attachment holds completely: such bodies follow its motion (docs/methods/rigid_bodies.md 5).
+// Rigid bodies that an attachment holds: such a body follows the motion of the attachment (docs/methods/rigid_bodies.md
+// 5).
 #pragma once
 
 #include <span>
