@@ -73,7 +73,7 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
     for (std::size_t e = 0; e < size(); ++e) {
         const Nodes nodes = nodes_of(e);
         const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
-        Vec3 others = Vec3::Zero();  // sum of the forces on all nodes but the first, which gets the opposite
+        Vec3 others = Vec3::Zero();  // sum of the forces on all other nodes; the first node gets the opposite
         for (std::size_t k = 1; k < nodes.place.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];
             out[static_cast<std::size_t>(nodes.place[k])] += of_node;

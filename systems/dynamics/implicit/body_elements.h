@@ -77,7 +77,7 @@ private:
     std::vector<MaterialConstants> material_;
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;
-    std::vector<Index> block_;  // index in the matrix of each block k >= l of an element, element by element
+    std::vector<Index> block_;  // matrix index of the block of each node pair, element by element
     std::vector<Vec3> turned_;  // work memory: shape gradients of one element in principal axes
 };
 

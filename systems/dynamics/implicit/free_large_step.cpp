@@ -57,8 +57,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     out.large_next[r] = is_large;
     follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
                  out.rotation_shaped[r]);
-    // At large strain removes the momenta in the shape at the end of the step from the velocities, else the rigid
-    // motion.
+    // Removes rigid-body motion from the velocities: in the shape at the end of the step if strain is large, else in
+    // the rest shape.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
         step.before.resize(of.count);

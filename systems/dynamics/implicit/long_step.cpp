@@ -122,8 +122,8 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         of_inertia += inertia * mass * during.squaredNorm();
         next[n] = after;
     }
-    // Elastic energy u.K u / 2 at the displacements u = start + time during, with the stiffness K. K during follows
-    // from A during, the known impulses; A is the matrix of the long step.
+    // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
+    // stiffness K. The product K v follows from A v, which equals the known impulses; A is the matrix of the long step.
     step.elastic_next = 0;
     for (std::size_t n = 0; n < of.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (of_impulses - of_inertia) / (within * within);

@@ -87,7 +87,8 @@ struct LongStepTimes {
     bool ends = false;    // true if the long step ends with this short step
 };
 
-/// Step lengths, and the weight theta (1/2 to 1) of the end of a step in its elastic force.
+/// Step lengths, and the factor theta (1/2 to 1) of the elastic force at the end of a step. The elastic force at the
+/// start has the factor 1 - theta.
 struct ImplicitTimes : LongStepTimes {
     Real h = 0;  // [s]
     Real theta = 1;
@@ -191,14 +192,14 @@ struct ImplicitStrains {
 
 /// Result of strain_implicit_bodies for one body.
 struct StrainPart {
-    Real damped = 0;  // damped energy minus the work of the moments of holds [J]
+    Real damped = 0;  // damped energy minus the work of the moment of the hold [J]
     // Impulse of weight and loads over the whole step, minus their impulse over the time for which they act on other
     // bodies [N s].
     Vec3 impulse = Vec3::Zero();
 };
 
 struct StrainFindings {
-    // Sums of StrainPart over all bodies:
+    // Sums of StrainPart::damped and StrainPart::impulse over all bodies:
     Real damped = 0;
     Vec3 impulse = Vec3::Zero();
     NewtonCounts newton;
