@@ -10,11 +10,11 @@ namespace skerry {
 
 namespace {
 
-// Assumed modulus of a guard before it comes into play, over its full modulus. Its inertia should be negligible at
-// ordinary strain.
+// Ratio of the assumed modulus of an inactive inversion barrier (guard) to its stiffness k (docs/methods/elasticity.md
+// 7.7). The ratio is small so that the added inertia is negligible at ordinary strain.
 constexpr Real modulus_at_rest = 0.01;
 
-/// True if a tetrahedron has moving corners and all of them belong to one cluster.
+/// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.
 bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, std::span<const Real> inverse_mass) {
     Index root = no_index;
     for (Index k = 0; k < nodes.count; ++k) {
@@ -27,7 +27,7 @@ bool are_in_one(NodeChains& chains, const BlockNodes& nodes, std::size_t lane, s
     return root != no_index;
 }
 
-/// Volume of a tetrahedron from its gradients; 0 in an unused lane [m^3].
+/// Volume of a tetrahedron from the gradients of its shape functions [m^3]; 0 in an unused lane.
 Real volume_of(const BlockNodes& nodes, std::size_t l) {
     Mat3 gradients;
     for (Index k = 1; k < 4; ++k)

@@ -1,4 +1,4 @@
-// Activates the guards of a body (docs/methods/elasticity.md 7.7).
+// Activates inversion barriers (guards) of tetrahedra inside the clusters of a body (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include <span>
@@ -7,18 +7,20 @@
 
 namespace skerry {
 
-/// Output columns, by block of the body.
+/// Output columns of arm_guards, with one row per element block of the body.
 struct GuardOutputs {
     std::span<ElementLane> modulus, volume;  // Pa; m^3
 };
 
-/// A guard acts if all of its moving corners are nodes of one cluster of the other implicit elements of the body. It
-/// then gets its volume and a modulus, which is raised as it comes into play (stiffen_clusters.h). Other guards get 0
-/// for both. A guard that already acts keeps its assumed modulus. Sequential; allocates.
+/// Activates every guard whose moving corners are all nodes of one cluster. Guards themselves do not form clusters. An
+/// active guard gets its volume and an assumed modulus; stiffen_clusters raises this modulus when the guard is
+/// compressed. Other guards get volume 0 and modulus 0. The assumed modulus of an already active guard does not
+/// decrease. Sequential; allocates.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,
                 const GuardOutputs& out);
 
-/// Deactivates all guards of a body: sets their volumes to 0. Both columns are by block of the body.
+/// Deactivates all guards of a body by setting their volumes to 0. `part` and `volume` have one row per element block
+/// of the body.
 void disarm_guards(std::span<const ElementPart> part, std::span<ElementLane> volume);
 
 }  // namespace skerry

@@ -29,11 +29,11 @@ void sort_unique(std::vector<Index>& nodes) {
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
-/// Numbers the clusters of a body in the order of their first nodes and lists the nodes of each.
+/// Numbers the clusters of a body in the order of their first nodes and lists the nodes of each cluster.
 void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeClusters& clusters) {
     const auto first = static_cast<Index>(clusters.body.size());
     for (const Index n : nodes) {
-        const Index root = sets.root(n);  // the smallest node of its set: listed first
+        const Index root = sets.root(n);  // smallest node of the set, so the loop visits it first
         if (root == n) {
             clusters.cluster_of[n] = static_cast<Index>(clusters.body.size());
             clusters.body.push_back(body);
@@ -51,7 +51,7 @@ void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeC
     }
 }
 
-/// Lists the clusters of a body and inverts their matrices.
+/// Lists the clusters of a body and inverts their inertia matrices.
 void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size_t body, UnionFind& sets,
            NodeClusters& clusters) {
     const Range blocks = inputs.body_blocks[body];
@@ -88,7 +88,7 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
         const std::size_t begin = clusters.inverse.size();
         clusters.first_entry.push_back(begin);
         clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
-        // bitwise symmetric, so that two contacts act on each other equally
+        // Mirrors the upper triangle: a bitwise symmetric inverse makes two contacts act on each other equally.
         for (Eigen::Index i = 0; i < inverse.rows(); ++i)
             for (Eigen::Index j = 0; j < inverse.cols(); ++j)
                 clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =
@@ -96,7 +96,7 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
     }
 }
 
-/// Copies cluster c unchanged.
+/// Copies cluster `c` of `before` unchanged to the end of `clusters`.
 void keep(const NodeClusters& before, std::size_t c, NodeClusters& clusters) {
     const std::span<const Index> nodes = before.nodes[c];
     for (std::size_t k = 0; k < nodes.size(); ++k) {

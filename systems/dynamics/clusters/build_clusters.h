@@ -1,4 +1,4 @@
-// Builds the inertia matrices of the nodes of implicit elements (docs/methods/clusters.md 2).
+// Builds the clusters of nodes that implicit elements connect, and their inertia matrices (docs/methods/clusters.md 2).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Data from which clusters are built.
+/// Columns of bodies, elements and nodes from which clusters are built.
 struct ClusterInputs {
     std::span<const Range> body_blocks;
     std::span<const Real> body_cluster_step;  // s
@@ -18,17 +18,21 @@ struct ClusterInputs {
     std::span<const Real> mass, inverse_mass;
 };
 
-/// Builds the clusters, sets of moving nodes that implicit elements connect, and inverts their matrices
-/// A = M + beta sum modulus V sum_kl g_k.g_l, summed over those elements. Sequential; allocates.
+/// Builds the clusters, which are sets of moving nodes that implicit elements connect, and inverts their inertia
+/// matrices
+///     A = M + beta sum_e c_e V_e sum_kl g_k.g_l,     beta = (step/1.8)^2.
+/// M is the matrix of lumped masses and `step` the step of the body's clusters. Implicit element e has the assumed
+/// modulus c_e, the volume V_e, and the shape gradient g_k at node k. Sequential; allocates.
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
 /// Rebuilds the clusters of bodies whose implicit elements have changed, marked in `body_changed` (by body). The
-/// matrices of all other bodies stay bitwise the same.
+/// matrices of all other bodies stay bitwise equal.
 void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
                       std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
-/// Sizes of the clusters that a body would have: the nodes of the largest one, the entries of all matrices, and the sum
-/// of the cubes of their widths, which is proportional to the cost of inverting them.
+/// Sizes of the clusters that a body would have. `largest`: node count of the largest cluster. `entries`: entries of
+/// all inertia matrices together. `cubes`: sum of the cubes of the node counts, proportional to the cost of the
+/// inversions.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

@@ -11,12 +11,12 @@
 
 namespace skerry {
 
-/// True if the element in lane `l` acts on a node, that is, has a gradient there.
+/// True if the element in lane `l` has a nonzero shape gradient at a node, so that it exerts forces on the node.
 inline bool holds(const ElementGradient& gradient, std::size_t l) {
     return gradient[0][l] != 0 || gradient[1][l] != 0 || gradient[2][l] != 0;
 }
 
-/// Calls visit(block, lane, modulus) for every implicit element. `modulus` begins at the row of blocks.begin.
+/// Calls visit(block, lane, modulus) for every implicit element. Row 0 of `modulus` belongs to the block blocks.begin.
 template <class Visit>
 void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit&& visit) {
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
@@ -24,7 +24,7 @@ void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit
             if (const Real m = modulus[b - static_cast<std::size_t>(blocks.begin)][l]; m > 0) visit(b, l, m);
 }
 
-/// Calls visit(node, k) for the moving nodes on which the element in lane `l` acts.
+/// Calls visit(node, k) for every moving node on which the element in lane `l` acts; k is its index in the element.
 template <class Visit>
 void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
     for (Index k = 0; k < nodes.count; ++k) {
@@ -33,14 +33,14 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
     }
 }
 
-/// Sets of moving nodes of a body that its implicit elements connect. Guards are left out: they only act within a
-/// cluster.
+/// Sets of moving nodes that the implicit elements of a body connect. Guards connect no nodes, since they only act
+/// inside a cluster.
 struct NodeChains {
-    Index first = 0;                    // first node with an implicit element
-    UnionFind sets;                     // by node - first
-    std::vector<std::uint8_t> chained;  // by node - first, up to the last connected node
+    Index first = 0;                    // smallest row of NodeTable among the connected nodes
+    UnionFind sets;                     // by row of NodeTable minus `first`
+    std::vector<std::uint8_t> chained;  // 1 for connected nodes; by row of NodeTable minus `first`
 
-    /// `modulus` begins at the row of blocks.begin.
+    /// `modulus`: assumed moduli by block; row 0 belongs to the block blocks.begin.
     NodeChains(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus,
                std::span<const Real> inverse_mass) {
         std::vector<Index> nodes;
@@ -56,7 +56,7 @@ struct NodeChains {
         };
         for_each([&](Index, Index n) { nodes.push_back(n); });
         if (nodes.empty()) return;
-        // the nodes of a body are consecutive rows
+        // The nodes of a body are consecutive rows of NodeTable.
         const auto ends = std::ranges::minmax(nodes);
         first = ends.min;
         sets.start(static_cast<std::size_t>(ends.max - first) + 1);
@@ -67,7 +67,7 @@ struct NodeChains {
         });
     }
 
-    /// Root of the set of a node; no_index if no implicit element acts on the node.
+    /// Root of the set that contains a node; no_index if no implicit element acts on the node.
     Index root_of(Index node) {
         const Index row = node - first;
         if (row < 0 || row >= static_cast<Index>(chained.size()) || chained[static_cast<std::size_t>(row)] == 0)

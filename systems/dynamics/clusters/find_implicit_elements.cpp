@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, lane) for every element of the range.
+/// Calls visit(block, lane) for every element of the given blocks.
 template <class Visit>
 void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit) {
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b)
@@ -21,7 +21,7 @@ void for_each_element(const ElementInputs& elements, Range blocks, Visit&& visit
             if (elements.volume[b][l] > 0) visit(b, l);
 }
 
-/// Rows of the nodes of the elements, ascending.
+/// Rows of NodeTable of the nodes of all elements in the given blocks, ascending.
 std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
     Index last = 0, first = std::numeric_limits<Index>::max();
     const auto for_each_node = [&](auto&& visit) {
@@ -42,7 +42,7 @@ std::vector<Index> nodes_of(const ElementInputs& elements, Range blocks) {
     return nodes;
 }
 
-/// Least moment of inertia of the given nodes of a body [kg m^2].
+/// Least principal moment of inertia of the given nodes of a body about their centre of mass [kg m^2].
 Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, std::span<const Real> mass) {
     Real total = 0;
     Vec3 center = Vec3::Zero();
@@ -59,8 +59,9 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
     return least_moment_of(second);
 }
 
-/// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. The kinetic energy
-/// grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2.
+/// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. At the angular velocity
+/// omega the kinetic energy grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2. c is the modulus, V the
+/// volume, and beta = inertia_of_stiffness(step).
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_of_stiffness(step) * modulus * volume;
 }
@@ -209,19 +210,21 @@ ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    constexpr int rounds_of_sharing = 4;  // between two rounds that make elements implicit
+    constexpr int rounds_of_sharing = 4;  // every fourth round also makes elements implicit
     constexpr int rounds_of_estimates = 24;
-    constexpr Real most_change = 4;  // per round, of a share, so that a hopeless element does not starve its neighbours
+    // Largest factor on a mass share in one round. It keeps an element that stays unstable from taking the masses of
+    // its neighbours.
+    constexpr Real most_change = 4;
     start_mass_shares(elements_, blocks_, out_.mass_share);
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // unstable even with all the mass of its nodes
+        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // unstable even with the full masses of its nodes
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;
     for (int round = 1;; ++round) {
-        // implicit elements stay implicit, so later rounds add no less
+        // Implicit elements stay implicit, so later rounds cannot reduce their volume or moment of inertia.
         if (found.too_many || !(found.moment <= goal.most_moment)) return found;
         if (round % rounds_of_estimates == 1 || found_enough)
             measure();
@@ -232,7 +235,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         found_enough = !(shortest < goal.stands);
         if (found_enough && exact_) break;
-        if (found_enough) continue;  // the estimate has to be confirmed by the bound
+        if (found_enough) continue;  // the rigorous bound must confirm the estimate
         if (round % rounds_of_sharing == 0) {
             give_up(goal.stands);
             found = added(goal);
@@ -252,7 +255,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
                                     const ImplicitOutputs& out) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
-    // elements that become implicit leave their masses to others
+    // Elements that become implicit release their mass shares to explicit elements, so stable steps are computed again.
     for (bool gave_up = true; gave_up;) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
         gave_up = false;

@@ -1,4 +1,4 @@
-// Finds the elements of a body that are not stable at a step and become implicit (docs/methods/clusters.md 3).
+// Finds the elements of a body that are unstable at a given step and makes them implicit (docs/methods/clusters.md 3).
 #pragma once
 
 #include <cstdint>
@@ -9,47 +9,55 @@
 
 namespace skerry {
 
-/// Output columns, by block of the body.
+/// Output columns of the search, with one row per element block of the body.
 struct ImplicitOutputs {
-    std::span<ElementLane> mass_share;  // 0 for implicit elements: they take no mass from their nodes
-    std::span<ElementLane> modulus;     // assumed stiffness of an implicit element; 0: explicit [Pa]
+    // Weight of an element when the masses of nodes are shared; 0 for implicit elements, which take no mass.
+    std::span<ElementLane> mass_share;
+    std::span<ElementLane> modulus;  // assumed stiffness of an implicit element; 0 for an explicit element [Pa]
 };
 
 struct ImplicitGoal {
-    Real step;         // step of the clusters [s]
-    Real stands;       // required stable step of explicit elements by shares; below `step` if mass forms follow [s]
-    Real headroom;     // assumed stiffness of implicit elements over their present stiffness
-    Real most_moment;  // limit of ImplicitShare::moment; the search fails above it
+    Real step;  // step for which the clusters are made [s]
+    // Required stable step of explicit elements with shared masses. It is below `step` if mass forms, computed later,
+    // allow longer steps [s].
+    Real stands;
+    Real headroom;     // ratio of the assumed to the present stiffness of implicit elements
+    Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
 };
 
 struct ImplicitShare {
-    Real moment = 0;        // moment of inertia that the clusters add, over the least moment of the body
-    bool too_many = false;  // more than three quarters of the volume would be implicit: the search fails
+    Real moment = 0;        // moment of inertia added by the clusters, relative to the least moment of the body
+    bool too_many = false;  // the search failed: more than 3/4 of the volume would be implicit
 };
 
-/// Searches for the implicit elements of a body in one shape, for any number of steps. Data that do not depend on the
-/// step are computed once. All arguments must outlive the search, and only the outputs may change. Sequential.
+/// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths; data
+/// that do not depend on the step length are computed once. All constructor arguments must outlive the search, and only
+/// the output columns may change meanwhile. Sequential.
 ///
-/// The bound on the step of an element takes 9x9 matrices. Its change with the masses closely follows that of the trace
-/// of sum_k g_k g_k^T / m_k, which takes one product per node. Most rounds use the trace.
+/// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore estimate the change of
+/// the bound with the masses: the step is nearly proportional to 1/sqrt(T) with the trace T of sum_k g_k g_k^T / m_k.
+/// g_k is the shape gradient and m_k the element's mass share at node k. The trace takes one product per node.
 class ImplicitSearch {
 public:
-    /// The columns of `out` must be those that `elements` reads. `stiffness_sum` is scratch, one entry per node.
+    /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
     ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
-    /// Shares the masses of the body anew, so that every explicit element is stable at goal.stands, and makes as few
-    /// elements implicit as necessary. Those that need most of the masses of their nodes go first. Stops as soon as
-    /// these are too many or add too much to the moment; the outputs are invalid then.
+    /// Shares the masses of the body so that every explicit element is stable at goal.stands, and makes as few elements
+    /// implicit as necessary. Elements that need the largest fraction of the masses of their nodes become implicit
+    /// first. The search stops when implicit elements have too much volume or add too much moment of inertia. The
+    /// outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
 private:
-    /// A node of an element. Listed by block, node of the block and lane, so that sums have a fixed order.
+    /// Pair of an element and one of its nodes. Pairs are listed by block, node of the block and lane, so that sums
+    /// have a fixed order.
     struct Hold {
-        Index node, element;  // numbered from the first of the body
-        Real size;            // squared length of the gradient [1/m^2]
+        Index node, element;  // counted from the first node and the first element lane of the body
+        Real size;            // squared length of the shape gradient [1/m^2]
     };
-    // marks of the nodes of elements that are not stable at the step, and of implicit elements
+    // Bits of marks_: `some_starved` marks the nodes of elements that are unstable at the step, `of_implicit` the nodes
+    // of implicit elements.
     static constexpr std::uint8_t some_starved = 1, of_implicit = 2;
 
     std::size_t row(std::size_t b) const { return b - static_cast<std::size_t>(blocks_.begin); }
@@ -58,19 +66,24 @@ private:
         const auto e = static_cast<std::size_t>(element);
         return column[e / element_lanes][e % element_lanes];
     }
-    /// Fraction of the masses of its nodes that an element needs to be stable at `step`.
+    /// Fraction of the masses of its nodes that an element needs to be stable at `step`. Above 1 no sharing can make
+    /// the element stable.
     Real need(std::size_t b, std::size_t l, Real step) const;
     void list_holds();
-    /// Stable steps of the elements with their present shares: by the bound, or estimated from the last bound.
+    /// measure() and estimate() compute the stable steps of all elements with their present mass shares: by the
+    /// rigorous bound, or by the change of the trace since the last rigorous bound.
     void measure();
     void estimate();
-    /// Trace of sum_k g_k g_k^T / m_k of elements that share masses, up to a factor that depends on the shape only.
+    /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
+    /// only on the shape. g_k is the shape gradient and m_k the element's mass share at node k.
     void find_trace(std::vector<ElementLane>& trace);
     void mark(std::size_t b, std::size_t l, std::uint8_t with);
-    /// Contains some_starved if some node of the element has that mark, and of_implicit if all nodes have it.
+    /// Marks of an element: some_starved if any of its nodes has this mark, and of_implicit if all of its nodes have
+    /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes elements implicit that share nodes with one that is not stable at `step`: those with the greatest need,
-    /// and those without a node outside of clusters, which cost nothing. If there is none, lowers the limit of need.
+    /// Makes elements implicit that share a node with an element unstable at `step`. Candidates are elements whose need
+    /// is at least least_need_, and elements whose nodes all belong to implicit elements, because they enlarge no
+    /// cluster. If there is no candidate, lowers least_need_.
     void give_up(Real step);
     ImplicitShare added(const ImplicitGoal& goal) const;
 
@@ -84,19 +97,22 @@ private:
     Real least_moment_;         // kg m^2
     Index first_node_ = 0;
     std::vector<Hold> holds_;
-    std::vector<ElementLane> frequency_;                               // squared, with all mass of its nodes [1/s^2]
-    std::vector<ElementLane> stiffness_;                               // Pa
-    std::vector<ElementLane> unit_;                                    // stiffness_weight over the mass share
-    std::vector<ElementLane> step_, measured_, trace_, now_, weight_;  // for the present shares
-    std::vector<Real> sum_, ratio_;                                    // by node: sum of stiffness; that over mass
-    std::vector<std::uint8_t> marks_;                                  // by node
+    std::vector<ElementLane> frequency_;  // squared, with all mass of the nodes [1/s^2]
+    std::vector<ElementLane> stiffness_;  // Pa
+    std::vector<ElementLane> unit_;       // stiffness_weight() divided by the mass share
+    // Values by element: stable step, step at the last rigorous bound, trace at that bound, present trace, stiffness
+    // weight.
+    std::vector<ElementLane> step_, measured_, trace_, now_, weight_;
+    // Sum of the element stiffnesses at each node, and this sum divided by the node's mass.
+    std::vector<Real> sum_, ratio_;
+    std::vector<std::uint8_t> marks_;  // by node
     Real least_need_ = 1;
-    bool exact_ = false;  // true if step_ is the bound, not an estimate
+    bool exact_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 
-/// Makes every explicit element implicit that is not stable at goal.stands. Implicit elements stay implicit; mass
-/// shares and mass forms of the others stay as they are. This is fast, but finds more elements than a new sharing of
-/// masses would. It ignores goal.most_moment.
+/// Makes every explicit element implicit that is unstable at goal.stands. Implicit elements stay implicit, and the mass
+/// shares and mass forms of all other elements are unchanged. This is faster than ImplicitSearch::find(), but makes
+/// more elements implicit because masses are not shared anew. goal.most_moment is ignored.
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out);

@@ -27,7 +27,9 @@ void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> m
 }
 
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time) {
-    constexpr Real of_step = 0.1;  // the limit of omega h, sqrt(4 - 2 * 1.8^2 * 0.1), is above 1.8
+    // Ratio of the viscous time to the step. With this viscosity the stability limit of omega h, sqrt(4 - 2 * 1.8^2 *
+    // 0.1), is above 1.8.
+    constexpr Real of_step = 0.1;
     for (std::size_t b = 0; b < modulus.size(); ++b)
         viscous_time[b] = std::ranges::any_of(modulus[b].lane, [](Real of) { return of > 0; }) ? of_step * step : 0;
 }
@@ -78,7 +80,7 @@ Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const E
     });
     if (!(whole > 0)) return 0;
     center /= whole;
-    Mat3 lumped = Mat3::Zero(), spread = Mat3::Zero();  // m^5, integrals of x x^T
+    Mat3 lumped = Mat3::Zero(), spread = Mat3::Zero();  // integrals of x x^T over the volume [m^5]
     for_each_tetrahedron([&](std::size_t b, std::size_t l, Real part) {
         Vec3 sum = Vec3::Zero();
         Mat3 squares = Mat3::Zero();

@@ -12,10 +12,10 @@ namespace skerry {
 
 namespace {
 
-// Rows whose sums are in registers at the same time and share the loads of kicks and column sums. Rows add to a column
-// sum in ascending order, however many are taken at once.
+// Number of matrix rows whose sums stay in registers at the same time. These rows share the loads of impulses and
+// column sums. Rows add to a column sum in ascending order, so this number does not change the results.
 constexpr std::size_t rows_at_once = kernel_parts == 1 ? 8 : 2;
-constexpr std::size_t tile = element_lanes;  // rows and columns that are taken together
+constexpr std::size_t tile = element_lanes;  // rows and columns of one square tile of a matrix
 
 Real8 lanes_at(const Real* from) {
     return *reinterpret_cast<const Real8InMemory*>(from);
@@ -27,8 +27,8 @@ Real sum_of_lanes(const Real8& of) {
     return ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
 }
 
-/// A vector of a cluster, by component and place. Each component begins at a multiple of a register's length, so that
-/// one load touches one cache line.
+/// A vector for each node of a cluster, stored as three lists of components by index of the node in the cluster. Each
+/// list begins at a multiple of the register length, so that one load touches one cache line.
 struct ByComponent {
     Real* component[3];
 
@@ -36,7 +36,7 @@ struct ByComponent {
     Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
 };
 
-/// Sums of some rows of a matrix, by component. Each lane sums its own columns.
+/// Products of some matrix rows with a vector field, by component of the vectors. Each lane sums its own columns.
 template <std::size_t Rows>
 struct RowSums {
     std::array<Real8, Rows> x{}, y{}, z{};
@@ -50,9 +50,9 @@ template <std::size_t Rows, class Visit>
     (std::make_index_sequence<Rows>());
 }
 
-/// Products of `Rows` rows from `place` on with columns 0 .. width, a multiple of the tile. Returns the sums of the
-/// rows and, since the matrix is symmetric, adds the transposed entries to the sums of those columns. So only one
-/// triangle is read: large matrices do not fit into the caches.
+/// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, with columns 0 to width - 1; `width` is a
+/// multiple of the tile. Returns the sums of the rows, and adds the products of the transposed entries to the sums of
+/// those columns. So only one triangle is read: large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t place, std::size_t width,
@@ -60,7 +60,7 @@ template <std::size_t Rows>
     const Real* const row = matrix + place * count;
     const auto [kick_x, kick_y, kick_z] = kick.component;
     const auto [sum_x, sum_y, sum_z] = sum.component;
-    Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous: one address for all
+    Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous, so that one base address serves all rows
     std::copy_n(kick_x + place, Rows, own_x);
     std::copy_n(kick_y + place, Rows, own_y);
     std::copy_n(kick_z + place, Rows, own_z);
@@ -84,7 +84,7 @@ template <std::size_t Rows>
     return rows;
 }
 
-/// Stores the sum over the lanes of each register, one after the other.
+/// Sums the lanes of each register and stores the sums one after the other.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline void store_sums(const std::array<Real8, Rows>& of, Real* to) {
     for_each_row<Rows>([&](auto r) __attribute__((always_inline)) { to[r] = sum_of_lanes(of[r]); });
@@ -105,7 +105,8 @@ template <std::size_t Rows>
              to);
 }
 
-/// Sums the rows place .. place + Rows of the tile that begins at `first`; all of the tile's columns are read.
+/// Computes the sums of `Rows` rows, from row `place` on, of the complete tile that begins at row `first`. All columns
+/// within the tile are read, not only one triangle.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -123,7 +124,7 @@ void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, 
     store_sums(rows.z, sum.component[2] + place);
 }
 
-/// Sums the rows place .. place + Rows of the last, incomplete tile, which begins at `first`.
+/// Computes the sums of `Rows` rows, from row `place` on, of the last, incomplete tile, which begins at row `first`.
 template <std::size_t Rows>
 void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                      const ByComponent& kick, const ByComponent& sum) {
@@ -142,7 +143,7 @@ void add_rows_at_end(const Real* matrix, std::size_t count, std::size_t first, s
     });
 }
 
-/// sum = matrix kick.
+/// Computes the product `sum` of a symmetric matrix and the vectors `kick`.
 void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, const ByComponent& sum) {
     std::size_t first = 0;
     for (; first + tile <= count; first += tile)
@@ -153,8 +154,9 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
     if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
 }
 
-/// The tile in working memory at which cluster c begins, if its nodes begin at `begin` in the list of all nodes. The
-/// padded clusters before it fit below, since (begin + 7 c)/8, rounded down, is no more than begin/8 + c.
+/// Index of the tile in working memory at which cluster `c` begins. `begin` is the index of its first node in the list
+/// of all cluster nodes. The padded clusters before it end below this tile, since (begin + 7 c)/8, rounded down, is at
+/// most begin/8 + c.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

@@ -1,4 +1,5 @@
-// Applies impulses of forces to the nodes of clusters by the inertia of the cluster (docs/methods/clusters.md 1).
+// Moves the nodes of clusters by impulses of forces, with the inertia matrix of each cluster (docs/methods/clusters.md
+// 1).
 #pragma once
 
 #include <span>
@@ -30,11 +31,12 @@ struct ClusterKickInputs {
     }
 };
 
-/// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity), cluster by cluster. velocity_next stays as it is
-/// if the body is unstrained and the cluster moves as one, since A then acts as the masses do. `kick`: impulse of
-/// forces on each node, by item of clusters.nodes [N s]. `work`: scratch kept between steps. `known`: both still hold
-/// the results of a call with the same clusters, velocities and forces. Parallel over clusters. Returns false if there
-/// is no cluster (skipped).
+/// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity) for the nodes of each cluster, with the inertia
+/// matrix A of the cluster and the node masses m. If the body is unstrained and the nodes of a cluster have equal
+/// velocities, velocity_next is unchanged, since A then acts like the masses. `kick`: impulse of the forces on each
+/// node, by item of clusters.nodes [N s]. `work`: work memory that persists between steps. `known`: `kick` and `work`
+/// still hold the results of a call with equal clusters, velocities and forces. Parallel over clusters. Returns false
+/// if there is no cluster (skipped).
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

@@ -16,10 +16,11 @@ namespace skerry {
 
 namespace {
 
-constexpr Real too_near = 0.9;  // of the assumed modulus: above it the assumption is raised
-constexpr Real raised_to = 2;   // times the present stiffness
+constexpr Real too_near = 0.9;  // fraction of the assumed modulus; stiffer elements get a new assumed modulus
+constexpr Real raised_to = 2;   // ratio of the new assumed modulus to the present stiffness
 
-/// to += x factor_x + y factor_y + z factor_z, by component of the factor. The expression is the same in every lane.
+/// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. All
+/// entries are computed by one expression, vectorised or not.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
@@ -31,9 +32,10 @@ void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& f
     for (; i < to.size(); ++i) to[i] += factor.x() * x[i] + factor.y() * y[i] + factor.z() * z[i];
 }
 
-/// inverse = (A + weight G G^T)^-1 by Woodbury's identity, G = the gradients of the element by node. It subtracts
-/// U (1/weight + G^T U)^-1 U^T with U = A^-1 G. With C C^T = 1/weight + G^T U that is W W^T, W = U C^-T, which is
-/// bitwise symmetric in any order of summation.
+/// Replaces the inverse A^-1 of a cluster's inertia matrix by (A + weight G G^T)^-1, by Woodbury's identity. The
+/// columns of G are the shape gradients of an element, by node. The identity subtracts U (1/weight + G^T U)^-1 U^T with
+/// U = A^-1 G. With the Cholesky factor C C^T = 1/weight + G^T U this is W W^T with W = U C^-T, which is bitwise
+/// symmetric in any order of summation.
 void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<const Real> inverse_mass,
                     const NodeClusters& clusters, std::span<Real> inverse) {
     Index cluster = no_index;
@@ -48,7 +50,7 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
             if (inverse_mass[n] > 0 && !g.isZero(0)) visit(static_cast<std::size_t>(clusters.place[n]), g);
         }
     };
-    std::array<std::vector<Real>, 3> moved;  // U, and then W, by component
+    std::array<std::vector<Real>, 3> moved;  // columns of U, later overwritten by columns of W
     for (std::vector<Real>& component : moved) component.assign(count, 0);
     for_each_node([&](std::size_t place, const Vec3& g) {
         const std::span<const Real> row = clusters.row(cluster, static_cast<Index>(place));
@@ -78,13 +80,13 @@ void add_to_inverse(const BlockNodes& of, std::size_t l, Real weight, std::span<
 
 namespace {
 
-/// The vector in lane l.
 Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// Adds the impulse -weight F' g_k to the forces of an element on its nodes in this step. `weight` is its gain of
-/// inertia: it goes on deforming with the momentum that it had, not with the velocity.
+/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to its viscous impulse.
+/// F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the element's
+/// inertia. So the element keeps the momentum of its deformation, and not its velocity.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);
@@ -113,14 +115,14 @@ void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, s
     for (std::size_t i = 0; i < 9; ++i) patches.viscous_impulse[b][i][l] += impulse.data()[i];
 }
 
-/// Forces of the elements on their nodes in the step that begins; they act for `kick` [s].
+/// Forces of the elements on their nodes in the step that begins. They act for the time `kick` [s].
 struct StepForces {
     Real kick;
     const PatchForces& patches;
 };
 
-/// Raises the assumed stiffness of the implicit elements of one block if they come near it. Returns the kinetic energy
-/// that this adds [J]. `forces`: null between steps.
+/// Raises the assumed stiffness of those implicit elements of a block whose present stiffness is close to it. Returns
+/// the kinetic energy that this adds [J]. `forces`: forces of the step, or null between steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
                    const StepForces* forces, const StiffenOutputs& out) {
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);
@@ -146,8 +148,8 @@ Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, R
     return energy;
 }
 
-/// Treats the blocks for which is_due(block) holds, of awake bodies with clusters. Returns the added kinetic energy
-/// [J].
+/// Calls stiffen_block() for the blocks of awake bodies with clusters for which is_due(block) is true. Returns the
+/// added kinetic energy [J].
 template <class IsDue>
 Real stiffen(const ElementInputs& elements, const StiffenInputs& bodies, const StepForces* forces,
              const StiffenOutputs& out, IsDue&& is_due) {

@@ -1,4 +1,5 @@
-// Raises the assumed stiffness of clusters whose elements have become stiffer (docs/methods/clusters.md 3).
+// Raises the assumed stiffness of implicit elements that have become stiffer, and updates their clusters
+// (docs/methods/clusters.md 3).
 #pragma once
 
 #include <span>
@@ -13,7 +14,7 @@ namespace skerry {
 
 struct StiffenInputs {
     std::span<const Range> body_blocks;
-    std::span<const Real> body_cluster_step;  // 0: a body without clusters [s]
+    std::span<const Real> body_cluster_step;  // step for which clusters are made; 0 without clusters [s]
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
@@ -28,10 +29,10 @@ struct StiffenInputs {
     }
 };
 
-/// Data that depend on the stiffness of implicit elements.
+/// Outputs of a stiffening: the assumed moduli of implicit elements, and the cluster matrices that depend on them.
 struct StiffenOutputs {
     std::span<ElementLane> modulus;  // Pa, by block
-    NodeClusters& clusters;          // only their matrices are written
+    NodeClusters& clusters;          // only the inverse matrices are written
 
     static StiffenOutputs bind(const Binder& binder, ElementBlockTable& element, NodeClusters& clusters) {
         binder.value(clusters.nodes);
@@ -44,17 +45,19 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of implicit elements that come near it to twice their present stiffness, and updates
-/// the matrices of their clusters. Returns the kinetic energy that this adds with unchanged velocities [J]. A stiffened
-/// element keeps the momentum with which it deforms, not the velocity. The difference is an impulse of the step
-/// (docs/methods/clusters.md 6). It is added to the forces of the elements, which act for `kick` [s], and to the
-/// viscous impulses. Tests the blocks marked in `patches.stiffening` (compute_element_forces, for the same positions)
-/// and clears the marks. Sequential, in element order.
+/// Raises the assumed stiffness of implicit elements to twice their present stiffness if the present stiffness has come
+/// close to the assumed one. Updates the matrices of their clusters. Returns the kinetic energy that this adds at
+/// unchanged velocities [J].
+///
+/// A stiffened element keeps the momentum of its deformation, and not its velocity. The difference is an impulse of the
+/// step (docs/methods/clusters.md 6). It is added to the element forces, which act for the time `kick` [s], and to the
+/// viscous impulses. Only blocks marked in `patches.stiffening` by compute_element_forces at the same positions are
+/// tested; the marks are then cleared. Sequential, in element order.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 
-/// Stiffens clusters between steps: tests every implicit element and leaves velocities as they are. Returns the kinetic
-/// energy that this adds [J].
+/// Raises the assumed stiffness of implicit elements between two steps. Tests every implicit element and leaves
+/// velocities unchanged. Returns the kinetic energy that the larger inertia adds [J].
 Real stiffen_all_clusters(const ElementInputs& elements, const StiffenInputs& bodies, const StiffenOutputs& out);
 
 }  // namespace skerry

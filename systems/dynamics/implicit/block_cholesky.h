@@ -9,50 +9,51 @@
 
 namespace skerry {
 
-/// Lower triangle of a symmetric matrix of 3x3 blocks, row by row with ascending columns. The diagonal block is the
-/// last of each row.
+/// Lower triangle of a symmetric matrix of 3x3 blocks, stored row by row with ascending columns. The last block of each
+/// row is the diagonal block.
 struct BlockRows {
-    std::vector<Index> offset{0};  // start of each row; rows + 1 entries
+    std::vector<Index> offset{0};  // index of the first block of each row; rows + 1 entries
     std::vector<Index> column;
     std::vector<Mat3> block;
 
     std::size_t size() const { return offset.size() - 1; }
-    /// out = matrix x.
+    /// Computes out = A x with this matrix A.
     void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 };
 
-/// Place of each node in an elimination order with little fill-in (minimum degree). `neighbours`: for each node the
-/// others that share blocks with it; each pair is in both lists.
+/// Position of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
+/// all other nodes that share a block with it; each pair occurs in both lists.
 std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& neighbours);
 
-/// Factorisation L L^T = matrix, row by row (up-looking: Davis, Direct Methods for Sparse Linear Systems, 2006, 4.7).
-/// The pattern is analysed once. Factoring other matrices of that pattern allocates nothing.
+/// Cholesky factorisation L L^T of a matrix A, row by row (up-looking: Davis, Direct Methods for Sparse Linear Systems,
+/// 2006, 4.7). The sparsity pattern is analysed once. Factoring other matrices with the same pattern allocates nothing.
 class BlockCholesky {
 public:
     BlockCholesky() = default;
     explicit BlockCholesky(const BlockRows& pattern);
 
-    /// Returns false if the matrix is not positive definite; the factor is then unusable.
+    /// Factors a matrix. Returns false if the matrix is not positive definite; the factor is then unusable.
     bool factor(const BlockRows& matrix);
-    /// x = matrix^-1 x.
+    /// Replaces x by A^-1 x, with the factored matrix A.
     void solve(std::span<Vec3> x) const { solve_in_place(x.data()); }
-    /// x = matrix^-1 x for three right-hand sides at once.
+    /// Replaces three right-hand sides x by A^-1 x at once, with the factored matrix A.
     void solve(std::span<Mat3> x) const { solve_in_place(x.data()); }
 
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L, each after those it depends on. Marks them by k.
+    /// Columns of the nonzero blocks in row `k` of L, ordered so that each column follows the columns it depends on.
+    /// Sets mark_ of these columns to k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
-    std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index: none
+    std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root
     std::vector<std::size_t> first_;      // start of each column in row_ and block_; columns + 1 entries
-    std::vector<Index> row_;              // row of each block below the diagonal
+    std::vector<Index> row_;              // row of each block of L below the diagonal
     std::vector<Mat3> block_;             // L_ij
-    std::vector<Mat3> inverse_diagonal_;  // inverses of the diagonal blocks of L, lower triangles
-    // Work memory for one row at a time:
+    std::vector<Mat3> inverse_diagonal_;  // inverses of the diagonal blocks of L (lower triangular)
+    // Work memory for the factorisation of one row at a time:
     std::vector<Index> mark_, path_, stack_;
-    std::vector<std::size_t> end_;  // end of the blocks of each column that are known so far
+    std::vector<std::size_t> end_;  // end of the blocks of each column that are computed so far
     std::vector<Mat3> sum_;
 };
 

@@ -1,5 +1,5 @@
-// Energy, forces and tangent of the elements of an implicit body, by the laws of their materials at any strain
-// (docs/methods/implicit_bodies.md 8).
+// Energy, forces and tangent stiffness of the elements of an implicit body at any strain, by the laws of their
+// materials (docs/methods/implicit_bodies.md 8).
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Displacements of the nodes of a body from their rest positions, read by place in the elimination order [m]. The
-/// values are stored by place, or by node with `node_at`, the node of each place.
+/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the place of its node
+/// in the elimination order. If values are stored by node instead, `node_at` gives the node at each place.
 class Displacements {
 public:
     Displacements(std::span<const Vec3> by_place) : by_place_(by_place) {}
@@ -33,27 +33,30 @@ private:
 class BodyElements {
 public:
     BodyElements() = default;
-    /// `constants`: by row of MaterialTable; `place`: place of each node in the elimination order.
+    /// `constants`: material constants by row of MaterialTable; `place`: position of each node in the elimination
+    /// order.
     BodyElements(const ElementList& elements, std::span<const MaterialConstants> constants,
                  std::span<const Index> place);
 
-    /// True if the law of some element is not linear.
+    /// True if some element has a nonlinear material law.
     bool any_bends() const { return any_bends_; }
-    /// Largest |F - 1| of all elements (Frobenius norm).
+    /// Largest Frobenius norm |F - 1| among all elements, with the deformation gradient F.
     Real largest_strain(const Displacements& displacement) const;
-    /// Bound on the change of largest_strain() per largest change of a displacement [1/m].
+    /// Bound on the change of largest_strain() divided by the largest change of a node displacement [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
-    /// Elastic energy of all elements [J].
+    /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
     struct Misfit {
-        Real linear,
-            off;  // energy by linear laws; sum over the elements of its distance from the energy by their laws [J]
+        // `linear`: energy of all elements by linear elasticity. `off`: sum over the elements of the absolute
+        // difference between their energy by material law and by linear elasticity [J].
+        Real linear, off;
     };
     Misfit misfit(const Displacements& displacement) const;
-    /// out = dU/dx, by place [N].
+    /// Computes out = dU/dx, the gradient of the elastic energy U, by place of the node in the elimination order [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
-    /// matrix += scale d2U/dx2, without the negative part of d2U/dx2 [N/m]. The first call locates the blocks in the
-    /// matrix. Matrices of later calls must have the same pattern.
+    /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy, without its negative part, to `matrix`
+    /// [N/m]. The first call locates the blocks of the elements in the matrix, so later matrices must have the same
+    /// pattern.
     void add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix);
 
 private:
@@ -68,13 +71,14 @@ private:
 
     std::vector<std::size_t> first_{0};  // start of each element in place_ and gradient_; elements + 1 entries
     std::vector<Index> place_;
-    std::vector<Vec3> gradient_;               // of each node of each element [1/m]
-    std::vector<Real> volume_;                 // [m^3]
-    std::vector<MaterialConstants> material_;  // constants of the part of the stress that the element gives
+    std::vector<Vec3> gradient_;  // shape gradient at each node of each element [1/m]
+    std::vector<Real> volume_;    // [m^3]
+    // Material constants of each element, for the part of the stress that it contributes.
+    std::vector<MaterialConstants> material_;
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;
-    std::vector<Index> block_;  // block in the matrix of node pairs k >= l, element by element
-    std::vector<Vec3> turned_;  // work memory for one element
+    std::vector<Index> block_;  // matrix index of the block of each node pair, element by element
+    std::vector<Vec3> turned_;  // work memory: shape gradients of one element in principal axes
 };
 
 }  // namespace skerry

@@ -7,15 +7,15 @@ namespace skerry {
 
 namespace {
 
-/// Time from the start of the body's long step to the end of this short step [s].
+/// Time from the start of a body's long step to the end of the present short step [s].
 Real time_at_end(const LongStep& step, const ImplicitTimes& times) {
     constexpr Real rounding = 1e-9;
     const Real time = step.done + times.h;
     return std::abs(time - times.length) < rounding * times.length ? times.length : time;
 }
 
-/// Computes the quantities of a long step that depend only on the state at its start. Returns false if its matrix
-/// cannot be factored.
+/// Computes the quantities of a long step that depend only on the state at its start. Returns false if the matrix of
+/// the long step cannot be factored.
 bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                      const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                      std::span<Vec3> impulse) {
@@ -43,7 +43,7 @@ bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     std::ranges::fill(step.answer, Vec3::Zero());
     std::ranges::fill(step.left_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
-    // impulses that give the velocities `left`: A left
+    // Impulses that cause the velocities step.left: A times step.left, with the matrix A of the long step.
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
     for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = step.left[n];
     of.stiff.elastic_forces(impulse, elastic_force);
@@ -98,8 +98,8 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
     const Mat3 back = bodies.turn(r).transpose();
     const Real time = time_at_end(step, times), share = time / times.length, still_left = 1 - share;
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
-    Real taken = 0;                        // reported work of contacts and loads less the growth of energy [J]
-    Real at_start = 0;                     // power of the forces at the start [W]
+    Real taken = 0;                        // reported work of contacts and loads minus the growth of energy [J]
+    Real at_start = 0;                     // rate of elastic energy at the start of the long step [W]
     Real of_impulses = 0, of_inertia = 0;  // [J]
     for (std::size_t n = 0; n < of.count; ++n) {
         const Real mass = of.stiff.mass(of.place(n));
@@ -122,7 +122,8 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         of_inertia += inertia * mass * during.squaredNorm();
         next[n] = after;
     }
-    // u K u / 2 at u = start + time during; K during follows from A during, whose impulses are known
+    // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
+    // stiffness K. The product K v follows from A v, which equals the known impulses; A is the matrix of the long step.
     step.elastic_next = 0;
     for (std::size_t n = 0; n < of.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (of_impulses - of_inertia) / (within * within);
@@ -148,7 +149,8 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.answer.swap(step.answer_next);
         step.contact.swap(step.contact_next);
         if (!times.ends) continue;
-        // Contact forces are taken to continue at their mean over the elapsed part of the long step.
+        // The next long step assumes that contact forces continue at their mean over the elapsed part of this long
+        // step.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];
     }

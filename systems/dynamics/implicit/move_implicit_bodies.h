@@ -1,5 +1,6 @@
-// Deformation of implicit bodies in their frames: kicked by forces, coupled where contacts touch them, strained after
-// contacts are solved. The frames move like rigid bodies (docs/methods/implicit_bodies.md 2, 4).
+// Deformation of implicit bodies in the frames of their meshes: forces change the velocities, contacts couple the
+// touched nodes, and displacements follow after contacts are solved. The frames move like rigid bodies
+// (docs/methods/implicit_bodies.md 2, 4).
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@
 
 namespace skerry {
 
-/// One StiffBody for each row of RigidBodyTable; empty for a body that does not deform.
+/// One StiffBody for each row of RigidBodyTable; a StiffBody is empty for a body that does not deform.
 using StiffBodies = std::vector<StiffBody>;
 
 struct ImplicitBodies {
@@ -35,10 +36,10 @@ struct ImplicitBodies {
     std::span<const Vec3> displacement;         // ImplicitNodeTable [m]
     std::span<const Vec3> velocity;             // ImplicitNodeTable [m/s]
     std::span<const Vec3> left;                 // ImplicitNodeTable [m]
-    // Used for bodies that attachments hold:
+    // Columns for bodies that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
-    std::span<const Vec3> rest_position, node_velocity;  // NodeTable; velocity of held nodes: prescribed
+    std::span<const Vec3> rest_position, node_velocity;  // NodeTable; velocities of held nodes are prescribed
     std::span<const Real> inverse_mass;                  // NodeTable
 
     static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
@@ -65,7 +66,7 @@ struct ImplicitBodies {
     }
 
     bool any() const { return !displacement.empty(); }
-    /// Rows of ImplicitNodeTable of a row of RigidBodyTable; none if the body does not deform.
+    /// Rows of ImplicitNodeTable of the body in row `r` of RigidBodyTable; empty if the body does not deform.
     Range rows(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
     bool asleep(std::size_t r) const {
@@ -79,14 +80,15 @@ struct ImplicitBodies {
     Mat3 turn(std::size_t r) const { return rotation[r] * axes[r].transpose(); }
 };
 
-/// Long step that implicit bodies of small strain take while other bodies take several short steps.
+/// Long step of the implicit bodies with small strain, during which other bodies take several short steps.
 struct LongStepTimes {
-    Real length = 0;      // 0: no long step, all bodies take the same step [s]
-    bool starts = false;  // the long step starts with this short step
-    bool ends = false;    // the long step ends with this short step
+    Real length = 0;      // length of a long step; 0 if all bodies take the same step [s]
+    bool starts = false;  // true if the long step starts with this short step
+    bool ends = false;    // true if the long step ends with this short step
 };
 
-/// Length and theta of the step.
+/// Step lengths, and the factor theta (1/2 to 1) of the elastic force at the end of a step. The elastic force at the
+/// start has the factor 1 - theta.
 struct ImplicitTimes : LongStepTimes {
     Real h = 0;  // [s]
     Real theta = 1;
@@ -100,9 +102,10 @@ struct ImplicitTimes : LongStepTimes {
 };
 
 struct ImplicitLoads {
-    std::span<const Vec3> load;  // applied force by node; empty: none [N]
-    Vec3 gravity;                // accelerates held bodies; others fall with their frames [m/s^2]
-    Real kick;  // time for which loads act on other bodies; on implicit bodies they act for the whole step [s]
+    std::span<const Vec3> load;  // applied force by node; empty if there is none [N]
+    Vec3 gravity;                // accelerates nodes of held bodies; free bodies fall with their frames [m/s^2]
+    // Time for which loads act on other bodies. On implicit bodies they act for the whole step [s].
+    Real kick;
 
     static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced,
                               const Real& kick) {
@@ -112,7 +115,7 @@ struct ImplicitLoads {
     }
 };
 
-/// Rotation of the frames of free bodies: RigidBodyTable.
+/// Rotational state of the frames of free bodies, from RigidBodyTable.
 struct ImplicitSpins {
     std::span<const Vec3> moments, angular_momentum, moment_kick, contact_moment, push_spin;
 
@@ -124,7 +127,8 @@ struct ImplicitSpins {
                 .push_spin = binder.read(rigid.push_spin)};
     }
 
-    /// Angular momentum in the world, without contacts (kicked) and with them (after) [kg m^2/s].
+    /// Angular momentum in the world frame at the end of the step: kicked() without contacts, after() with contacts [kg
+    /// m^2/s].
     Vec3 kicked(std::size_t r) const { return angular_momentum[r] + moment_kick[r]; }
     Vec3 after(std::size_t r) const { return angular_momentum[r] + (moment_kick[r] + contact_moment[r]); }
 };
@@ -142,17 +146,20 @@ struct ImplicitKicks {
     }
 };
 
-/// Computes velocity_next, the velocity of the step's displacement: A^-1 P (M w + theta h (Q^T f - K u)), or by
-/// Newton's method where strain is large. It is added to the velocities of the nodes with their frame, for which
-/// kick_rigid_bodies must have run. Factors of this step's length are computed if they are missing. For a held body
-/// velocities are those in the world, turned into the frame of its start; its held nodes have theirs already. Parallel
-/// over bodies. Returns false if there is no implicit body (skipped).
+/// Computes out.velocity_next, the velocity of the step's displacement in the frame of the mesh: A^-1 P (M w + theta h
+/// (Q^T f - K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2), or the result of Newton's method at
+/// large strain. Adds this velocity to the node velocities that kick_rigid_bodies has computed from the motion of the
+/// frames. Computes missing factors for the step length.
+///
+/// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
+/// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body
+/// (skipped).
 bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
 
-/// Lists the nodes that contacts touch, and computes their responses to impulses on each other. Returns false if no
-/// contact touches an implicit body (skipped).
+/// Lists the nodes of implicit bodies that contacts touch, and computes the velocity responses of these nodes to
+/// impulses on each other. Returns false if no contact touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
@@ -164,7 +171,7 @@ struct ImplicitStrains {
     std::span<Vec3> hold_moment, moments_next;
     std::span<Mat3> axes_next, rotation_shaped;
     std::span<std::uint8_t> large_next;
-    std::span<Vec3> force;  // by node, written for held nodes [N]
+    std::span<Vec3> force;  // force by node, written only for held nodes [N]
 
     static ImplicitStrains bind(const Binder& binder, ImplicitNodeTable& implicit, RigidBodyTable& rigid,
                                 NodeTable& node) {
@@ -183,32 +190,34 @@ struct ImplicitStrains {
     }
 };
 
-/// Result of the step of one body.
+/// Result of strain_implicit_bodies for one body.
 struct StrainPart {
-    Real damped = 0;  // damped energy less the work of the moments of holds [J]
-    // impulse of weight and loads over the step less that over the time for which they act on other bodies [N s]
+    Real damped = 0;  // damped energy minus the work of the moment of the hold [J]
+    // Impulse of weight and loads over the whole step, minus their impulse over the time for which they act on other
+    // bodies [N s].
     Vec3 impulse = Vec3::Zero();
 };
 
 struct StrainFindings {
-    Real damped = 0;  // sums over the bodies of StrainPart
+    // Sums of StrainPart::damped and StrainPart::impulse over all bodies:
+    Real damped = 0;
     Vec3 impulse = Vec3::Zero();
     NewtonCounts newton;
-    Index unsolved = no_index;  // first row of BodyTable whose step of large strain was not solved
+    Index unsolved = no_index;  // first row of BodyTable for which Newton's method failed
 };
 
-/// Computes velocities and displacements at the end of the step. Adds elastic forces on held nodes to `force`, which
-/// then acts for the time `loads.kick`, and writes elastic moments on held frames to `hold_moment`. `parts` is work
-/// memory, by row of RigidBodyTable. Parallel over bodies.
+/// Computes velocities and displacements at the end of the step. Adds the elastic forces on held nodes to `force`,
+/// which then holds forces that act for the time loads.kick. Writes the elastic moments on held frames to
+/// `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// Commits a short step: advances every body that is in a long step within it. `left`: ImplicitNodeTable [m].
+/// Commits a short step: advances the long step of every body that is in one. `left`: column of ImplicitNodeTable [m].
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 
-/// Moves displacements on for `seconds` at the present velocities. Writes the columns that ElasticMotion reads.
+/// Moves displacements for the time `seconds` at the present velocities. Writes the columns that ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
                            const ImplicitStrains& out);
 

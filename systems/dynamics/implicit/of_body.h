@@ -1,4 +1,4 @@
-// Rows of one implicit body, by node and by place in its factor.
+// Table ranges of one implicit body, and the places of its nodes in the elimination order.
 #pragma once
 
 #include <span>
@@ -24,18 +24,20 @@ struct OfBody {
     std::size_t place(std::size_t n) const { return static_cast<std::size_t>(stiff.place(n)); }
 };
 
-/// The number `inertia` of the matrix inertia M + within^2 K of a step; `within`: theta h [s].
+/// Coefficient `inertia` in the matrix inertia M + within^2 K of a step, with the masses M and the stiffness K.
+/// `within`: theta times the step length [s].
 Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
-/// Makes the matrix of a step of small strain that of stiff.respond(). Returns false if it cannot be factored.
+/// Prepares the factor of the small-strain matrix of a step, which stiff.respond() then uses. Returns false if the
+/// matrix cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// Adds up impulses on a free body, by place: M velocity + within (load - force) [N s]. `force`: elastic forces, by
-/// place [N]; `within`: theta times the length of the step [s].
+/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by place [N s]. M are the node
+/// masses. `force`: elastic forces, by place [N]; `within`: theta times the step length [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
 
-/// True if strain is large after a step. `displacement`: at its end, by node [m]. `angular_momentum`: of a free body,
-/// in the frame of its mesh [kg m^2/s].
+/// True if strain is large after a step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: in
+/// the frame of the mesh for a free body, zero for a held body [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
                     StiffBody& stiff);
 

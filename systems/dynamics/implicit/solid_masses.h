@@ -1,5 +1,5 @@
-// Rotation of the solid that tetrahedra fill, in any shape: inertia and angular momentum of velocities that are linear
-// in each tetrahedron (docs/methods/implicit_bodies.md 8).
+// Inertia and angular momentum of the solid that a body's tetrahedra fill, in any shape. Velocities are linear in each
+// tetrahedron (docs/methods/implicit_bodies.md 8).
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// Shape of a body, by place of its nodes.
+/// Deformed shape of a body, by place of its nodes in the elimination order.
 struct BodyShape {
-    std::vector<Vec3> position;  // from the centre of mass [m]
-    std::vector<Vec3> arm;       // the angular momentum of node velocities v is sum arm x v [kg m]
+    std::vector<Vec3> position;  // relative to the centre of mass [m]
+    std::vector<Vec3> arm;       // weights of node velocities v in the angular momentum, sum arm x v [kg m]
 
-    /// Inertia about the centre of mass [kg m^2].
+    /// Inertia tensor of the shape about the centre of mass [kg m^2].
     Mat3 inertia() const;
     Vec3 angular_momentum(std::span<const Vec3> velocity) const;
 };
@@ -23,15 +23,15 @@ struct BodyShape {
 class SolidMasses {
 public:
     SolidMasses() = default;
-    /// `mass`: by tetrahedron [kg]; `place`: place of each node.
+    /// `mass`: by tetrahedron [kg]; `place`: position of each node in the elimination order.
     SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
                 std::span<const Index> place);
 
-    /// Computes the arms from the positions of the shape.
+    /// Computes the arms of a shape from its node positions.
     void find_arms(BodyShape& shape) const;
 
 private:
-    std::vector<std::array<Index, 4>> corners_;  // places of the corners
+    std::vector<std::array<Index, 4>> corners_;  // places of the corners of each tetrahedron
     std::vector<Real> share_;                    // a twentieth of the mass of each tetrahedron [kg]
 };
 

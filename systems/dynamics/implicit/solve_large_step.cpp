@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Function that the step minimises: inertia v M v / 2 - v impulse + U(carried + within v).
+/// Function of the node velocities v that the step minimises: inertia v.M v / 2 - v.impulse + U(carried + within v). M
+/// are the node masses and U is the elastic energy, for a free body plus the energy of the spin.
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
@@ -19,7 +20,8 @@ public:
           step_(step),
           spins_(!stiff.is_held() && !step.angular_momentum.isZero(0)) {}
 
-    /// Value at velocity + along direction [J]. Leaves the displacements there in `within`.
+    /// Value of the function at step_.velocity + along step_.direction [J]. Leaves the displacements for this velocity
+    /// in step_.within.
     Real at(Real along) {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) {
@@ -30,8 +32,8 @@ public:
         return sum + stiff_.elements().energy(step_.within) + of_spin();
     }
 
-    /// Computes force and gradient at the displacements in `within`, and the next direction with the present factor.
-    /// Returns the squared Newton decrement [J].
+    /// Computes forces and gradient at the displacements step_.within, and the next Newton direction with the present
+    /// factor. Returns the squared Newton decrement [J].
     Real turn() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
@@ -45,7 +47,8 @@ public:
         return redirect();
     }
 
-    /// Computes the direction again after a change of the factor alone. Returns the squared Newton decrement [J].
+    /// Computes the Newton direction with a new factor and an unchanged gradient. Returns the squared Newton decrement
+    /// [J].
     Real redirect() {
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) step_.direction[k] = -step_.gradient[k];
         stiff_.respond(step_.direction);
@@ -55,7 +58,7 @@ public:
         return decrement;
     }
 
-    /// Energy that rounding errors are relative to [J].
+    /// Sum of kinetic energy, elastic energy and energy of the spin, which sets the scale of rounding errors [J].
     Real size() const {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k)
@@ -64,7 +67,8 @@ public:
     }
 
 private:
-    /// Energy of the spin of the shape within the step at its angular momentum, which drives nodes outwards [J].
+    /// Energy of the spin with the present angular momentum and the inertia of the shape within the step [J]. Its
+    /// gradient gives the centrifugal forces.
     Real of_spin() const {
         if (!spins_) return 0;
         stiff_.find_shape(step_.within, step_.shape);
@@ -78,8 +82,9 @@ private:
 };
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
-    // Bounds on the decrement relative to the first one (`close`) and on its square relative to all energy
-    // (`rounding`). A factor that leaves more than `still_good` of the decrement is computed again.
+    // `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on the squared decrement
+    // relative to all energy. `still_good`: a new factor is computed if more than this fraction of the decrement is
+    // left.
     constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
@@ -99,7 +104,7 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         if (!std::isfinite(decrement)) return false;
         if (decrement <= std::max(close * close * first, rounding * size)) return true;
         ++step.counts.steps;
-        constexpr Real enough = 1e-4;  // fraction of the decrease that the slope predicts
+        constexpr Real enough = 1e-4;  // required fraction of the decrease that the slope predicts
         Real along = 1, next = objective.at(along);
         for (int halved = 0; !(next <= value - enough * along * decrement + rounding * size); ++halved) {
             if (halved == most_halvings) return false;

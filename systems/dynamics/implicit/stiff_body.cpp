@@ -41,7 +41,8 @@ std::vector<Index> inverse_of(std::span<const Index> place) {
     return node;
 }
 
-/// Matrix of zeros with a block for each pair of nodes that share an element, and on the diagonal.
+/// Block matrix of zeros, with a block on the diagonal for each node and one for each pair of nodes that share an
+/// element.
 BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place,
                      std::span<const Index> node) {
     BlockRows rows;
@@ -64,7 +65,7 @@ Mat3& block_at(BlockRows& rows, Index row, Index column) {
     return rows.block[static_cast<std::size_t>(std::lower_bound(first, last, column) - rows.column.begin())];
 }
 
-/// Reduces the matrix to free nodes. Rows of held nodes keep only the inertia on the diagonal.
+/// Restricts the matrix to free nodes. Rows and columns of held nodes keep only the inertia on the diagonal.
 void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
     for (std::size_t k = 0; k < matrix.size(); ++k)
         for (auto i = static_cast<std::size_t>(matrix.offset[k]); i < static_cast<std::size_t>(matrix.offset[k + 1]);
@@ -124,8 +125,8 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     BodyShape rest{arm_, {}};
     solid_.find_arms(rest);
     inverse_solid_inertia_ = rest.inertia().inverse();
-    // A spinning bar of length l has the energy rho (omega l)^2 / 24 a volume. Its strain is greatest in the middle:
-    // three times that over E.
+    // A bar of length l that spins at the angular velocity omega has the energy density rho (omega l)^2 / 24. Its
+    // strain is greatest in the middle: three times this energy density over Young's modulus.
     Real volume = 0, least = std::numeric_limits<Real>::infinity();
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
@@ -184,11 +185,11 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
     if (!elements_.any_bends()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!looked_at_.empty()) {
-        Real way = 0;  // largest squared distance moved since the last evaluation [m^2]
+        Real way = 0;  // largest squared distance of a node since the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
             way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
         if (way == 0 && angular_momentum == looked_with_) return large_there_;
-        constexpr Real surely = 1 - 1e-9;  // margin for rounding
+        constexpr Real surely = 1 - 1e-9;  // margin for rounding errors
         if (strain_there_ + elements_.strain_by_displacement() * std::sqrt(way) < surely * small_strain) return false;
     }
     looked_at_.assign(displacement.begin(), displacement.end());
@@ -200,8 +201,9 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    constexpr Real calmer = 0.25,
-                   still = 0.1;  // part of the bounds; part of small_strain: energies are mostly rounding below
+    // `calmer`: fraction of the bounds of becomes_large(). `still`: fraction of small_strain below which energies are
+    // mostly rounding errors.
+    constexpr Real calmer = 0.25, still = 0.1;
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
     return elements_.largest_strain(at) <= still * small_strain || !is_off(at, angular_momentum, calmer);
@@ -250,7 +252,8 @@ void StiffBody::stand_in(const Displacements& displacement) {
 }
 
 Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
-    // Solves sum m X x y = 0 by Newton's method. In one step the body turns little against its frame.
+    // Finds the rotation for which sum m X x y = 0, by Newton's method. m are the node masses, and X and y the rest and
+    // the present positions from the centre of mass. In one step a body rotates only little against its frame.
     constexpr int most = 20;
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
@@ -375,7 +378,8 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     }
     take_rigid_part(impulse);
     factor_.solve(impulse);
-    // Removes rounding errors. They matter for stiff bodies, whose rigid response is far above the elastic one.
+    // Removes rounding errors in the rigid motion. They matter for stiff bodies, whose response as a rigid body is far
+    // larger than their elastic response.
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
     take_rigid_part(impulse);
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] /= mass_[k];
@@ -389,7 +393,7 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // With fewer slots than nodes of one step, all columns would be computed again in each step.
+        // With fewer slots than nodes touched in one step, every step would compute all columns again.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {
@@ -430,14 +434,14 @@ void StiffBody::find_responses() {
         std::ranges::fill(responses_, 0);
         return;
     }
-    // Marks the columns that exist as used, so that new ones replace others.
+    // Marks existing columns of the touched nodes as used, so that new columns replace those of other nodes.
     ++uses_;
     for (const Index node : touched_)
         if (const Index slot = slot_of_[static_cast<std::size_t>(node)]; slot != no_index)
             used_at_[static_cast<std::size_t>(slot)] = uses_;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
-        // One column gives both triangles: symmetric to the last bit.
+        // Each column fills both triangles, so the matrix is bitwise symmetric.
         for (std::size_t j = i; j < count; ++j) {
             const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
             for (std::size_t c = 0; c < 3; ++c)

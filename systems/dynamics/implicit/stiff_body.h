@@ -1,5 +1,5 @@
-// Elasticity of an implicit body in the frame that moves with it: K and M of its nodes, and its response to impulses in
-// a step (docs/methods/implicit_bodies.md 2, 3).
+// Elasticity of an implicit body in the frame that moves with it: stiffness K and masses M of its nodes, and velocities
+// that impulses cause in a step (docs/methods/implicit_bodies.md 2, 3).
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@
 
 namespace skerry {
 
-/// Stiffness block -df_k/dx_l of an element in its rest shape [N/m]. `gradient_k`, `gradient_l`: of its nodes [1/m];
-/// `volume`: [m^3].
+/// Stiffness block -df_k/dx_l of an element in its rest shape [N/m], with the force f_k on node k and the position x_l
+/// of node l. `gradient_k`, `gradient_l`: shape gradients at these nodes [1/m]; `volume`: [m^3].
 Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec3& gradient_k, const Vec3& gradient_l);
 
-/// Counters of steps of large strain.
+/// Counters of Newton's method in steps at large strain.
 struct NewtonCounts {
-    std::uint64_t solved = 0;   // steps of bodies that were solved
-    std::uint64_t steps = 0;    // steps of Newton's method
-    std::uint64_t factors = 0;  // factorisations of tangents
+    std::uint64_t solved = 0;   // steps of single bodies for which Newton's method was run
+    std::uint64_t steps = 0;    // iterations of Newton's method
+    std::uint64_t factors = 0;  // factorisations of tangent matrices
 
     NewtonCounts& operator+=(const NewtonCounts& other) {
         solved += other.solved;
@@ -34,19 +34,20 @@ struct NewtonCounts {
     }
 };
 
-/// State of one step of a body of large strain, by place (docs/methods/implicit_bodies.md 8).
+/// State of one step of a body at large strain, by place in the elimination order (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    std::vector<Vec3> carried;   // displacements at the end of the step if nodes stand still [m]
-    std::vector<Vec3> impulse;   // impulses of momentum, loads and weight [N s]
+    std::vector<Vec3> carried;   // displacements at the end of the step if nodes did not move [m]
+    std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
     std::vector<Vec3> velocity;  // velocities of the step's displacement, without contacts [m/s]
-    std::vector<Vec3> force;     // dU/du within the step [N]
-    std::vector<Vec3> before;    // velocities at the start, turned by Coriolis forces, without momenta [m/s]
+    std::vector<Vec3> force;     // gradient dU/du of the elastic energy within the step [N]
+    std::vector<Vec3> before;    // velocities at the start, after Coriolis forces, without rigid motion [m/s]
     std::vector<Vec3> gradient, direction, within;
-    // angular momentum of a free body, in the frame of its mesh; zero for a held body [kg m^2/s]
+    // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
     Vec3 angular_momentum = Vec3::Zero();
-    BodyShape shape;  // shape within the step if angular_momentum is not zero; work memory outside of steps
+    // Shape within the step if angular_momentum is not zero. Outside of steps it is work memory.
+    BodyShape shape;
     NewtonCounts counts;
-    bool failed = false;  // no velocity was found
+    bool failed = false;  // true if Newton's method found no velocity
 
     void resize(std::size_t count) {
         for (std::vector<Vec3>* column :
@@ -56,20 +57,23 @@ struct LargeStep {
     }
 };
 
-/// State of a long step of small strain, while other bodies take several steps, by node
+/// State, by node, of a long step at small strain, during which other bodies take several steps
 /// (docs/methods/implicit_bodies.md 9).
 struct LongStep {
-    Real done = 0;       // elapsed time; 0: the body is in no long step [s]
-    Real weight = 0;     // elapsed time at the end of this short step over its length; 0: ordinary step
-    bool rests = false;  // true if the body rests in this short step
+    Real done = 0;  // elapsed time of the long step; 0 outside of a long step [s]
+    // Elapsed time of the long step at the end of this short step, over the length of the short step; 0 in an ordinary
+    // step.
+    Real weight = 0;
+    bool rests = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
     std::vector<Vec3> start_force;            // K u [N]
-    std::vector<Vec3> impulse, free;          // impulses without contacts [N s], the velocities they give [m/s]
-    std::vector<Vec3> left,
-        left_impulse;  // velocities and impulses of the last long step's contacts, which continue [m/s], [N s]
-    // Contributions of contacts since the start of the long step, at the start and at the end of this short step:
-    std::vector<Vec3> answer, answer_next;    // velocities that contacts gave [m/s]
+    std::vector<Vec3> impulse, free;          // impulses without contacts [N s], velocities caused by them [m/s]
+    // Velocities [m/s] and impulses [N s] of the contacts of the last long step, which are assumed to continue.
+    std::vector<Vec3> left, left_impulse;
+    // Contributions of contacts from the start of the long step to the start of this short step, and (`_next`) to its
+    // end:
+    std::vector<Vec3> answer, answer_next;    // velocities caused by contacts [m/s]
     std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
     Real elastic = 0, elastic_next = 0;       // elastic energy [J]
 
@@ -81,73 +85,79 @@ struct LongStep {
 };
 
 /// Stiffness, masses and factor of one implicit body. Vectors by node are in the elimination order unless a comment
-/// says "by node of the body"; place() gives the place of a node.
+/// says "by node of the body"; place() gives the position of a node in this order.
 class StiffBody {
 public:
     StiffBody() = default;
-    /// `constants`: by row of MaterialTable; `mass` [kg] and `rest_position` [m]: by node of the body.
+    /// `constants`: material constants by row of MaterialTable. `mass` [kg] and `rest_position` [m]: by node of the
+    /// body.
     StiffBody(const ElementList& elements, std::span<const MaterialConstants> constants, std::span<const Real> mass,
               std::span<const Vec3> rest_position, std::span<const std::array<Index, 4>> tetrahedra,
               std::span<const Real> tetrahedron_mass);
 
-    /// Holds the nodes whose `inverse_mass` (by node of the body) is zero from now on. Impulses on held nodes do
-    /// nothing, and other nodes move against them. If there are none the body is free. Keeps the present factor if
-    /// nothing changes.
+    /// Makes the nodes whose `inverse_mass` (by node of the body) is zero held nodes from now on. Impulses do not move
+    /// held nodes, and other nodes deform against them. A body without held nodes is free. The present factor remains
+    /// valid if the set of held nodes is unchanged.
     void hold(std::span<const Real> inverse_mass);
     bool is_held() const { return !held_.empty(); }
 
     bool empty() const { return place_.empty(); }
     std::size_t size() const { return place_.size(); }
     Index place(std::size_t node) const { return place_[node]; }
-    /// Node of the body at each place.
+    /// Node of the body at each place of the elimination order.
     std::span<const Index> nodes() const { return node_; }
     Real mass(std::size_t place) const { return mass_[place]; }
 
-    /// out = K u [N].
+    /// Computes out = K u for the displacements u, with the stiffness K at rest [N].
     void elastic_forces(std::span<const Vec3> displacement, std::span<Vec3> out) const {
         stiffness_.multiply(displacement, out);
     }
-    /// True if linear elasticity or the moments of inertia at rest are no longer accurate enough, which is so in two
-    /// cases. First: |F - 1| is above small_strain somewhere, and either the energies of elements differ from those of
-    /// their laws by more than energy_share in all, or the spin has more than that share of energy and changes by more
-    /// than small_strain with the inertia of the present shape. Second: the spin would stretch a bar by small_strain.
-    /// Always false if all laws are linear. `displacement`: by node of the body [m]. `angular_momentum`: in the frame
-    /// of the mesh; zero for a held body [kg m^2/s].
+    /// True if linear elasticity or the moments of inertia at rest are too inaccurate in this state. `displacement`: by
+    /// node of the body [m]. `angular_momentum`: in the frame of the mesh; zero for a held body [kg m^2/s].
+    ///
+    /// One of two conditions suffices. First, the spin would stretch a bar by small_strain. Second, |F - 1| exceeds
+    /// small_strain in an element with deformation gradient F, and in addition the energies or the spin are inaccurate.
+    /// The energies are inaccurate if linear elasticity and the material laws differ, summed over the elements, by more
+    /// than energy_share of the linear energy. The spin is inaccurate if its energy exceeds the same bound and the
+    /// inertia of the present shape changes the spin by more than the fraction small_strain.
+    ///
+    /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
         return is_beyond({displacement, node_}, angular_momentum);
     }
-    /// Version of becomes_large() for displacements by place. Evaluates elements only if nodes have moved far enough
-    /// since the last evaluation for strain to be large.
+    /// Version of becomes_large() for displacements by place in the elimination order. Evaluates elements only if nodes
+    /// have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
-    /// must be below a quarter of its bound. Also all strains must be below a tenth of small_strain, or the other
-    /// bounds of becomes_large() be met by a quarter.
+    /// must be below a quarter of the bound in becomes_large(). In addition all strains must be below a tenth of
+    /// small_strain, or all other bounds of becomes_large() must be met with a quarter of their values.
     bool becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     static constexpr Real small_strain = 0.02, energy_share = 0.01;
-    /// Elastic energy [J]: u K u / 2, or by the laws of the elements if strain is `large`. `displacement`: by node of
-    /// the body.
+    /// Elastic energy [J]: u.K u / 2 for the displacements u, or by the material laws of the elements if strain is
+    /// `large`. `displacement`: by node of the body [m].
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
-    /// Removes the rigid motion from velocities, by node of the body [m/s].
+    /// Removes the rigid-body motion of the rest shape from velocities, by node of the body [m/s].
     void take_rigid_motion(std::span<Vec3> velocity) const;
-    /// Computes positions and arms of the shape with these displacements.
+    /// Computes node positions and arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets the shape with these displacements as the one whose rigid motion responses by tangents leave out.
+    /// Sets the shape, given by displacements, whose rigid-body motion is removed from responses by tangents.
     void stand_in(const Displacements& displacement);
-    /// Removes momentum and angular momentum in the shape of stand_in() from velocities, by place [m/s].
+    /// Removes momentum and angular momentum, in the shape of stand_in(), from node velocities, by place [m/s].
     void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
     const BodyShape& shape() const { return shape_; }
-    /// Turns displacements (by node) into the frame in which they have no rigid part (docs/methods/implicit_bodies.md
-    /// 1). Returns the rotation from that frame to the frame of the mesh.
+    /// Rotates displacements (by node) into the frame in which they contain no rigid rotation
+    /// (docs/methods/implicit_bodies.md 1). Returns the rotation from this frame to the frame of the mesh.
     Mat3 turn_to_own_frame(std::span<Vec3> displacement) const;
 
-    /// Makes A = inertia M + stiffness K the matrix of respond(). Keeps the present factor if it is of this matrix.
-    /// Returns false if A is not positive definite. Rows of held nodes have only their diagonal.
+    /// Makes A = inertia M + stiffness K the matrix of respond(), with masses M and stiffness matrix K. Reuses the
+    /// present factor if it belongs to this matrix. Returns false if A is not positive definite. Rows of held nodes in
+    /// A have only a diagonal entry.
     bool prepare(Real inertia, Real stiffness);
-    /// Makes A the matrix of respond() with d2U/du2 of the elements at these displacements (by place), without its
-    /// negative part, in place of K. Always computes a new factor, and so does the next prepare(). Returns false if A
-    /// is not positive definite.
+    /// Makes A = inertia M + stiffness d2U/du2 the matrix of respond(). d2U/du2 is the second derivative of the elastic
+    /// energy at these displacements (by place), without its negative part. Always computes a new factor, and forces
+    /// the next prepare() to compute one. Returns false if A is not positive definite.
     bool prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement);
-    /// True if the present factor is one of prepare_tangent().
+    /// True if the present factor was computed by prepare_tangent().
     bool is_tangent() const { return tangent_; }
     void forget_tangent() {
         if (tangent_) forget_factor();
@@ -158,19 +168,20 @@ public:
     LongStep long_step;
     const BodyElements& elements() const { return elements_; }
     bool holds(std::size_t place) const { return is_held() && held_[place] != 0; }
-    /// Replaces impulses [N s] by the velocities [m/s] that they give by A^-1. For a free body the rigid part of the
-    /// impulses is left out, and velocities have none. For a held body impulses on held nodes are left out, and these
-    /// nodes have no velocity.
+    /// Replaces impulses [N s] by the velocities that they cause, A^-1 times the impulses [m/s]. For a free body the
+    /// rigid part of the impulses is removed, and the velocities have no rigid part. For a held body impulses on held
+    /// nodes are ignored, and held nodes get zero velocity.
     void respond(std::span<Vec3> impulse) const;
 
-    /// Responses of all nodes to unit impulses on one node by respond() [1/kg]: a column, by place. Computed once for a
-    /// factor, and kept while there is room.
+    /// Velocities of all nodes, by place, per unit impulse on one node, computed by respond() [1/kg]. The result is
+    /// computed once for a factor, and kept while there is room.
     std::span<const Mat3> column(std::size_t node);
-    /// Responses of some nodes to unit impulses on them by respond() [1/kg]: a symmetric matrix, column by column,
-    /// three numbers a node. `nodes` ascend; `first` is the first node of the body in the same numbering. Kept while
-    /// the same nodes are asked for; zero without a factor.
+    /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]. The result is a
+    /// symmetric matrix, stored column by column with three numbers for each node, and zero without a factor. It is
+    /// reused while the list of nodes stays the same. `nodes` ascend; `first` is the first node of the body in the same
+    /// numbering.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
-    /// Largest memory of kept columns. It is exceeded if one call of responses() needs more columns.
+    /// Memory limit for kept columns. It is exceeded if one call of responses() needs more columns.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // [bytes]
     std::uint64_t columns_made() const { return columns_made_; }
 
@@ -182,52 +193,56 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    /// Test of becomes_large() for energies and spin, without that for |F - 1|; `part`: of the bounds.
+    /// True if the energies of elements or the spin exceed the bounds of becomes_large() times `part`. Does not test
+    /// the strain |F - 1|.
     bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
-    /// Energy of the spin with the inertia at rest [J].
+    /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
         return angular_momentum.dot(inverse_solid_inertia_ * angular_momentum) / 2;
     }
     bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum);
-    /// Computes the corrections that keep responses by a tangent free of rigid motion. K gives no force for rigid
-    /// motion, but a tangent does.
+    /// Computes the corrections that keep responses by a tangent free of rigid motion. They are needed because a
+    /// tangent, unlike K, gives forces for rigid motion.
     void find_rigid_answers();
     template <class X>
     void take_rigid_answer(std::span<X> velocity) const;
     template <class X>
     void take_momenta_of(std::span<X> velocity) const;
 
-    std::vector<Index> place_;        // place of each node of the body
+    std::vector<Index> place_;        // position of each node of the body in the elimination order
     std::vector<Index> node_;         // node of the body at each place
     std::vector<Real> mass_;          // by place [kg]
-    std::vector<Vec3> arm_;           // rest position from the centre of mass, by place [m]
-    std::vector<std::uint8_t> held_;  // by place; empty: no node is held
+    std::vector<Vec3> arm_;           // rest position relative to the centre of mass, by place [m]
+    std::vector<std::uint8_t> held_;  // 1 for held nodes, by place; empty: no node is held
     Real total_mass_ = 0;
-    Mat3 inverse_inertia_ = Mat3::Zero();        // of nodal masses at rest [1/(kg m^2)]
-    Mat3 inverse_solid_inertia_ = Mat3::Zero();  // of the solid at rest [1/(kg m^2)]
-    Real stretching_spin_ = 0;                   // energy of a spin that would stretch a bar by small_strain [J]
+    Mat3 inverse_inertia_ = Mat3::Zero();        // inverse inertia of the nodal masses at rest [1/(kg m^2)]
+    Mat3 inverse_solid_inertia_ = Mat3::Zero();  // inverse inertia of the solid at rest [1/(kg m^2)]
+    Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
-    BodyShape shape_;                          // set by stand_in()
-    Mat3 inverse_arm_inertia_ = Mat3::Zero();  // inverse of the sum of (|a|^2 1 - a a^T) / m, a = arm [1/(kg m^2)]
+    BodyShape shape_;  // set by stand_in()
+    // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the arm a and the mass m of a node [1/(kg m^2)].
+    Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
-    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of M and K in A
+    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of masses and stiffness in the factored matrix
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    std::vector<Mat3> shifts_, turns_;         // A^-1 times the momenta of unit velocities and unit spins, by place
-    Eigen::Matrix<Real, 6, 6> rigid_inverse_;  // inverse of the momenta of shifts_ and turns_
-    // Last evaluation of becomes_large_in_places(); empty: none yet
-    std::vector<Vec3> looked_at_;      // displacements, by place [m]
-    Vec3 looked_with_ = Vec3::Zero();  // angular momentum [kg m^2/s]
+    // Velocity responses to the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by place.
+    std::vector<Mat3> shifts_, turns_;
+    // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
+    Eigen::Matrix<Real, 6, 6> rigid_inverse_;
+    // Inputs and results of the last evaluation in becomes_large_in_places(); looked_at_ is empty before the first:
+    std::vector<Vec3> looked_at_;      // displacements at the last evaluation, by place [m]
+    Vec3 looked_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;
     bool large_there_ = false;
-    // Slot of `columns_` with the column of each node of the body, or no_index:
+    // Slot in `columns_` with the column of each node of the body, or no_index:
     std::vector<Index> slot_of_;
     std::vector<Index> node_in_;          // node of each slot
-    std::vector<std::uint64_t> used_at_;  // count of uses at the last use of each slot
+    std::vector<std::uint64_t> used_at_;  // value of uses_ at the last use of each slot
     std::uint64_t uses_ = 0, columns_made_ = 0;
-    std::vector<Mat3> columns_;  // size() blocks for each slot
-    // Nodes of the body in the last call of responses(), and its result:
+    std::vector<Mat3> columns_;  // velocity responses, size() blocks in each slot
+    // Nodes of the body in the last call of responses(), and the result of this call:
     std::vector<Index> touched_;
     std::vector<Real> responses_;
 };

@@ -1,4 +1,4 @@
-// Impulse and work of joints on the bodies that they move in this step, for the balance of a run.
+// Impulse and work of joints on the bodies that they move in this step, for the energy and momentum balance of a run.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@
 namespace skerry {
 
 struct JointMeasures {
-    Vec3 impulse = Vec3::Zero();  // from the world and from held bodies [N s]
-    Real work = 0;                // of motors and of held bodies that move, less the work taken by stops [J]
+    Vec3 impulse = Vec3::Zero();  // impulse from the world and from held bodies [N s]
+    Real work = 0;                // work of motors and moving held bodies, minus work absorbed by stops [J]
 };
 
-/// Blocks and rigid bodies after the solve; rigid bodies by row of their table.
+/// Joint blocks, and rigid bodies by row of RigidBodyTable, after the contact solve.
 struct JointWorkInputs {
     std::span<const JointBlock> block;
     std::span<const Vec3> impulse;  // of the blocks
@@ -38,7 +38,8 @@ struct JointWorkInputs {
     }
 };
 
-/// Sums the work of all joints, and the impulses from the world and from held bodies. Sequential, in block order.
+/// Sums the work of all joints, and the impulses that joints transmit from the world and from held bodies. Sequential,
+/// in block order.
 JointMeasures measure_joints(const JointWorkInputs& joints);
 
 }  // namespace skerry

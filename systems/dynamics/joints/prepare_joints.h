@@ -1,4 +1,4 @@
-// The velocity equations of the joints in this step (docs/methods/joints.md 2).
+// Prepares the velocity equations of the joints in this step (docs/methods/joints.md 2).
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Place of a joint's frame on one of its bodies or on the world, in coordinates of the world.
+/// Present pose of a joint frame, attached to one of its bodies or to the world, in world coordinates.
 struct JointPlace {
     Vec3 point;
     Mat3 axes;
@@ -59,17 +59,17 @@ struct JointInputs {
     }
 
     std::size_t size() const { return kind.size(); }
-    /// Row of RigidBodyTable; no_index for the world.
+    /// Row of RigidBodyTable of a body; no_index for the world.
     Index rigid(Index body) const {
         return body == no_index ? no_index : body_rigid[static_cast<std::size_t>(body)].begin;
     }
-    /// The first node of a body if impulses can move the body, else no_index.
+    /// First node of a body that impulses can move; no_index for the world and for a body that an attachment holds.
     Index moving_node(Index body) const {
         const Index row = rigid(body);
         if (row == no_index || holder[static_cast<std::size_t>(row)] != no_index) return no_index;
         return body_nodes[static_cast<std::size_t>(body)].begin;
     }
-    /// True if some body is asleep and no body of this joint moves in this step.
+    /// True if some body is asleep and neither body of joint `j` can move in this step.
     bool rests(std::size_t j) const {
         const auto is_out = [&](Index body) {
             return moving_node(body) == no_index || body_asleep[static_cast<std::size_t>(body)] != 0;
@@ -79,16 +79,16 @@ struct JointInputs {
     JointPlace place(Index body, const JointFrame& frame) const;
 };
 
-/// Displacement of a slider [m] or angle of a hinge [rad] between the frames on both bodies; 0 for other kinds. Whole
-/// turns of a hinge are counted so that the angle is the one nearest to `before`.
+/// Displacement of a slider [m] or angle of a hinge [rad] between the frames on both bodies; 0 for other kinds of
+/// joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
-/// Writes the blocks of all joints with a moving body, with the impulses of the last step as the warm start.
-/// `kick`: time for which forces act, including those of motors [s].
-/// Returns false if there is no joint (skipped).
+/// Writes the constraint blocks of all joints with a moving body. The impulses of the last step serve as the warm
+/// start. `kick`: time for which forces act, including the forces of motors [s]. Returns false if there is no joint
+/// (skipped).
 bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks);
 
-/// State of the joints that a committed step stores.
+/// Columns of JointTable that a committed step stores for the next step.
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
@@ -102,7 +102,7 @@ struct JointMemory {
     }
 };
 
-/// Stores coordinates and impulses of the joints for the next step. Returns false if there is no joint (skipped).
+/// Stores the coordinates and impulses of the joints for the next step. Returns false if there is no joint (skipped).
 bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out);
 
 }  // namespace skerry

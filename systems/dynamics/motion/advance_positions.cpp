@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t moved_blocks_per_job = 8;
 
-/// Drift in most steps: no node is pushed, and rows are flat lists of reals.
+/// Drift in a step without push-out. Treats node vectors as flat lists of numbers, for vectorisation.
 void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
     const Real* v = velocity.data()->data();
     Real* x = position.data()->data();
@@ -23,13 +23,13 @@ void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
     for (std::size_t i = 0; i < count; ++i) x[i] += h * v[i];
 }
 
-/// Drift in steps in which some contact pushes. Most nodes are not pushed, so that push_out is cleared only in blocks
-/// with a pushed node.
+/// Drift in a step in which contacts push nodes out of an overlap. Most nodes are not pushed, so push_out is cleared
+/// only in blocks with a pushed node.
 void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_out, std::span<Vec3> position) {
     const Real *v = velocity.data()->data(), *p = push_out.data()->data();
     Real* x = position.data()->data();
     const std::size_t count = 3 * position.size();
-    std::uint64_t pushed = 0;  // bitwise OR of all values; signs are ignored
+    std::uint64_t pushed = 0;  // bitwise OR of all push velocities; the sign bit is ignored
 #pragma omp simd reduction(| : pushed)
     for (std::size_t i = 0; i < count; ++i) {
         x[i] += h * (v[i] + p[i]);

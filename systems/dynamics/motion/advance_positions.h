@@ -1,4 +1,4 @@
-// The drift: velocities move positions. Commits the step.
+// Drift of the nodes: moves positions by the velocities and commits the step.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace skerry {
 
 struct AdvanceInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: no body rests
+    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: no body is asleep
     std::span<const Vec3> velocity_next;                        // [m/s]
     std::span<const Vec3> displacement_origin;                  // [m]
-    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: no frame moves
+    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: all frames stand still
 
-    /// `velocity`: column of the velocities with which nodes move on. `any_asleep`: some body rests.
+    /// `velocity`: column of the velocities with which nodes move. `any_asleep`: true if some body is asleep.
     static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
                               const NodeTable& node, const Column<Vec3>& velocity, const bool& any_asleep) {
         return {.block_begin = binder.read(block.begin),
@@ -34,12 +34,12 @@ struct AdvanceInputs {
 };
 
 struct AdvanceOutputs {
-    std::span<Vec3> push_out;  // empty: no contact pushes [m/s]
+    std::span<Vec3> push_out;  // empty: no contact pushes nodes out of an overlap [m/s]
     std::span<Vec3> position;
     std::span<Vec3> velocity;
     std::span<Real> block_displacement_squared;  // [m^2]
 
-    /// `pushed`: some contact pushes.
+    /// `pushed`: true if some contact pushes nodes out of an overlap.
     static AdvanceOutputs bind(const Binder& binder, NodeTable& node, NodeBlockTable& block, const bool& pushed) {
         return {.push_out = binder.write_if(binder.read(pushed), node.push_out),
                 .position = binder.write(node.position),
@@ -48,9 +48,9 @@ struct AdvanceOutputs {
     }
 };
 
-/// position += h (velocity_next + push_out); velocity = velocity_next; push_out = 0. Skips nodes at rest. The same pass
-/// computes how far the nodes of each block are from their displacement origins, for measure_displacement. Parallel
-/// over node blocks.
+/// Sets position += h (velocity_next + push_out), velocity = velocity_next and push_out = 0, except for nodes of
+/// sleeping bodies. Also computes the greatest squared distance of the nodes of each block from their displacement
+/// origins, for measure_displacement. Parallel over node blocks.
 void advance_positions(Executor& executor, const AdvanceInputs& nodes, Real h, const AdvanceOutputs& out);
 
 }  // namespace skerry

@@ -19,7 +19,7 @@ Real damping_of(const DampingInputs& bodies, std::size_t body) {
     return material == no_index ? 0 : bodies.material_damping[static_cast<std::size_t>(material)];
 }
 
-/// True if damping keeps the rigid motion of the body: no node is pinned.
+/// True if damping preserves the rigid motion of a body, because none of its nodes is pinned.
 bool keeps_rigid_motion(const DampingInputs& bodies, std::size_t body) {
     return bodies.body_pinned_count[body] == 0;
 }
@@ -30,18 +30,19 @@ bool is_damped(const DampingInputs& bodies, std::size_t body) {
            !has_frame && !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
-/// Node that the sums of a body are relative to. Far from the world's origin absolute sums would cancel.
+/// Node whose position and velocity are the reference for the sums of a body. Absolute sums would lose digits far from
+/// the world's origin.
 std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
     return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
 }
 
-/// Position of a node at the time of its velocity, relative to the body's first node.
+/// Position of a node at the time of its velocity, which is earlier than its present position `x` by `lag`.
 template <class T>
 T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
 }
 
-// Sums run over the nodes one after the other, with the components of a node side by side in a register.
+// Sums over nodes keep the components of one node side by side in a register.
 Real4 load(const Vec3& v) {
     return Real4{v[0], v[1], v[2], 0};
 }
@@ -53,7 +54,8 @@ Real4 cross(const Real4& a, const Real4& b) {
            __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(b, b, 1, 2, 0, 3);
 }
 
-/// Sums over a block; positions and velocities relative to those of the body's first node.
+/// Sums of mass, momentum and moments over one node block, with positions and velocities relative to the first node of
+/// the body.
 NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::span<const Vec3> velocity) {
     const std::size_t origin = first_node(bodies, static_cast<std::size_t>(bodies.block_body[block]));
     const Real4 x_origin = load(bodies.position[origin]), v_origin = load(velocity[origin]), one{0, 0, 0, 1};
@@ -74,8 +76,8 @@ NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::spa
     return sums;
 }
 
-/// Adds up the sums of a whole body in the entry of its first block: momentum in the world frame, second moments and
-/// angular momentum about the centre of mass.
+/// Adds up the block sums of a body in the entry of its first block. Momentum is then in the world frame; second
+/// moments and angular momentum are about the centre of mass.
 void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity,
                  std::span<NodeBlockSums> sums) {
     const Range blocks = bodies.body_node_blocks[body];
@@ -94,18 +96,18 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
     total.momentum += total.mass * velocity[first_node(bodies, body)];
 }
 
-/// Angular velocity omega for which the velocities omega x y, y the earlier positions, have the angular momentum of the
-/// body about the present positions: (tr(S) I - S) omega with S = sum m y x^T. Nodes on a line or in a point cannot
-/// rotate about it; omega has no such part.
+/// Angular velocity omega of a body's rigid motion. It solves (tr(S) I - S) omega = L with the unit matrix I, the
+/// angular momentum L about the present positions x, and S = sum m y x^T over nodes of mass m with the earlier
+/// positions y. If all nodes are on one line, omega has no component along this line.
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
-    // Part of the cube of the mean moment. Above it the inverse loses at most ten digits; for most bodies it loses
-    // none.
+    // Bound on the determinant over the cube of the mean moment of inertia. Above it the inverse loses at most ten
+    // digits; for most bodies it loses none.
     constexpr Real well_shaped = 1e-6;
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Real least = 1e-12 * turned.singularValues()[0];  // smaller moments are rounding errors
+    const Real least = 1e-12 * turned.singularValues()[0];  // smaller moments of inertia are rounding errors
     Vec3 omega = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
         if (turned.singularValues()[i] > least)
@@ -114,14 +116,14 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// Rigid motion towards which the velocities of a block are damped, and the fraction.
+/// Rigid motion towards which node velocities are damped, and the removed fraction of the velocity difference.
 struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;
 };
 
-/// Damps velocity_next of nodes, none of which is held, towards a rigid motion. work[n]: kinetic energy removed from a
-/// node [J]. Computes several nodes at a time.
+/// Damps velocity_next of consecutive nodes towards a rigid motion, several nodes at a time. No node may be held.
+/// work[n]: kinetic energy removed from node n [J].
 void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* position, const Vec3* velocity,
                const Real* mass, Vec3* velocity_next, Real* work) {
     const Real *const x = position->data(), *const v = velocity->data();
@@ -139,14 +141,14 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
         next[3 * n] -= fraction * ex;
         next[3 * n + 1] -= fraction * ey;
         next[3 * n + 2] -= fraction * ez;
-        // Half of v^2 before less after. Where positions move the deformation velocity is not quite orthogonal to the
-        // rigid motion.
+        // The removed energy is m v^2/2 before minus after damping. The deformation velocity is not quite orthogonal to
+        // the rigid motion if positions and velocities belong to different times.
         work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
     }
 }
 
-/// Damps velocity_next of a block towards the rigid motion of the body's sums by `fraction`. Returns the kinetic energy
-/// removed [J].
+/// Damps velocity_next of a node block by `fraction` towards the rigid motion given by the sums of the body. Returns
+/// the removed kinetic energy [J].
 Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, const NodeBlockSums& total,
                 std::span<const Vec3> velocity, std::span<Vec3> velocity_next) {
     const std::size_t body = static_cast<std::size_t>(bodies.block_body[block]);
@@ -163,7 +165,7 @@ Real damp_block(const DampingInputs& bodies, std::size_t block, Real fraction, c
                end = static_cast<std::size_t>(bodies.block_end[block]);
     std::array<Real, nodes_per_block> work;
     SKERRY_CHECK(end - begin <= work.size());
-    Real taken = 0;  // sum over the nodes in order [J]
+    Real taken = 0;  // removed kinetic energy, summed in node order [J]
     for (std::size_t first = begin, last = begin; first < end; first = last + 1) {
         for (last = first; last < end && bodies.inverse_mass[last] > 0;) ++last;
         if (last == first) continue;

@@ -1,4 +1,4 @@
-// Damping that keeps momentum and angular momentum (docs/methods/time_stepping.md 3.1).
+// Damping that preserves momentum and angular momentum (docs/methods/time_stepping.md 3.1).
 #pragma once
 
 #include <cstdint>
@@ -45,14 +45,17 @@ struct DampingInputs {
     }
 };
 
-/// Removes the part (1 - exp(-damping kick)) of the deformation velocity v - v_rigid from velocity_next. `kick` is the
-/// time between both velocities [s]. Applies to every body with damping > 0 that is not at rest, not in unstrained
-/// flight and not in RigidBodyTable. `velocity` is that at the start of the step, not the predicted one: a body at rest
-/// under load must not feel its damping. v_rigid is the rigid motion, at the positions that nodes had `lag` ago, with
-/// the momentum and angular momentum of the body. A body with pinned nodes is damped towards rest. With positions and
-/// velocities of one time a body that rotates at its centrifugal stretch has no deformation velocity. Moments are taken
-/// about the present positions, where the removed velocity then has no angular momentum. `dissipated`: kinetic energy
-/// removed [J]. Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
+/// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
+/// is v at the start of the step, and not the predicted velocity: a body at rest under load must not feel its damping.
+/// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy [J].
+///
+/// Damps every body with damping > 0 that is awake, not in unstrained flight and not in RigidBodyTable. A body with
+/// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
+/// angular momentum of the body, at the node positions of the time `lag` ago. So a body that rotates at its centrifugal
+/// stretch has no deformation velocity. Moments are taken about the present positions, where the removed velocity then
+/// has no angular momentum.
+///
+/// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,
                    std::span<NodeBlockSums> sums, std::span<Vec3> velocity_next, Real& dissipated);
 

@@ -10,12 +10,13 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t displaced_bodies_per_job = 16;  // some microseconds if origins move
+// A body takes some microseconds when its displacement origins move.
+constexpr std::size_t displaced_bodies_per_job = 16;
 
-// Fraction of the mean edge at which the origins move to the nodes. The list of a pair made at drifts a and b holds for
-// a travel of skin - 2 (a + b) (contact_reach.h). So at most 4 x 0.01 = 0.04 of the skin of 0.3125 mean edges is lost,
-// and candidates wake too early by as much. A body that trembles by less than this adds nothing to its travel in the
-// long run.
+// Displacement, as a fraction of the mean edge, at which the displacement origins move to the nodes. A pair list made
+// at the displacements a and b of both bodies is valid for a travel of skin - 2 (a + b) (contact_reach.h). So at most 4
+// x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost, and sleeping candidates wake too early by this
+// travel. A body that vibrates by less than this displacement adds nothing to its travel in the long run.
 constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
@@ -25,8 +26,8 @@ void move_on(MovingFrame& frame, Real seconds) {
     frame.path += way.norm();
 }
 
-/// Mean velocity of the nodes; zero if it is not finite. Any velocity is valid for a frame; this one leaves little
-/// motion in it.
+/// Mean velocity of the nodes; zero if the mean is not finite. A frame may have any velocity; with the mean velocity
+/// nodes move little in the frame.
 Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     Vec3 sum = Vec3::Zero();
     for (Index n = nodes.begin; n < nodes.end; ++n) sum += velocity[static_cast<std::size_t>(n)];
@@ -34,7 +35,7 @@ Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     return mean.allFinite() ? mean : Vec3(Vec3::Zero());
 }
 
-/// Greatest speed of the nodes in a frame with this velocity [m/s].
+/// Greatest speed of the nodes relative to a frame that moves with the velocity `frame` [m/s].
 Real greatest_speed(std::span<const Vec3> velocity, Range nodes, const Vec3& frame) {
     Real squared = 0;
     for (Index n = nodes.begin; n < nodes.end; ++n)
@@ -69,7 +70,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // The search of the next step uses this frame (step_reach.cpp).
+            // The contact search of the next step uses this frame (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

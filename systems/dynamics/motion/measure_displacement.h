@@ -1,4 +1,4 @@
-// Displacement and travel of each body, for the budgets of the collision stages.
+// Displacement and travel of each body, which limit how long results of the collision stages remain valid.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace skerry {
 
 struct DisplacementInputs {
-    std::span<const Real> block_displacement_squared;  // NodeBlockTable, at the present positions [m^2]
+    std::span<const Real> block_displacement_squared;  // NodeBlockTable; at the present positions [m^2]
     std::span<const Range> body_node_blocks;           // BodyTable
     std::span<const Index> block_begin, block_end;     // NodeBlockTable
     std::span<const Real> body_mean_edge;              // [m]
@@ -31,7 +31,7 @@ struct DisplacementInputs {
                 .velocity = binder.read(node.velocity)};
     }
 
-    /// Nodes of a body that are in blocks: all of them, or some of a round body.
+    /// Nodes of a body that belong to node blocks: all nodes, or only some nodes of a round body.
     Range nodes(std::size_t body) const {
         const Range blocks = body_node_blocks[body];
         if (blocks.size() == 0) return {0, 0};
@@ -41,8 +41,8 @@ struct DisplacementInputs {
 };
 
 struct DisplacementOutputs {
-    std::span<Vec3> origin;          // by node: position when the displacement of its body was last zero [m]
-    std::span<std::uint8_t> rebase;  // by body, or empty: 1 requests a displacement of zero; then cleared
+    std::span<Vec3> origin;          // by node: position when the displacement of its body was last reset to zero [m]
+    std::span<std::uint8_t> rebase;  // by body, or empty; 1: reset the displacement and clear this flag
     std::span<MovingFrame> frame;    // BodyTable
     std::span<Real> frame_speed, displacement, travel;
 
@@ -58,17 +58,22 @@ struct DisplacementOutputs {
     }
 };
 
-/// Greatest squared distance of the nodes of a block from their origins, which have moved by `offset` [m], in m^2.
-/// advance_positions writes it for each block.
+/// Greatest squared distance of the nodes of a block from their displacement origins, after the origins have moved by
+/// `offset` [m^2]. advance_positions stores the result for each block.
 Real block_displacement_squared(std::span<const Vec3> position, std::span<const Vec3> origin, const Vec3& offset);
 
-/// Updates displacement and travel of each body after positions have moved on by `seconds` [s]. Frames move on for the
-/// same time. Displacement is the greatest distance of a node from its origin, which moves with the frame. Travel grows
-/// by the change of displacement, so that a body that only trembles does not travel, nor one that flies. If the
-/// displacement exceeds a small part of the mean edge, or on request, the origins move to the nodes and the frame takes
-/// their mean velocity. Then displacement is zero again, travel stays, and frame_speed becomes the greatest speed of
-/// the nodes in the new frame [m/s]. In its frame no node is ever further from where it was at an earlier time than
-/// travel - (travel then) + 2 (displacement then). Parallel over bodies.
+/// Updates displacement and travel of each body after positions have moved for the time `seconds` [s]. Parallel over
+/// bodies.
+///
+/// The displacement of a body is the greatest distance of a node from its origin; origins move with the frame of the
+/// body. Travel grows by the change of displacement, so neither vibration nor flight adds to travel in the long run.
+///
+/// If the displacement exceeds a small fraction of the mean edge, or on request, the origins move to the nodes and the
+/// frame gets the mean velocity of the nodes. The displacement is then zero, travel is unchanged, and frame_speed
+/// becomes the greatest speed of the nodes in the new frame [m/s].
+///
+/// Bound on the motion since an earlier time t: in the frame, no node has moved further than travel - travel(t) + 2
+/// displacement(t).
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out);
 

@@ -10,11 +10,11 @@ namespace skerry {
 namespace {
 
 bool are_parallel(const Vec3& a, const Vec3& b) {
-    constexpr Real parallel = 1e-12;  // sine of the angle between the axes
+    constexpr Real parallel = 1e-12;  // largest sine of the angle between parallel axes
     return a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm();
 }
 
-/// The rotation a fraction s of the way from key a to key b.
+/// Rotation at the fraction `s` of the way from the rotation of key `a` to the rotation of key `b`.
 Mat3 rotation_between(const Vec3& a, const Vec3& b, Real s) {
     if (are_parallel(a, b)) return rotation_matrix(a + s * (b - a));
     return rotation_matrix(s * turn_between(a, b)) * rotation_matrix(a);

@@ -10,24 +10,25 @@
 
 namespace skerry {
 
-/// Pose of a script at time t. With keys: linear in position, constant angular velocity between keys, constant before
-/// the first and after the last. Without keys: initial pose moved by the constant velocities since the start of the
-/// script.
+/// Pose of a motion script at time t. With keys: position is linear and angular velocity constant between two keys, and
+/// the pose is constant before the first and after the last key. Without keys: the initial pose moves at the constant
+/// velocities of the script from its start time on.
 struct RigidPose {
     Vec3 position;
     Mat3 rotation;
 };
 RigidPose pose_at(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial, Real t);
 
-/// The motion of a step from t to t + h: pose at t, and the velocities that lead to the pose at t + h.
+/// Motion of a script in the step from t to t + h: the pose at t, and the velocities that lead to the pose at t + h.
 RigidMotion motion_of_step(const MotionScript& script, std::span<const Keyframe> keyframe, const RigidMotion& initial,
                            Real t, Real h);
 
-/// Rotation vector, about a fixed axis, from one key's rotation to another's [rad]. If both are about one axis it is
-/// their difference and may contain whole turns; otherwise it is the shorter way.
+/// Rotation vector from the rotation of one key to the rotation of another key, about a fixed axis [rad]. If the
+/// rotation vectors of both keys have one axis, the result is their difference and may contain full rotations.
+/// Otherwise the result is the shorter rotation.
 Vec3 turn_between(const Vec3& a, const Vec3& b);
 
-/// Greatest angular speed of a script [rad/s].
+/// Greatest angular speed of a motion script [rad/s].
 Real fastest_turn(const MotionScript& script, std::span<const Keyframe> keyframe);
 
 struct ColliderMotionInputs {
@@ -45,10 +46,10 @@ struct ColliderMotionInputs {
 void move_colliders(const ColliderMotionInputs& colliders, Real t, Real h, std::span<RigidMotion> motion);
 
 struct NodeMotionInputs {
-    std::span<const RigidMotion> motion;  // by attachment or collider
-    std::span<const Range> nodes;         // by attachment: range in node and anchor
+    std::span<const RigidMotion> motion;  // by row of AttachmentTable
+    std::span<const Range> nodes;         // by attachment: range of its entries in `node` and `anchor`
     std::span<const Index> node;          // rows of NodeTable
-    std::span<const Vec3> anchor;         // in the moving frame [m]
+    std::span<const Vec3> anchor;         // position in the frame of the attachment [m]
 
     static NodeMotionInputs bind(const Binder& binder, const AttachmentTable& attachment) {
         return {.motion = binder.read(attachment.motion),
@@ -58,8 +59,8 @@ struct NodeMotionInputs {
     }
 };
 
-/// Gives every node that follows a motion the velocity that takes it from where it is to where the motion ends:
-/// velocity = (end pose applied to anchor - position) / h.
+/// Sets the velocity of every attached node so that the node moves in a straight line to its position at the end of the
+/// step: velocity = (end pose applied to anchor - position) / h.
 void drive_nodes(const NodeMotionInputs& followers, Real h, std::span<const Vec3> position, std::span<Vec3> velocity);
 
 }  // namespace skerry

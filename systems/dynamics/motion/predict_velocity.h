@@ -1,4 +1,4 @@
-// The kick of symplectic Euler: sums forces at the nodes and changes velocities by them.
+// Kick of symplectic Euler: sums the forces on each node and changes its velocity by them.
 #pragma once
 
 #include <span>
@@ -21,11 +21,11 @@ struct KickInputs {
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};                 // applied force; empty: no node has one [N]
-    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; nodes at rest are skipped; empty: no body rests
-    // BodyTable; elements exert no force on nodes of unstrained bodies; empty: no body is unstrained
+    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; sleeping bodies are skipped; empty: none is asleep
+    // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty: no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 
-    /// `forced`: the world has force elements. `any_asleep`: some body rests.
+    /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
     static KickInputs bind(const Binder& binder, const NodeBlockTable& block, const ElementPatches& patches,
                            const NodeTable& node, const BodyTable& body, const Vec3& gravity, const bool& forced,
                            const bool& any_asleep) {
@@ -43,11 +43,13 @@ struct KickInputs {
     }
 };
 
-/// velocity_next = velocity + kick F inverse_mass. `kick`: time for which forces act in this step [s]. F = sum of the
-/// forces of the patches around the node, in a fixed order, + mass gravity + load. Nodes without degrees of freedom
-/// (inverse mass 0) keep their velocity; for them alone F is written to `force`, and the force that holds them is its
-/// opposite. All is done in one pass: storing F of all nodes and reading it again takes as long as the kick itself.
-/// Nodes of an unstrained body without loads and held nodes keep bitwise equal velocities. Parallel over node blocks.
+/// Sets velocity_next = velocity + kick F inverse_mass. F is the force on a node: the forces of its element patches,
+/// summed in a fixed order, plus mass times gravity plus load. `kick`: time for which forces act in this step [s].
+///
+/// Held nodes (inverse mass 0) keep their velocity. For held nodes alone F is written to `force`; the holding force is
+/// its opposite. Storing F of all nodes and reading it again would take as long as the kick itself, so one pass does
+/// all. In an unstrained body without loads and held nodes, equal velocities stay bitwise equal. Parallel over node
+/// blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

@@ -13,8 +13,8 @@ namespace {
 
 namespace limits = own_sleep_limits;
 
-/// Number of measurements in a half that are due at this part of it. They are not evenly spread: an oscillation that is
-/// back at each of them would seem still.
+/// Number of measurements of the drift that are due after the fraction `part` of a half of the sleep time. They are
+/// unevenly spaced: at equal intervals an oscillation that returns at each measurement would seem still.
 int looks_due(Real part) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(part * limits::looks);
@@ -24,11 +24,11 @@ int looks_due(Real part) {
 
 Vec3 mean_of(std::span<const Vec3> points) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& point : points) sum += point - points[0];  // keeps numbers small far from the origin
+    for (const Vec3& point : points) sum += point - points[0];  // avoids rounding errors far from the origin
     return points[0] + sum / static_cast<Real>(points.size());
 }
 
-/// Stillness of one body.
+/// Measures for how long one body has been still.
 class Stillness {
 public:
     Stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, const RestOutputs& state)
@@ -62,12 +62,13 @@ public:
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
-            // A body that is further away at each measurement may move at constant speed, on ice or by a motor.
+            // A body that is further from its start at each measurement may move at constant speed, on ice or by a
+            // motor.
             const bool goes_on = !comes_back && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
-                still = half;  // the next half is compared with this one
+                still = half;  // the next half is compared with the present half
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();
@@ -75,18 +76,20 @@ public:
     }
 
 private:
-    /// True if forces are in balance in the mean over both halves, without those of damping, which a body at rest does
-    /// not have. The mean acceleration of a node, weighted by a triangle, is the difference of its ways in both over
-    /// the square of a half; the sum of the drifts bounds it.
+    /// True if the mean forces over the last two halves are in balance. Damping forces are not counted, since a body at
+    /// rest has none. The mean acceleration of a node, with triangular weights over both halves, is the difference of
+    /// its displacements in both halves over the square of a half. The sum of the drifts is an upper bound of this
+    /// difference.
     bool is_balanced(Real half) const {
-        const bool held = bodies_.pinned_count[body_] > 0;  // damped towards rest, not towards its rigid motion
+        // A body with held nodes is damped towards zero velocity, and not towards its rigid motion.
+        const bool held = bodies_.pinned_count[body_] > 0;
         const Real drift = std::abs(state_.drift[body_]), damped = held ? drift : state_.shape_drift[body_];
         const Real acceleration = (drift + state_.drift_before[body_]) / (half * half);
         return acceleration + damping() * damped / half <= limits::imbalance * settings_.gravity;
     }
 
-    /// True if the shape swings about one that it hardly leaves, and does not creep towards a distant one. With a
-    /// factor q from half to half, `shape_drift q/(1 - q)` of the creep is left.
+    /// True if the shape varies little about a constant shape and does not creep towards a distant shape. If the change
+    /// of shape shrinks by the factor q from half to half, the creep still to come is shape_drift q/(1 - q).
     bool has_its_shape(bool goes_one_way) const {
         const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
         if (now <= limits::noise * bodies_.mean_edge[body_]) return true;

@@ -1,4 +1,4 @@
-// Time for which one body has been still by the engine's own limits (docs/methods/skipping.md 3.1).
+// Measures for how long a body has been still, by the limits of the engine (docs/methods/skipping.md 3.1).
 #pragma once
 
 #include <span>
@@ -7,33 +7,35 @@
 
 namespace skerry {
 
-/// Limits for a still body where the user gives no speed.
+/// Limits for a still body if the user sets no sleep speed.
 namespace own_sleep_limits {
-/// All nodes are slower than this times sqrt(gravity times the mean edge).
+/// Limit of the speed of all nodes, as a fraction of sqrt(gravity times the mean edge).
 inline constexpr Real speed = 0.01;
-/// No node moves further in half of the sleep time than this part of the mean edge.
+/// Limit of the drift, the displacement of a node in half of the sleep time, as a fraction of the mean edge.
 inline constexpr Real drift = 3e-3;
-/// No node moves further than this times its way in the half before. Bodies that begin to slide, fall or buckle do.
+/// Limit of the drift relative to the drift in the half before. Bodies that begin to slide, fall or buckle exceed it.
 inline constexpr Real growth = 2;
-/// Movements below this part of the mean edge are not compared.
+/// Noise level of displacements, as a fraction of the mean edge. Limits of growth, steady motion and shape do not apply
+/// below it.
 inline constexpr Real noise = 2e-5;
-/// Largest imbalance of the forces on a node, without those of damping, as a part of its weight.
+/// Largest imbalance of the forces on a node, as a fraction of its weight. Damping forces are not counted.
 inline constexpr Real imbalance = 1e-3;
-/// Largest change of the shape in half of the sleep time: `shape_change` as a part of its distance from the shape at
-/// rest, or `shape_noise` as a part of the mean edge, whichever is larger.
+/// Largest change of the shape in half of the sleep time. The limit is the larger of `shape_change` times the distance
+/// from the rest shape and `shape_noise` times the mean edge.
 inline constexpr Real shape_change = 8e-3, shape_noise = 1e-4;
-/// Largest rest of a change that goes one way and slows down, as a part of the distance from the shape at rest.
+/// Largest remaining creep of the shape, as a fraction of the distance from the rest shape. Creep is a change in one
+/// direction that slows down.
 inline constexpr Real creep = 3e-3;
-/// Number of measurements of the drift in each half.
+/// Number of measurements of the drift in each half of the sleep time.
 inline constexpr int looks = 8;
 }  // namespace own_sleep_limits
 
-/// Greatest distance between points of one list and those of another after the rigid motion that brings them closest in
-/// the mean of squares [m]. Zero for fewer than two points.
+/// Greatest distance between corresponding points of two lists, after the rigid motion that minimises the sum of
+/// squared distances [m]. Zero for fewer than two points.
 Real shape_distance(std::span<const Vec3> points, std::span<const Vec3> others);
 
-/// Adds `h` to the time for which the body has been still, or restarts it: from zero if the body is not still, from
-/// half of the sleep time if it is, but not yet at its final position.
+/// Adds `h` to the time for which a body has been still. Resets this time to zero if the body is not still, and to half
+/// of the sleep time if the body is still but not yet at its final position.
 void watch_stillness(const RestInputs& bodies, const SleepSettings& settings, std::size_t body, Real h,
                      const RestOutputs& state);
 

@@ -12,9 +12,11 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t watched_per_block = 64;  // for bodies that move; a still body takes some microseconds
+// Block size for moving bodies; a still body takes some microseconds.
+constexpr std::size_t watched_per_block = 64;
 
-/// Joins bodies that touch. Marks bodies that touch a moving collider as restless.
+/// Joins touching bodies and bodies connected by joints into groups. Marks bodies that touch a moving collider as
+/// restless.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
         if (touches.state[c] == ContactState::open) continue;
@@ -33,7 +35,7 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    if (!bodies.held(static_cast<Index>(r))) {  // motion of a held body is not its own
+    if (!bodies.held(static_cast<Index>(r))) {  // an attachment causes the motion of a held body
         taken.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
         taken.momentum += state.momentum[r];
@@ -41,7 +43,7 @@ void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& stat
     state.momentum[r] = state.angular_momentum[r] = Vec3::Zero();
 }
 
-/// Stops the deformation of an implicit body in its frame.
+/// Sets the deformation velocities of an implicit body in its frame to zero.
 void stop_deforming(const RestInputs& bodies, std::size_t body, const RestOutputs& state, TakenByRest& taken) {
     const Range rows = bodies.body_implicit[body];
     const bool held = bodies.held(bodies.rigid(body));
@@ -86,7 +88,7 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time) {
-    // Early exit: the update of positions waits for this stage.
+    // Early exit, because the update of positions waits for this function.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {
@@ -117,7 +119,7 @@ TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const Re
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state) {
     const std::size_t count = bodies.kind.size();
     SKERRY_CHECK(state.asleep.size() == count && state.still_time.size() == count);
-    // A moving body is not ready even if the sleep time is zero.
+    // A moving body must not fall asleep even if the sleep time is zero.
     const auto is_ready = [&](std::size_t b) {
         return state.still_time[b] >= settings.time && state.still_time[b] > 0;
     };

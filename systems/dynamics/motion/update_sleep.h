@@ -1,5 +1,5 @@
-// Bodies that have been slow for a while are put to rest, together with all that they touch. Bodies that touch them
-// wake them (docs/methods/skipping.md 3).
+// Sleep of bodies: a body that has been slow for a while falls asleep together with all bodies that it touches. A
+// sleeping body wakes when an awake body touches it (docs/methods/skipping.md 3).
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,15 @@
 namespace skerry {
 
 struct SleepSettings {
-    Real speed = 0;           // a body is still while all of its nodes are slower [m/s]
-    bool own_limits = false;  // uses own_sleep_limits instead of `speed` (stillness.h)
-    Real time = 0.5;          // a body and all that it touches must be still this long [s]
+    Real speed = 0;           // speed limit: a body is still while all of its nodes are slower [m/s]
+    bool own_limits = false;  // true: own_sleep_limits replace `speed` (stillness.h)
+    Real time = 0.5;          // time for which a body and all that it touches must be still [s]
     Real gravity = 0;         // [m/s^2]
 
     bool on() const { return speed > 0 || (own_limits && gravity > 0); }
 };
 
-/// The contacts of this step, after the solve.
+/// Contacts of this step after the solve, and bodies connected by joints.
 struct TouchInputs {
     std::span<const Index> first_body, second_body;
     std::span<const ContactState> state;
@@ -50,10 +50,10 @@ struct TouchInputs {
     }
 };
 
-/// The contacts of this step, before the solve.
+/// Contacts of this step before the solve.
 struct PressInputs {
     std::span<const Index> first_body, second_body;
-    std::span<const Vec3> warm_impulse;    // empty: no impulses are kept [N s]
+    std::span<const Vec3> warm_impulse;    // impulses of earlier steps; empty: none are stored [N s]
     std::span<const std::uint8_t> asleep;  // by body
 
     static PressInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
@@ -65,14 +65,14 @@ struct PressInputs {
     }
 };
 
-/// Marks both bodies of every contact that has pressed, by its kept impulse. For bodies at rest that is the impulse
-/// from when they were put to rest: without their weight they may not press now. If no impulses are kept every contact
-/// counts.
+/// Marks both bodies of every contact with a stored impulse from earlier steps. For sleeping bodies this is the impulse
+/// from the time when they fell asleep, because the present solve leaves out their weight. If no impulses are stored,
+/// every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
-/// Wakes every body that is marked, that a contact of this step presses on by an impulse or by overlap, that is joined
-/// to an awake body, or that an attachment moves. Contacts between bodies at rest are not searched, so the body or
-/// collider that presses is moving. Returns false if none was woken.
+/// Wakes a body if it is marked in `pressed`, if a contact of this step has an impulse or an overlap, if a joint
+/// connects it to an awake body, or if an attachment moves it. Contacts between sleeping bodies are not searched, so
+/// each contact has an awake body or a moving collider. Returns false if no body was woken.
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time);
@@ -83,8 +83,8 @@ struct RestInputs {
     std::span<const BodyKind> kind;
     std::span<const Range> nodes;
     std::span<const Real> mean_edge;  // [m]
-    std::span<const Real> max_speed;  // of this step [m/s]
-    std::span<const Index> material;  // row of MaterialTable or no_index
+    std::span<const Real> max_speed;  // greatest node speed in this step [m/s]
+    std::span<const Index> material;  // row of MaterialTable, or no_index without a material
     std::span<const Index> pinned_count;
     std::span<const Real> material_damping;  // [1/s]
     std::span<const Vec3> position;          // by node, at the end of the step [m]
@@ -126,15 +126,15 @@ struct RestInputs {
                 .body_core_nodes = binder.read(body.core_nodes)};
     }
 
-    /// Nodes that show whether the body moves. Nodes that only draw a round body may lag behind.
+    /// Nodes that show whether the body moves. Nodes that only draw a round body may lag behind and are left out.
     Range telling_nodes(std::size_t b) const {
         return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
-    /// Row of RigidBodyTable, or no_index.
+    /// Row of RigidBodyTable of a body; no_index for other bodies.
     Index rigid(std::size_t b) const {
         return body_rigid.empty() || body_rigid[b].size() == 0 ? no_index : body_rigid[b].begin;
     }
-    /// True if an attachment holds the body with this row of RigidBodyTable.
+    /// True if an attachment holds the body in the row `rigid` of RigidBodyTable.
     bool held(Index rigid) const {
         return !rigid_holder.empty() && rigid_holder[static_cast<std::size_t>(rigid)] != no_index;
     }
@@ -167,7 +167,7 @@ struct RestOutputs {
     }
 };
 
-/// Energy and momentum that were removed from the bodies put to rest in this step.
+/// Energy and momentum removed from the bodies that fall asleep in this step, and the number of these bodies.
 struct TakenByRest {
     Real energy = 0;               // kinetic energy [J]
     Vec3 momentum = Vec3::Zero();  // [kg m/s]
@@ -179,9 +179,10 @@ struct SleepMemory {
     Column<std::uint8_t> restless;  // by body
 };
 
-/// Counts the time for which each body has been still. Puts bodies to rest that are still with all that they touch,
-/// directly or through others: their velocities become zero. A body that touches a moving collider, or is held by a
-/// moving attachment, stays awake. Parallel over bodies; sequential over contacts when a body is ready.
+/// Counts the time for which each body has been still. Puts a body to sleep if it and all bodies that it touches,
+/// directly or through other bodies, have been still long enough: their velocities become zero. A body that touches a
+/// moving collider or is held by a moving attachment stays awake. Parallel over bodies; sequential over contacts once a
+/// body has been still long enough.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 

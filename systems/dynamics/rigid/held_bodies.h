@@ -1,4 +1,5 @@
-// Rigid bodies that an attachment holds as a whole: they follow its motion (docs/methods/rigid_bodies.md 5).
+// Rigid bodies that an attachment holds: such a body follows the motion of the attachment (docs/methods/rigid_bodies.md
+// 5).
 #pragma once
 
 #include <span>
@@ -16,7 +17,7 @@ struct RigidHolds {
     std::span<const Index> holder;        // RigidBodyTable
     std::span<const Vec3> held_position;  // RigidBodyTable
     std::span<const Mat3> held_rotation;  // RigidBodyTable
-    std::span<const RigidMotion> motion;  // AttachmentTable, motion of this step
+    std::span<const RigidMotion> motion;  // AttachmentTable; motion in this step
 
     static RigidHolds bind(const Binder& binder, const RigidBodyTable& rigid, const AttachmentTable& attachment) {
         return {.holder = binder.read(rigid.holder),
@@ -29,10 +30,11 @@ struct RigidHolds {
     const RigidMotion& motion_of(std::size_t r) const { return motion[static_cast<std::size_t>(holder[r])]; }
 };
 
-/// Pose of a held body at the end of the step, the same as that of its nodes (drive_nodes).
+/// Pose of a held body at the end of the step. It agrees with the positions to which drive_nodes moves the body's
+/// nodes.
 struct HeldPose {
     Vec3 center;
-    Mat3 rotation;  // principal frame to world
+    Mat3 rotation;  // rotation from the principal frame to the world
 
     HeldPose(const RigidHolds& holds, std::size_t r, Real h, const Vec3& rest_center, const Mat3& axes) {
         const RigidMotion& motion = holds.motion_of(r);

@@ -16,7 +16,7 @@ struct RigidField {
     Vec3 at(const Vec3& position) const { return velocity + spin.cross(position - center); }
 };
 
-/// Positions of the nodes of a rigid body.
+/// Maps rest positions of the nodes of a rigid body to world positions.
 struct RigidPlace {
     Vec3 center, rest_center;
     Mat3 from_mesh;
@@ -36,11 +36,12 @@ void for_each_body(Executor& executor, const RigidBodies& bodies, auto&& visit) 
     });
 }
 
-/// Shape of a body at the end of the step in the frame of its mesh: deformed for an implicit body, else at rest.
+/// Shape of a body at the end of the step in the frame of its mesh: deformed for an implicit body, at rest for a rigid
+/// body.
 struct ShapeNext {
     const RigidBodies& bodies;
     const ElasticMotion& elastic;
-    Index first_row;  // of ImplicitNodeTable; no_index: the body is rigid
+    Index first_row;  // first row of ImplicitNodeTable; no_index for a rigid body
     std::size_t first_node;
 
     ShapeNext(const RigidBodies& of, const ElasticMotion& motion, std::size_t r)

@@ -1,5 +1,5 @@
-// The three stages of a step of rigid bodies: kick by forces, turn after contacts are solved, and move when the step is
-// committed (docs/methods/rigid_bodies.md 2).
+// Three stages of a step of rigid bodies: forces change the momenta, the solved contacts give the rotation and
+// position, and the committed step stores the new state (docs/methods/rigid_bodies.md 2).
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 
 namespace skerry {
 
-/// Properties of rigid bodies, and their state at the start of the step. Implicit bodies are among them: the frame of
-/// their mesh and their centre of mass move like a rigid body.
+/// Properties of rigid bodies, and the state of these bodies at the start of the step. Implicit bodies are included:
+/// the frame of the mesh and the centre of mass of an implicit body move like a rigid body.
 struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies are used
+    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies take part in the step
     std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: no body is asleep
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
@@ -31,9 +31,10 @@ struct RigidBodies {
     std::span<const Vec3> momentum, angular_momentum;
     std::span<const Vec3> rest_position;  // by node [m]
     std::span<const Real> inverse_mass;   // by node [1/kg]
-    std::span<const Index> holder;        // row of AttachmentTable, or no_index
+    std::span<const Index> holder;        // row of AttachmentTable, or no_index if no attachment holds the body
 
-    /// `forced`: the world has force elements; then all nodes are used, also those that only draw round bodies.
+    /// `forced`: true if the world has force elements. Then all nodes take part in the step, also those that only draw
+    /// round bodies.
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
                             const NodeTable& node, const bool& any_asleep, const bool& forced) {
         return {.body = binder.read(rigid.body),
@@ -59,24 +60,25 @@ struct RigidBodies {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
-    /// Nodes whose velocities are needed before the step is committed.
+    /// Nodes that need velocities before the step is committed. Nodes that only draw a round body are left out.
     Range step_nodes(std::size_t r) const {
         return body_core_nodes.empty() ? nodes(r)
                                        : step_nodes_of(nodes(r), body_core_nodes[static_cast<std::size_t>(body[r])]);
     }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
-    /// True for the frame of an implicit body that an attachment holds. Nodes have momenta of their own in it.
+    /// True if row `r` is the frame of an implicit body that an attachment holds. The nodes of such a body carry all of
+    /// its momentum.
     bool is_led_frame(std::size_t r) const { return holder[r] != no_index && implicit(r).size() > 0; }
 };
 
 /// Deformation of implicit bodies at the end of the step, in the frames of their meshes, by row of ImplicitNodeTable.
 struct ElasticMotion {
     std::span<const Vec3> displacement, velocity;  // [m], [m/s]
-    // RigidBodyTable, used only for bodies that deform:
+    // Columns of RigidBodyTable, used only for implicit bodies:
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // before the turn of this step
+    std::span<const Mat3> axes, rotation;  // `rotation` excludes the rotation of this step
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
@@ -90,10 +92,10 @@ struct ElasticMotion {
 
 struct RigidForces {
     Vec3 gravity;                    // [m/s^2]
-    std::span<const Vec3> load;      // applied force by node; empty: none [N]
+    std::span<const Vec3> load;      // applied force by node; empty if there is none [N]
     std::span<const Vec3> position;  // by node [m]
 
-    /// `forced`: the world has force elements.
+    /// `forced`: true if the world has force elements.
     static RigidForces bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced) {
         return {.gravity = binder.value(gravity),
                 .load = binder.read_if(binder.value(forced), node.applied_force),
@@ -119,14 +121,15 @@ struct RigidKicks {
     }
 };
 
-/// Computes impulse and moment of gravity and loads, and the velocities with them, which contacts see. Gravity and
-/// loads act for `kick`, on frames of implicit bodies for the whole step. Bodies at rest get none. Held bodies get the
-/// impulse that moves them along; their nodes already have their velocities. Held frames have neither momentum nor
-/// degrees of freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Computes the impulse and moment of gravity and loads on each body, and the node velocities with these impulses, from
+/// which contacts start. Gravity and loads act for the time `kick`, on the frames of implicit bodies for the whole step
+/// `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; the
+/// velocities of its nodes are already set. The frame of a held implicit body has no momentum and no degrees of
+/// freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 
-/// Impulses and pushes on rigid bodies in this step.
+/// Impulses of forces and contacts on rigid bodies in this step, and the velocities that push overlaps out.
 struct RigidImpulses {
     std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment, push_velocity, push_spin;
 
@@ -143,7 +146,7 @@ struct RigidImpulses {
 struct RigidTurns {
     std::span<Vec3> center_next;
     std::span<Mat3> rotation_next;
-    std::span<Vec3> velocity_next;  // by node: straight motion to the end position, push-out included [m/s]
+    std::span<Vec3> velocity_next;  // by node: straight motion to the end position, with push-out [m/s]
 
     static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
         return {.center_next = binder.write(rigid.center_next),
@@ -152,8 +155,8 @@ struct RigidTurns {
     }
 };
 
-/// Computes the poses of the bodies at the end of the step. Parallel over bodies. Returns false if there is no rigid
-/// body (skipped).
+/// Computes the poses of the bodies at the end of the step, and the node velocities that lead there on straight paths.
+/// Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidImpulses& impulses, const ElasticMotion& elastic, std::span<const Vec3> position,
                        Real h, const RigidTurns& out);
@@ -180,15 +183,15 @@ struct RigidMoves {
     }
 };
 
-/// Commits the step: bodies that are not at rest, and their nodes, take the poses `center_next` and `rotation_next` and
-/// the momenta of the end of the step. With `draws_late` only step_nodes() of round bodies move; the others wait for
-/// draw_round_bodies. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Commits the step: awake bodies and their nodes get the poses `center_next` and `rotation_next` and the momenta at
+/// the end of the step. With `draws_late` only step_nodes() of round bodies move; draw_round_bodies moves the other
+/// nodes later. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Moves the nodes that only draw round bodies to their present positions; with `resting` also those of bodies at rest.
-/// Parallel over bodies.
+/// Moves the nodes that only draw round bodies to the present poses of these bodies. With `resting` also moves such
+/// nodes of sleeping bodies. Parallel over bodies.
 void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
                        std::span<Vec3> velocity);
 

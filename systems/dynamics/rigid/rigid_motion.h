@@ -1,4 +1,4 @@
-// The free motion of a rigid body (docs/methods/rigid_bodies.md 2).
+// Free motion of a rigid body (docs/methods/rigid_bodies.md 2).
 #pragma once
 
 #include "components/types.h"
@@ -6,31 +6,32 @@
 
 namespace skerry {
 
-/// Angular velocity in the world [rad/s]. `rotation`: principal frame to world; `moments`: principal moments [kg m^2].
+/// Angular velocity of a rigid body in the world frame [rad/s]. `rotation`: from the principal frame to the world;
+/// `moments`: principal moments of inertia [kg m^2].
 inline Vec3 spin_of(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum) {
     const Vec3 own = rotation.transpose() * angular_momentum;
     return rotation * own.cwiseQuotient(moments);
 }
 
-/// Inverse inertia in the world [1/(kg m^2)].
+/// Inverse inertia tensor of a rigid body in the world frame [1/(kg m^2)].
 inline Mat3 inverse_inertia_of(const Mat3& rotation, const Vec3& moments) {
     return rotation * moments.cwiseInverse().asDiagonal() * rotation.transpose();
 }
 
-/// Principal moments and axes of a body with this inertia about its centre [kg m^2].
+/// Principal moments and axes of a body with a given inertia tensor about its centre of mass [kg m^2].
 struct PrincipalInertia {
     Vec3 moments;  // [kg m^2]
-    Mat3 axes;     // principal frame to the frame of the inertia
+    Mat3 axes;     // rotation from the principal frame to the frame of the inertia tensor
 
     explicit PrincipalInertia(const Mat3& inertia);
 };
 
-/// Rotation (principal frame to world) at the end of a step, after free rotation and the push of contacts, `push_spin`
-/// [rad/s].
+/// Rotation from the principal frame to the world at the end of a step of length `h`. It combines free rotation and the
+/// rotation at the angular velocity `push_spin` by which contacts push overlaps out [rad/s].
 Mat3 turn_of_step(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, const Vec3& push_spin,
                   Real h);
 
-/// Nearest rotation to one that has a small error of rounding.
+/// Rotation nearest to a rotation matrix that has small rounding errors.
 Mat3 without_strain(const Mat3& rotation);
 
 }  // namespace skerry
