@@ -19,7 +19,7 @@ struct PinPlan {
     Place place;
 };
 struct BodyPlan {
-    BodySettings settings;  // without handles of materials, which exist only in the built world
+    BodySettings settings;  // settings without handles of materials, which exist only in the built world
     // Index in ScenePlan::meshes. For a sphere, capsule or cylinder: the mesh that represents it in output.
     std::size_t mesh = 0;
     BodyShapeEntry shape{};
@@ -36,7 +36,7 @@ struct ColliderPlan {
 struct JointPlan {
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
-    JointSettings settings;               // without handles of bodies, which exist only in the built world
+    JointSettings settings;               // settings without handles of bodies, which exist only in the built world
     Place place;
 };
 struct ProbePlan {

@@ -8,7 +8,7 @@
 #include "components/types.h"
 
 namespace skerry {
-struct WorldState;  // internal; declared outside the block of public symbols
+struct WorldState;  // internal type, so it is declared outside the block of public symbols
 }
 
 #pragma GCC visibility push(default)
@@ -46,12 +46,12 @@ struct ForceReport {
 /// force of the second partner on the first.
 struct PairForces {
     BodyHandle first{};
-    BodyHandle second{};        // a stale handle if the second partner is a collider
-    ColliderHandle collider{};  // a stale handle if the second partner is a body
+    BodyHandle second{};        // the second body; a stale handle if the second partner is a collider
+    ColliderHandle collider{};  // the collider; a stale handle if the second partner is a body
     ForceReport on_first;
 };
 
-/// Read access to the measured forces of a world. A view, valid until the world is moved or destroyed. Contacts of
+/// A view of the measured forces of a world. It is valid until the world is moved or destroyed. Contacts of
 /// bodies and colliders that were removed since the call are not included.
 ///
 /// Forces on sleeping bodies are mean values over the time in which the bodies were still before they fell asleep. For

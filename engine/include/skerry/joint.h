@@ -20,7 +20,8 @@ struct JointMotor {
     std::optional<Real> speed{};     // target speed [rad/s or m/s]
     std::optional<Real> position{};  // target coordinate of the joint, reached within one step if possible [rad or m]
     Real strength = 0;               // largest moment (hinge) or force (slider) of the motor, >= 0 [N m or N]
-    Real fastest = std::numeric_limits<Real>::infinity();  // largest speed towards `position`, > 0 [rad/s or m/s]
+    // Largest speed at which the motor approaches `position`, > 0 [rad/s or m/s].
+    Real fastest = std::numeric_limits<Real>::infinity();
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
@@ -31,7 +32,7 @@ struct JointSettings {
     BodyHandle first{};                    // handle of a rigid body
     std::optional<BodyHandle> second{};    // another rigid body; if not given, the first body is joined to the world
     Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
-    Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world, any length but zero
+    Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
     std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
     std::optional<JointMotor> motor{};
     bool bodies_touch = false;  // true: the two bodies may collide while the joint exists
@@ -49,12 +50,14 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
-    Real error = 0;              // distance of the points that should coincide; for a slider, normal to the axis [m]
+    // Position error: distance of the two points that should coincide; for a slider, the part normal to the axis [m].
+    Real error = 0;
 };
 
-/// The joints of a world. A view, valid until the world is moved or destroyed. Like those of World, functions that
-/// change joints may only be called between calls of advance. They throw SceneError and change nothing if a handle is
-/// stale or a value is out of range. Joints belong to the state of the world: they are saved, cloned and hashed.
+/// A view of the joints of a world. It is valid until the world is moved or destroyed. Like the functions of World,
+/// functions that change joints may only be called between calls of advance. They throw SceneError and change nothing
+/// if a handle is stale or a value is out of range. Joints belong to the state of the world: they are saved, cloned and
+/// hashed.
 class Joints {
 public:
     explicit Joints(World& world) : world_(&world) {}
@@ -64,7 +67,7 @@ public:
     JointHandle add(const JointSettings& joint);
     void remove(JointHandle joint);
     bool alive(JointHandle joint) const;
-    std::vector<JointHandle> all() const;  // in the order added
+    std::vector<JointHandle> all() const;  // all joints, in the order added
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
     /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting an equal motor again

@@ -22,7 +22,7 @@ struct ContactProblem {
     std::string name;
     std::vector<Index> row_offset;  // index of the first block of each row; contacts + 1 entries
     std::vector<Index> column;      // column of each block, ascending in each row; the diagonal block is always stored
-    std::vector<Mat3> block;        // blocks of W [1/kg]
+    std::vector<Mat3> block;        // 3x3 blocks of W, row by row [1/kg]
     std::vector<Vec3> q;            // relative velocities without reactions [m/s]
     std::vector<Real> mu;           // coefficient of friction of each contact
     std::string description;        // description text of the file
@@ -44,7 +44,7 @@ struct ProblemSettings {
 struct ProblemSolution {
     std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
     Index regions = 0;
-    Index iterations = 0;  // iterations of the region that needed most
+    Index iterations = 0;  // iterations of the region that needed most iterations
     // Computing time of the solve, without reading and checking [s]. If the solve is short, it is repeated and this is
     // the median.
     double seconds = 0;
@@ -99,7 +99,7 @@ struct CoupledNodes {
 /// The nodes that contacts touch and that move rigidly: nodes of a rigid body, or the rigid motion of an implicit body.
 struct RigidPoints {
     std::vector<Index> node;
-    std::vector<Vec3> arm;                // position relative to the centre of mass [m]
+    std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
     Real inverse_mass = 0;                // [1/kg]
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
     // For a sphere or capsule: distance of the contact points from the centre or the axis, where the nodes lie [m].
@@ -140,7 +140,7 @@ struct LumpedContacts {
 /// two tangents that depend on the normal alone. Each contact must have at least one node that can move.
 ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name);
 
-/// Transforms world vectors, one per contact, into the contact frames.
+/// Transforms vectors from world axes into the contact frames, one vector per contact.
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
 /// The contact problem of one step of a world as the solver received it, and the impulses of the step. Contacts that no

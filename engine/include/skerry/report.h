@@ -121,7 +121,7 @@ public:
     // Number of steps shorter than step_size, because the body `limited_by` is unstable at step_size.
     int limited = 0;
     Real limited_step = 0;       // longest step that the body `limited_by` allowed [s]
-    std::string limited_by;      // name of the body
+    std::string limited_by;      // name of the body that limited these steps
     Index contacts = 0;          // number of contacts of the last step, without contacts between sleeping bodies
     Index regions = 0;           // number of regions of the last step
     Index largest_region = 0;    // number of contacts of the largest region of the last step
@@ -191,8 +191,8 @@ struct DynamicsChoice {
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the chosen kind
     DynamicsEstimate estimate{};
 
-    /// "implicit: 0.8 s of a core a simulated second, in steps of 0.00833 s; explicit 9 s of a core a simulated second,
-    /// in steps of 1.4e-05 s; what vibrates faster than 9.5 Hz is damped"
+    /// Returns a text such as "implicit: 0.8 s of a core a simulated second, in steps of 0.00833 s; explicit 9 s of a
+    /// core a simulated second, in steps of 1.4e-05 s; what vibrates faster than 9.5 Hz is damped".
     std::string message() const;
 };
 
@@ -210,7 +210,7 @@ struct StartOverlap {
     Vec3 place = Vec3::Zero();      // centre of the volume that both share [m]
     bool resolved = false;          // true if the two were moved apart
 
-    /// "bodies 'a' and 'b' overlap by 0.02 m at (0, 0, 0.1) m"
+    /// Returns a text such as "bodies 'a' and 'b' overlap by 0.02 m at (0, 0, 0.1) m".
     std::string message() const;
 };
 

@@ -20,7 +20,7 @@
 #include "skerry/settings.h"
 
 namespace skerry {
-struct WorldState;  // internal; declared outside the block of public symbols
+struct WorldState;  // internal type, so it is declared outside the block of public symbols
 }
 
 #pragma GCC visibility push(default)
@@ -87,9 +87,10 @@ public:
     bool alive(AttachmentHandle attachment) const;
 
     // Running the simulation.
-    /// Finds overlaps of bodies and colliders that were added or put elsewhere since the last check, and treats them
-    /// according to Settings::start_overlaps. Every advance() begins with this. An earlier call makes the result known
-    /// (WorldReport::start_overlaps). If overlaps are refused, throws SceneError and changes nothing.
+    /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats
+    /// them according to Settings::start_overlaps. Every call of advance() begins with this check. Call it earlier to
+    /// get the result before the first step (WorldReport::start_overlaps). If overlaps are refused, throws SceneError
+    /// and changes nothing.
     void settle_start();
     /// Advances time by dt [s] in equal steps no longer than the stable step. A step that cannot be committed changes
     /// nothing and ends the call; the report names the body and the reason. Throws the errors of settle_start().
@@ -229,8 +230,8 @@ public:
     std::optional<SurfaceHit> nearest_point(const Vec3& point, Real max_distance, const QueryFilter& filter = {}) const;
 
     // Results.
-    /// Contacts of the last step and between bodies at rest, in a fixed order, without those of objects removed since.
-    /// Empty if the last step was refused.
+    /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
+    /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;
     WorldReport report() const;
     Energy energy() const;

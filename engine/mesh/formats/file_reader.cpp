@@ -103,7 +103,7 @@ std::string_view FileReader::word(const char* expected) {
 
 Real FileReader::parse_real(std::string_view text, const char* field) const {
     std::string_view digits = text;
-    // from_chars does not accept a plus sign
+    // std::from_chars does not accept a plus sign before a number.
     if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     Real value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);

@@ -48,8 +48,8 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
 }
 
 // Readers of the file formats. All throw SceneError.
-RawMesh read_gmsh(FileReader& reader);         // versions 1, 2 and 4.1
-RawMesh read_vtk(FileReader& reader);          // legacy format; unstructured grids and polygons
+RawMesh read_gmsh(FileReader& reader);         // Gmsh file versions 1, 2 and 4.1
+RawMesh read_vtk(FileReader& reader);          // legacy VTK files with unstructured grids or polygons
 RawMesh read_tetgen(const std::string& path);  // files .node and .ele of the same name; `path` may name either
 RawMesh read_obj(FileReader& reader);
 RawMesh read_stl(FileReader& reader);

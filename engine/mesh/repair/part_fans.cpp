@@ -61,7 +61,7 @@ PartedMesh part_fans(const Mesh& mesh) {
     for (std::size_t f = 1; f < faces.size(); ++f)
         if (faces[f].node == faces[f - 1].node)
             for (std::size_t i = 0; i < 3; ++i) fans.join(faces[f].corner[i], faces[f - 1].corner[i]);
-    std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // first fan of each node
+    std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // root of the first fan of each node
     // Node of each fan. The index is the root of the fan, which is its first corner.
     std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);
     std::vector<bool> has_more(mesh.nodes.size());
