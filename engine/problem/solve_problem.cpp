@@ -61,7 +61,7 @@ struct Work {
 };
 
 /// Solves all regions. The error is measured over all regions together, so each region gets its share of the tolerance.
-/// The sizes by which errors are divided are only known at the end. If the total error is then too large, the regions
+/// The norms by which the error is divided are only known at the end. If the total error is then too large, the regions
 /// continue with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;

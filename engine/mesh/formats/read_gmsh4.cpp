@@ -25,8 +25,8 @@ Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& si
     return numbers;
 }
 
-/// Reads the header of section $Nodes or $Elements: number of blocks, number of rows, smallest and largest number of a
-/// row.
+/// Reads the header of section $Nodes or $Elements: number of blocks, number of nodes (elements), and the smallest and
+/// the largest number of a node (element).
 Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_bytes) {
     const Numbers4 header = read_four(reader, binary, {8, 8, 8, 8}, "header",
                                       "4 integers: count of blocks, count of rows, smallest and largest number");
@@ -43,7 +43,7 @@ Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning)
     return block;
 }
 
-/// Reads a word of a row. If a new section begins here, rows are missing: throws SceneError.
+/// Reads the next word of a node or element. If a new section begins here, rows are missing: throws SceneError.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);
     if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");

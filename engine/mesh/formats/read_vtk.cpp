@@ -198,7 +198,7 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = read_integer(type, "node count");
-            // Numbers left in the section after the counts and nodes read so far.
+            // Number of integers that are left in the section after the counts and nodes read so far.
             const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
