@@ -1,4 +1,4 @@
-// Replaces engine/hdf5, the files of contact problems and series, and engine/world/save if SKERRY_HDF5=OFF.
+// Replacement for engine/hdf5, engine/world/save, and the files of contact problems and series, if SKERRY_HDF5=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/problem.h"
 #include "skerry/recorder.h"

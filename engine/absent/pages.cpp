@@ -1,4 +1,4 @@
-// Replaces engine/output/page if SKERRY_PAGES=OFF.
+// Replacement for engine/output/page if SKERRY_PAGES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/output.h"
 

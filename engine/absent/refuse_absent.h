@@ -1,4 +1,4 @@
-// Error of calls to a part that this build does not have.
+// Error for a call to a part of the library that this build does not contain.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Throws SceneError. `option` is the CMake option that disabled the part.
+/// Throws SceneError that names the call. `option` is the CMake option that disabled this part of the library.
 [[noreturn]] inline void refuse_absent(const char* call, const char* option) {
     Complaint{.file = {},
               .object = call,

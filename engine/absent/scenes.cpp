@@ -1,4 +1,4 @@
-// Replaces engine/scene if SKERRY_SCENES=OFF.
+// Replacement for engine/scene if SKERRY_SCENES=OFF.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/scene.h"
 

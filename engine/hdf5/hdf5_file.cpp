@@ -46,7 +46,8 @@ Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expecte
     : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
 
 bool Hdf5File::can_hold(hsize_t bytes) const {
-    constexpr hsize_t largest_ratio = 1032;  // compression ratio of deflate, the strongest filter common in such files
+    // Highest possible compression ratio of the deflate filter, the strongest filter that is common in such files.
+    constexpr hsize_t largest_ratio = 1032;
     hsize_t size = 0;
     return H5Fget_filesize(file_.id(), &size) >= 0 && bytes / largest_ratio <= size;
 }
@@ -65,7 +66,7 @@ void Hdf5File::complain(const std::string& path, const std::string& found, const
 }
 
 bool Hdf5File::has(const std::string& path) const {
-    // H5Lexists checks only the last link, so every prefix of the path is checked
+    // H5Lexists checks only the last link of a path, so every prefix of the path is checked.
     for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
         if (H5Lexists(file_.id(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;
@@ -80,8 +81,8 @@ void Hdf5File::expect_group(const std::string& path, const std::string& hint) co
 
 namespace {
 
-/// True if the file stores as many bytes as the values need. For a compact data set that is too short, libhdf5 would
-/// read past its end. Chunks may be compressed, so their size is not checked.
+/// True if the file stores at least as many bytes as the values need. If a compact data set were shorter, libhdf5 would
+/// read past its end. Chunked data sets may be compressed, so their size is not checked.
 bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) {
     const Hdf5Handle creation(H5Dget_create_plist(data.id()), H5Pclose);
     const H5D_layout_t layout = H5Pget_layout(creation.id());
@@ -101,10 +102,11 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
     if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
     const H5T_class_t found = H5Tget_class(type.id());
-    // integers are accepted as reals
+    // integers are accepted where reals are expected
     if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER))
         complain(path, "values of another type", expected);
-    // no number is longer than a long double; libhdf5 would convert longer ones, with as much memory
+    // Values longer than a long double are refused. libhdf5 would convert such values, and would allocate as much
+    // memory.
     constexpr std::size_t longest_number = 16;  // [bytes]
     if (H5Tget_size(type.id()) > longest_number)
         complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
@@ -187,7 +189,7 @@ std::string Hdf5File::text_or_nothing(const std::string& path) const {
     if (!all_stored(data, type, 1)) return {};
     std::string text(H5Tget_size(type.id()), '\0');
     if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return {};
-    return text.substr(0, text.find('\0'));  // with or without a terminating zero
+    return text.substr(0, text.find('\0'));  // the text may or may not end with a terminating zero
 }
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Reads named numbers from an HDF5 file. Error messages name the object. Nothing is printed: HDF5's own messages are
-// disabled while the file is read.
+// Reads data sets with given names from an HDF5 file. Error messages name the data set. HDF5's own messages are
+// disabled while the file is open, so nothing is printed.
 #pragma once
 
 #include <hdf5.h>
@@ -33,7 +33,7 @@ private:
     herr_t (*close_)(hid_t);
 };
 
-/// Disables HDF5's own messages during its lifetime; then restores the previous handler.
+/// Disables HDF5's own messages during the lifetime of this object. Then restores the previous error handler.
 class QuietHdf5 {
 public:
     QuietHdf5() {
@@ -49,33 +49,35 @@ private:
     void* data_ = nullptr;
 };
 
-/// HDF5 type for a kind of numbers, in memory and in files.
+/// Returns the HDF5 type, in memory and in files, of a number type.
 hid_t hdf5_type(NumberType type);
 
-/// An open file. Paths are absolute, "/group/field". All functions that read throw SceneError if an object is missing
-/// or of another kind.
+/// An open HDF5 file. Paths are absolute, in the form "/group/field". All functions that read throw SceneError if an
+/// object is missing or has another type than expected, except text_or_nothing().
 class Hdf5File {
 public:
-    /// `expected`: description of the expected file in error messages.
+    /// Opens the file for reading. `expected` describes the expected file in error messages.
     Hdf5File(const std::filesystem::path& path, const std::string& expected);
 
     bool has(const std::string& path) const;
     void expect_group(const std::string& path, const std::string& hint = {}) const;
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
-    std::vector<Real> reals(const std::string& path) const;  // all finite
-    /// Reads rows of `width` numbers, bitwise unchanged; the file must have exactly this type. The data set has two
-    /// dimensions if `width` is more than one. `place` allocates the given number of rows and returns their address.
+    std::vector<Real> reals(const std::string& path) const;  // all values must be finite
+    /// Reads rows of `width` numbers, bitwise unchanged. The data set must have exactly the type `memory_type`; it has
+    /// two dimensions if `width` is more than one. `place` allocates memory for the given number of rows and returns
+    /// its address.
     void read_rows(const std::string& path, hid_t memory_type, std::size_t width,
                    FunctionRef<void*(std::size_t)> place) const;
-    /// Reads an optional text; empty if the file does not have it.
+    /// Reads an optional text. Returns an empty text if the file does not have it.
     std::string text_or_nothing(const std::string& path) const;
 
     [[noreturn]] void complain(const std::string& path, const std::string& found, const std::string& expected,
                                const std::string& hint = {}) const;
 
 private:
-    /// True if the file is large enough for that many values: a few of its bytes may claim any size.
+    /// True if the file is large enough to contain this number of bytes, even compressed. Without this check a small
+    /// corrupt file could claim any size.
     bool can_hold(hsize_t bytes) const;
     template <class T>
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;

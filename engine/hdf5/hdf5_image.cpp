@@ -9,7 +9,7 @@ hid_t make_file(const std::string& name) {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     constexpr std::size_t growth = 1 << 16;  // [bytes]
     H5Pset_fapl_core(access.id(), growth, 0);
-    // without time stamps the bytes depend on the problem alone
+    // Time stamps are disabled, so the bytes of the file depend on its content alone.
     const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.id(), 0);
     return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());

@@ -1,5 +1,5 @@
-// Creates an HDF5 file in memory. It uses the data types of FCLIB's own writer, one-dimensional numbers and
-// fixed-length texts, and in addition rows of numbers.
+// Creates an HDF5 file in memory. It uses the data types of FCLIB's own writer (one-dimensional arrays of numbers, and
+// fixed-length texts) and, in addition, rows of numbers.
 #pragma once
 
 #include <hdf5.h>
@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Paths are absolute, "/group/field"; missing groups are created. The same calls give the same bytes. Throws
-/// SceneError that names the destination file.
+/// An HDF5 file in memory. Paths are absolute, in the form "/group/field"; missing groups are created. The same
+/// sequence of calls gives the same bytes. Throws SceneError that names the destination file.
 class Hdf5Image {
 public:
     explicit Hdf5Image(std::string name);
@@ -22,12 +22,12 @@ public:
     void put(const std::string& path, Index value) { put(path, std::span<const Index>(&value, 1)); }
     void put(const std::string& path, std::span<const Index> values);
     void put(const std::string& path, std::span<const Real> values);
-    /// Writes `width` numbers per row, in two dimensions if `width` is more than one.
+    /// Writes rows of `width` numbers each. The data set has two dimensions if `width` is more than one.
     void put_rows(const std::string& path, hid_t type, std::size_t rows, std::size_t width, const void* values);
     void put_text(const std::string& path, const std::string& text);
     /// Adds a text attribute to the object at the path.
     void put_attribute(const std::string& path, const char* name, const std::string& text);
-    /// Returns the whole file.
+    /// Returns the bytes of the whole file.
     std::vector<char> bytes() const;
 
 private:

@@ -13,7 +13,7 @@
 namespace skerry {
 namespace {
 
-using Edge = std::pair<Index, Index>;  // the lower node first
+using Edge = std::pair<Index, Index>;  // the lower node number comes first
 
 std::vector<Edge> unique_edges(const Mesh& mesh) {
     std::vector<Edge> edges;
@@ -26,7 +26,8 @@ std::vector<Edge> unique_edges(const Mesh& mesh) {
     return edges;
 }
 
-/// Number of pieces connected by nodes. Unused nodes do not count as pieces.
+/// Returns the number of connected components, where tetrahedra that share a node are connected. Unused nodes do not
+/// count.
 std::size_t count_components(const Mesh& mesh) {
     std::vector<Index> parent(mesh.nodes.size());
     std::iota(parent.begin(), parent.end(), 0);
@@ -64,7 +65,8 @@ void measure_edges(const Mesh& mesh, MeshReport& report) {
     report.mean_edge = sum / static_cast<Real>(edges.size());
 }
 
-/// Quality of a tetrahedron: 12 (3 V)^(2/3) / sum of squared edges, with the sign of the volume. 1 is regular, 0 flat.
+/// Quality of a tetrahedron: 12 (3 V)^(2/3) / sum of squared edge lengths, with the sign of the volume V. It is 1 for a
+/// regular tetrahedron and 0 for a flat one.
 Real quality(Real six_volumes, const std::array<Real, 6>& edges) {
     Real squares = 0;
     for (const Real length : edges) squares += length * length;
@@ -78,7 +80,7 @@ void measure_tetrahedra(const Mesh& mesh, MeshReport& report) {
     report.min_altitude = report.min_quality = std::numeric_limits<Real>::infinity();
     for (const std::array<Index, 4>& t : mesh.tetrahedra) {
         const Real volume = mesh::six_volumes(mesh, t);
-        const Real face = std::sqrt(mesh::largest_face_squared(mesh, t));  // twice the area
+        const Real face = std::sqrt(mesh::largest_face_squared(mesh, t));  // twice the area of the largest face
         const Real shape = quality(volume, mesh::edge_lengths(mesh, t));
         report.volume += volume / 6;
         report.min_altitude = std::min(report.min_altitude, face > 0 ? std::abs(volume) / face : 0);

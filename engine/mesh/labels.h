@@ -1,4 +1,4 @@
-// Labels of the tetrahedra of a mesh, for reports and messages.
+// Labels of the tetrahedra of a mesh, for reports and error messages.
 #pragma once
 
 #include <map>
@@ -11,7 +11,8 @@ namespace skerry::mesh {
 /// Number of tetrahedra with each label.
 std::map<int, std::size_t> count_labels(const Mesh& mesh);
 
-/// Text for messages: "one of the labels of the mesh: 1, 2, 5" (the first 20), or "a mesh with labels" if it has none.
+/// Returns the expected value in an error message: "one of the labels of the mesh: 1, 2, 5" (at most 20 labels), or "a
+/// mesh with labels" if the mesh has none.
 std::string expected_label(const Mesh& mesh);
 
 }  // namespace skerry::mesh

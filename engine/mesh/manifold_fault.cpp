@@ -11,10 +11,11 @@ namespace skerry::mesh {
 
 namespace {
 
-/// An edge of a triangle, with the corners (three per triangle) at its ends.
+/// An edge of a boundary triangle: its two nodes, and the triangle corners at these nodes. Corners are numbered three
+/// per triangle.
 struct Side {
-    std::array<Index, 2> node;    // ascending
-    std::array<Index, 2> corner;  // in the same order
+    std::array<Index, 2> node;    // node numbers in ascending order
+    std::array<Index, 2> corner;  // corners in the order of `node`
 };
 
 std::vector<Side> sides_of(std::span<const BoundaryTriangle> boundary) {
@@ -51,7 +52,8 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
         for (std::size_t end = 0; end < 2; ++end) rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
         first = last;
     }
-    // compares each corner with the first one at its node: all must be in one ring
+    // All corners at a node must belong to one ring of triangles. Each corner is compared with the previous one of the
+    // same node.
     std::vector<std::pair<Index, Index>> corners;
     for (std::size_t c = 0; c < 3 * boundary.size(); ++c)
         corners.emplace_back(boundary[c / 3].node[c % 3], rings.root(static_cast<Index>(c)));

@@ -8,9 +8,9 @@
 
 namespace skerry::mesh {
 
-/// In a closed manifold each edge has two triangles, and the triangles around each node form one ring. Describes the
-/// first violation with the mesh's node numbers: "node 3 joins parts that share no edge there". Empty if there is
-/// none.
+/// Describes the first violation of a closed manifold, with the node numbers of the mesh: "node 3 joins parts that
+/// share no edge there". Returns an empty text if there is no violation. In a closed manifold each edge has two
+/// triangles, and the triangles around each node form one ring.
 std::string manifold_fault(std::span<const BoundaryTriangle> boundary);
 
 }  // namespace skerry::mesh

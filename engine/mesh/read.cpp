@@ -37,7 +37,7 @@ RawMesh read_raw(const std::string& path, bool surface) {
     return extension == ".obj" ? read_obj(reader) : read_stl(reader);
 }
 
-/// Returns the nodes used by the rows, in their order, and renumbers the rows accordingly.
+/// Returns only the nodes that the rows use, in their old order, and renumbers the entries of the rows accordingly.
 template <std::size_t N>
 std::vector<Vec3> drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
     std::vector<Index> place(nodes.size(), no_index);
@@ -59,8 +59,9 @@ Mesh take_tetrahedra(RawMesh& raw) {
     mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
-    // Some programs use the opposite orientation. A file with inverted and no positive tetrahedra comes from one of
-    // them and is reoriented. If both kinds occur, the mesh is faulty, and reorienting would hide the fault.
+    // Some programs write tetrahedra with the opposite orientation. A file with inverted and no positive tetrahedra is
+    // reoriented, because it probably comes from such a program. If both kinds occur, the mesh is faulty, and
+    // reorienting would hide the fault.
     bool any_positive = false, any_inverted = false;
     for (const std::array<Index, 4>& t : mesh.tetrahedra) {
         const Orientation side = orientation(mesh, t);

@@ -1,4 +1,4 @@
-// Checks a mesh that is to become a body.
+// Checks a mesh from which a body will be made.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace skerry::mesh {
 
 /// Throws SceneError unless the mesh has tetrahedra, all nodes are finite, and every tetrahedron has four different
-/// existing nodes and a positive rest volume. The message names `what` (the file or the body), the first bad
-/// tetrahedron and the number of bad ones.
+/// existing nodes and a positive rest volume. The message contains `what` (the name of the file or body), the first bad
+/// tetrahedron and the number of bad tetrahedra.
 void require_positive(const Mesh& mesh, const std::string& what);
 
 }  // namespace skerry::mesh

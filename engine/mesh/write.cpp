@@ -23,7 +23,8 @@ void write(const std::string& path, const Mesh& mesh) {
         out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << '\n';
         for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
             const int label = mesh.label.empty() ? 1 : mesh.label[e];
-            out << e + 1 << " 4 2 " << label << ' ' << label;  // type 4: tetrahedron; two tags: group, volume
+            // Element type 4 is a tetrahedron. It has two tags: physical group and geometric volume.
+            out << e + 1 << " 4 2 " << label << ' ' << label;
             for (const Index n : mesh.tetrahedra[e]) out << ' ' << n + 1;
             out << '\n';
         }

@@ -8,7 +8,7 @@
 namespace skerry {
 namespace {
 
-/// Contact frame; columns: normal, tangent 1, tangent 2.
+/// Contact frame as a matrix with the columns normal, tangent 1 and tangent 2.
 Mat3 frame_of(const Vec3& normal) {
     const TangentFrame tangents = tangent_frame(normal);
     Mat3 frame;
@@ -16,13 +16,13 @@ Mat3 frame_of(const Vec3& normal) {
     return frame;
 }
 
-/// Contribution of a node to a contact.
+/// Weight of a node in the stencil of a contact.
 struct Touch {
     Index node, contact;
     Real weight;
 };
 
-/// Lists contributions of free, uncoupled nodes, sorted by node, then by contact.
+/// Lists the stencil weights of all free nodes that are not coupled to other nodes, sorted by node, then by contact.
 std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
     for (const CoupledNodes& group : contacts.coupled)
@@ -41,7 +41,8 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     return touches;
 }
 
-/// Finds the contributions of a group of nodes to contacts. Touch::node is the place in the group.
+/// Finds the stencil weights of a group of nodes in all contacts. Touch::node is then the position of the node in the
+/// group.
 class GroupTouches {
 public:
     explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
@@ -64,7 +65,7 @@ private:
     std::vector<std::size_t> place_;
 };
 
-/// Adds the blocks between contacts on one rigid body.
+/// Adds the blocks of W between contacts on the same rigid body.
 void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     const auto crossing = [](const Vec3& v) {
@@ -93,7 +94,7 @@ void add_rigid(const LumpedContacts& contacts, const std::vector<Mat3>& frame, s
     }
 }
 
-/// Adds the blocks between contacts on one implicit body, due to its deformation.
+/// Adds the blocks of W between contacts on the same implicit body, due to its deformation.
 void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     for (const StrainedPoints& body : contacts.strained) {
@@ -110,7 +111,7 @@ void add_strained(const LumpedContacts& contacts, const std::vector<Mat3>& frame
     }
 }
 
-/// Adds the blocks between contacts on nodes that move together.
+/// Adds the blocks of W between contacts on the same group of coupled nodes.
 void add_coupled(const LumpedContacts& contacts, const std::vector<Mat3>& frame, std::vector<BlockPart>& parts) {
     GroupTouches find(contacts);
     for (const CoupledNodes& group : contacts.coupled) {
@@ -150,7 +151,8 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // S_ij of docs/methods/contact.md 2.1, bitwise symmetric; a diagonal block is the same in every frame
+                // Block S_ij of docs/methods/contact.md 2.1. It is bitwise symmetric. A diagonal block is a multiple of
+                // the identity, so it is the same in every frame.
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

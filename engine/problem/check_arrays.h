@@ -4,7 +4,7 @@
 
 namespace skerry {
 
-/// Throws SceneError when the arrays of the problem disagree.
+/// Throws SceneError if the arrays of the problem have inconsistent sizes or indices.
 void check_arrays(const ContactProblem& problem);
 
 }  // namespace skerry

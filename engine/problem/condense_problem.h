@@ -1,4 +1,5 @@
-// Converts the global form of a contact problem to the local one: W = H^T M^-1 H, q = H^T M^-1 f + w.
+// Converts the global form of a contact problem (M v = H r + f, u = H^T v + w) to the local form (u = W r + q): W = H^T
+// M^-1 H, q = H^T M^-1 f + w.
 #pragma once
 
 #include <string>
@@ -9,21 +10,22 @@
 
 namespace skerry {
 
-/// Global form: M v = H r + f, u = H^T v + w.
+/// Global form of a contact problem: M v = H r + f, u = H^T v + w. M is the mass matrix, v the velocities of the
+/// bodies, r the impulses, and u the relative velocities at the contacts.
 struct GlobalProblem {
-    MatrixEntries mass;        // M, symmetric positive definite
-    MatrixEntries directions;  // H, three columns per contact
+    MatrixEntries mass;        // mass matrix M, symmetric positive definite
+    MatrixEntries directions;  // matrix H of contact directions, three columns per contact
     std::vector<Real> force;   // f
 };
 
-/// Reason why M cannot be used; empty if it can.
+/// Reason why the mass matrix cannot be used; empty if it can.
 struct MassFault {
     std::string found, expected;
 };
 
-/// Fills blocks, q and freedoms of `problem`; on input its q holds w. M is divided into parts that no entry connects
-/// (the bodies). Each part is factorised separately, so only contacts on the same part are coupled. Blocks that are
-/// zero up to rounding are omitted.
+/// Computes blocks, q and freedoms of `problem`. On input problem.q must contain w. M is divided into independent parts
+/// (the bodies), between which it has no entries. Each part is factorised separately, and only contacts on the same
+/// part are coupled. Blocks that are zero up to rounding are omitted.
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Reads the matrices of FCLIB (fclib.h of the FCLIB library, struct fclib_matrix) as entries.
+// Reads matrices of an FCLIB file (fclib.h of the FCLIB library, struct fclib_matrix) as lists of entries.
 #pragma once
 
 #include <string>
@@ -13,23 +13,24 @@ struct MatrixEntry {
     Real value;
 };
 
-/// A matrix as a list of entries. Repeated entries are summed.
+/// A sparse matrix as a list of entries. Entries at the same position are summed.
 struct MatrixEntries {
     Index rows = 0, columns = 0;
     std::vector<MatrixEntry> entry;
 };
 
-/// Size m x n of the matrix in a group.
+/// Size m x n of a matrix stored in an HDF5 group.
 struct MatrixSize {
     Index rows, columns;
 };
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group);
 
-/// Reads all entries, stored as compressed columns (nz = -1), compressed rows (nz = -2) or nz triplets. Throws
-/// SceneError.
+/// Reads all entries of a matrix, stored as compressed columns (nz = -1), compressed rows (nz = -2) or nz triplets.
+/// Throws SceneError.
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group);
 
-/// Throws SceneError unless `found` equals `expected`; `of` describes the expected number.
+/// Throws SceneError unless `found` equals `expected`. `of` explains the expected number in the message, for example
+/// "rows of W".
 void expect_size(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
                  const std::string& of);
 

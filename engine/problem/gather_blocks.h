@@ -1,4 +1,4 @@
-// Assembles the block rows of a ContactProblem from parts in any order.
+// Assembles the block rows of a ContactProblem from contributions in any order.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,15 @@
 
 namespace skerry {
 
-/// A contribution to the block of two contacts. Contributions to the same block are summed in the given order.
+/// A contribution to the 3 x 3 block of W that couples two contacts. Contributions to the same block are summed in the
+/// given order.
 struct BlockPart {
-    Index row, column;  // contacts
+    Index row, column;  // numbers of the two contacts
     Mat3 value;
 };
 
-/// Fills row_offset, column and block of a problem; the size of its q gives the number of contacts. Blocks of exact
-/// zeros are omitted, except on the diagonal.
+/// Fills row_offset, column and block of a problem. The size of problem.q gives the number of contacts. Blocks that are
+/// exactly zero are omitted, except on the diagonal.
 void gather_blocks(std::vector<BlockPart> parts, ContactProblem& problem);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Measures the error of reactions as a solution of a problem (docs/methods/errors.md 3).
+// Measures how well given impulses solve a contact problem (docs/methods/errors.md 3).
 #pragma once
 
 #include <span>
@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// With Friction::pyramid the measures are those of the pyramid: each tangential component has its own bound.
+/// Returns the errors of `reaction`. With Friction::pyramid the errors refer to the friction pyramid, where each
+/// tangential component has its own bound.
 ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3> reaction, Friction friction);
 
 }  // namespace skerry

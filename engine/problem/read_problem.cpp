@@ -1,6 +1,6 @@
-// Reads the two forms of FCLIB (fclib.h of the FCLIB library). Local: group fclib_local with spacedim, the matrix W,
-// and the vectors q and mu. Global: group fclib_global with spacedim, the matrices M and H, and the vectors f, w and
-// mu.
+// Reads the two forms of contact problems in FCLIB files (fclib.h of the FCLIB library). Local form: group fclib_local
+// with spacedim, the matrix W, and the vectors q and mu. Global form: group fclib_global with spacedim, the matrices M
+// and H, and the vectors f, w and mu.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -14,7 +14,7 @@
 namespace skerry {
 namespace {
 
-/// Combines scalar entries into 3 x 3 blocks, one part per block.
+/// Combines scalar entries of W into 3 x 3 blocks, one BlockPart per block.
 std::vector<BlockPart> blocks_of(std::vector<MatrixEntry> entries) {
     const auto place = [](const MatrixEntry& e) { return std::pair(e.row / 3, e.column / 3); };
     std::stable_sort(entries.begin(), entries.end(),
@@ -95,8 +95,8 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
         file.complain(root + "/M", fault.found, fault.expected);
 }
 
-/// Throws SceneError unless W and q are finite. All numbers in the file are, but sums and products of large ones may
-/// overflow.
+/// Throws SceneError unless W and q are finite. All numbers in the file are finite, but sums and products of large
+/// numbers may overflow.
 void expect_finite(const Hdf5File& file, const std::string& root, const ContactProblem& problem) {
     const auto finite = [](const auto& entries) {
         return std::all_of(entries.begin(), entries.end(), [](const auto& e) { return e.allFinite(); });

@@ -1,5 +1,5 @@
-// Solves a problem region by region with any method for general blocks: methods of the library, or others that
-// profiling compares with them.
+// Solves a contact problem region by region with any method for general blocks. This can be a method of the library, or
+// another method for comparison in profiling.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@
 
 namespace skerry {
 
-/// Solves one region, starting from the operator's present impulse.
+/// A function that solves one region, starting from the present impulses of the operator.
 using BlockMethod = std::function<SolveResult(BlockOperator&, const SolveLimits&)>;
 
-/// Solves a problem like solve_problem, with `method` in place of settings.method.
+/// Solves a problem like solve_problem, but with `method` in place of settings.method.
 ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSettings& settings,
                                 const BlockMethod& method);
 

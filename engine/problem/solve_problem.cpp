@@ -19,10 +19,11 @@ BlockSystem view(const ContactProblem& problem) {
     return {problem.row_offset, problem.column, problem.block, problem.q, problem.mu};
 }
 
-/// Contacts grouped by region, where blocks connect contacts. Regions are numbered by their first contact.
+/// Contacts grouped by region. Contacts that a block of W couples are in the same region. Regions are numbered in the
+/// order of their first contacts.
 struct ProblemRegions {
     std::vector<Index> offset, contact;
-    UnionFind joined;  // connects contacts
+    UnionFind joined;  // joins contacts that a block couples
 
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
     std::span<const Index> operator[](Index region) const {
@@ -37,7 +38,8 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     for (std::size_t i = 0; i < count; ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             joined.join(static_cast<Index>(i), problem.column[k]);
-    // the first pass numbers the regions and counts their contacts, the second sorts the contacts by region
+    // The first pass numbers the regions and counts the contacts of each region. The second pass sorts the contacts by
+    // region.
     regions.offset.assign(1, 0);
     for (Index i = 0; i < static_cast<Index>(count); ++i) {
         const Index region = joined.number(i);
@@ -51,15 +53,15 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     regions.offset[0] = 0;
 }
 
-/// All data written by a solve; reused by its repetitions.
+/// All data that a solve writes. Repetitions of the solve reuse the memory.
 struct Work {
     ProblemRegions regions;
     BlockMemory memory;
-    std::vector<Index> used;  // iterations by region
+    std::vector<Index> used;  // number of iterations of each region
 };
 
-/// Solves all regions. The error is measured over all regions together, so each region gets its share of the
-/// tolerance. The reference sizes are only known at the end: if the total error is too large then, the regions
+/// Solves all regions. The error is measured over all regions together, so each region gets its share of the tolerance.
+/// The norms by which the error is divided are only known at the end. If the total error is then too large, the regions
 /// continue with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
@@ -87,7 +89,7 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
     }
 }
 
-/// Returns the impulses in the order of the problem.
+/// Returns the impulses in the order of the contacts of the problem.
 std::vector<Vec3> reactions(const Work& work) {
     std::vector<Vec3> reaction(work.regions.contact.size());
     for (std::size_t i = 0; i < reaction.size(); ++i)
@@ -126,7 +128,8 @@ ProblemSolution solve_by_region(const ContactProblem& problem, const ProblemSett
     check(problem, settings);
     Work work;
     const double first = seconds_of(problem, settings, method, work);
-    // a short solve is repeated, because the first one pays for memory and cold caches and the clock is coarse
+    // A short solve is repeated, because the first run is slowed down by memory allocation and cold caches, and the
+    // clock is coarse. The reported time is the median.
     constexpr double long_enough = 5e-3, budget = 20e-3;
     std::vector<double> seconds{first};
     while (first < long_enough && seconds.size() < 1001 &&

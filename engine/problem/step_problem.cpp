@@ -23,7 +23,7 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
     return text;
 }
 
-/// Clusters touched by contacts.
+/// Returns the clusters that contacts touch.
 std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
     std::vector<CoupledNodes> coupled;
     if (!contacts.clustered()) return coupled;
@@ -43,7 +43,7 @@ std::vector<CoupledNodes> coupled_nodes(const RegionInputs& contacts) {
     return coupled;
 }
 
-/// Rigid bodies touched by contacts, each with its touched nodes.
+/// Returns the rigid bodies that contacts touch, each with the nodes that contacts touch.
 std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     const RigidInputs& rigid = contacts.rigid;
     std::map<Index, std::set<Index>> touched;
@@ -51,7 +51,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
         for (std::size_t a = 0; a < 4; ++a)
             if (const Index row = rigid.nodes.row(stencil.node[a]);
                 stencil.weight[a] != 0 && row != no_index &&
-                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // otherwise the node is held
+                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // inverse mass 0: held node
                 touched[row].insert(stencil.node[a]);
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {
@@ -68,7 +68,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// For a cylinder: sets where each contact of the problem touches it. `rows`: their rows in the step.
+/// For a cylinder: sets the position at which each contact of the problem touches it. `rows` are the rows of these
+/// contacts in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();
@@ -84,7 +85,7 @@ void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, R
     }
 }
 
-/// Implicit bodies touched by contacts.
+/// Returns the implicit bodies that contacts touch.
 std::vector<StrainedPoints> strained_points(const RegionInputs& contacts) {
     std::vector<StrainedPoints> bodies;
     if (!contacts.implicit.any()) return bodies;

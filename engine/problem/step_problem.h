@@ -1,4 +1,4 @@
-// Exports the contact problem of a step in the form that other solvers read.
+// Exports the contact problem of a step in the general form that other solvers read.
 #pragma once
 
 #include <span>
@@ -9,17 +9,19 @@
 
 namespace skerry {
 
-/// Input and result of a step's contacts. `contacts.velocity` and `free_velocity` are those before the solve.
+/// Contacts of a step before the solve, and the result of the solve. `contacts.velocity` and `free_velocity` are the
+/// values before the solve.
 struct StepContacts {
     RegionInputs contacts;
-    std::span<const Vec3> free_velocity;  // predicted velocity by node [m/s]
-    std::span<const Vec3> impulse;        // after the solve, world frame, by contact [N s]
-    std::span<const Index> region;        // by contact
+    std::span<const Vec3> free_velocity;  // predicted velocity of each node without contacts [m/s]
+    std::span<const Vec3> impulse;        // impulse of each contact after the solve, in the world frame [N s]
+    std::span<const Index> region;        // region number of each contact
 };
 
 /// Computes W from stencils and inverse masses, and q from the predicted velocity and the bias of the gap, both in
-/// contact frames. This is the problem of solve_regions, except where friction coefficients differ (mu is the dynamic
-/// one). Fills problem (without its name and the start of its description), impulse, contact and region of the result.
+/// contact frames. This is the problem that solve_regions solves, except where static and dynamic friction differ (mu
+/// is the dynamic coefficient). Fills problem (without its name and the start of its description), impulse, contact and
+/// region of the result.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Writes the local form of FCLIB, with the order and the data types of FCLIB's own writer.
+// Writes a contact problem in the local form of FCLIB, with the order and the data types of FCLIB's own writer.
 #include <ostream>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace skerry {
 namespace {
 
-/// Compressed columns (nz = -1) of the nonzero entries, with ascending rows in each column.
+/// Compressed columns (nz = -1) of the nonzero entries of W, with ascending row indices in each column.
 struct CompressedColumns {
     std::vector<Index> begin, row;
     std::vector<Real> value;
@@ -21,7 +21,8 @@ CompressedColumns compress(const ContactProblem& problem) {
     const std::size_t contacts = problem.q.size();
     CompressedColumns w;
     w.begin.assign(3 * contacts + 1, 0);
-    // visiting block rows in order gives every column its rows in order: one pass counts, one fills
+    // Because block rows are visited in order, the entries of every column are visited by ascending row. The first pass
+    // counts the entries, the second one stores them.
     const auto for_each_entry = [&](auto&& visit) {
         for (std::size_t i = 0; i < contacts; ++i)
             for (int a = 0; a < 3; ++a)

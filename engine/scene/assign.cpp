@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// One component of a place: a key of an object, or an item of a list.
+/// One component of a path such as bodies[0].position: a key of an object, or the index of a list item.
 struct Step {
     std::string key;
     std::size_t item = 0;
@@ -43,7 +43,7 @@ private:
             .raise();
     }
 
-    /// Position of the first "=" outside quotes.
+    /// Returns the position of the first "=" outside of quotes.
     std::size_t end_of_place() const {
         bool quoted = false;
         for (std::size_t i = 0; i < text_.size(); ++i) {
@@ -53,7 +53,7 @@ private:
         refuse("no \"=\"", "a place, \"=\" and a value");
     }
 
-    /// Removes the next component from the remaining place.
+    /// Removes the next component from the part of the path that is not processed yet, and returns it.
     Step next_step() {
         if (place_.front() == '.') place_.remove_prefix(1);
         if (!place_.empty() && place_.front() == '[') return next_in_brackets();

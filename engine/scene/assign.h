@@ -1,4 +1,4 @@
-// Changes to a scene while it is read, such as bodies[0].position=[0,0,1].
+// Assignments that change a scene while it is read, such as bodies[0].position=[0,0,1].
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,10 @@
 
 namespace skerry {
 
-/// Applies PLACE=VALUE to the content of a scene file. PLACE is written as in messages: bodies[3].mesh.ball.radius,
-/// materials["soft rubber"].E. Missing objects are created; list items must exist. VALUE is JSON, or otherwise a plain
-/// text. Throws SceneError that names `file` and the assignment.
+/// Applies an assignment PLACE=VALUE to the content of a scene file. PLACE has the form used in error messages:
+/// bodies[3].mesh.ball.radius, materials["soft rubber"].E. Missing objects are created, but list items must exist.
+/// VALUE is read as JSON; if it is not valid JSON, it is taken as a text. Throws SceneError that names `file` and the
+/// assignment.
 void assign(const std::string& assignment, const std::filesystem::path& file, Json& scene);
 
 }  // namespace skerry

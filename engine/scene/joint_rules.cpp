@@ -1,4 +1,4 @@
-// Keys of joints.
+// Keys of joints in a scene file.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {

@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Writes bytes above ASCII as \xNN: text cited in a message may be invalid UTF-8.
+/// Writes bytes above ASCII as \xNN, because text cited in a message may be invalid UTF-8.
 std::string printable(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -21,7 +21,8 @@ std::string printable(const std::string& text) {
     return result;
 }
 
-/// Builds the document and refuses duplicate keys, which nlohmann's own builder accepts.
+/// Builds the JSON document from parser events. Refuses duplicate keys, which the builder of the nlohmann library
+/// accepts.
 class StrictBuilder : public nlohmann::json_sax<Json> {
 public:
     StrictBuilder(const std::string& text, const std::filesystem::path& file) : text_(text), file_(file) {}
@@ -34,7 +35,7 @@ public:
     bool number_unsigned(number_unsigned_t value) override { return put(value), true; }
     bool number_float(number_float_t value, const string_t&) override { return put(value), true; }
     bool string(string_t& value) override { return put(std::move(value)), true; }
-    bool binary(binary_t&) override { return false; }  // not part of JSON text
+    bool binary(binary_t&) override { return false; }  // JSON text has no binary values
     bool start_object(std::size_t) override { return open(Json::object()); }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override { return open(Json::array()); }
@@ -73,7 +74,7 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // an open child is already in its list
+            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // the list already contains its unfinished item
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);
             else if (!level.key.empty())
@@ -92,7 +93,8 @@ private:
     }
 
     bool open(Json value) {
-        // scenes need fewer than ten levels; recursive functions would overflow the stack on a file full of brackets
+        // A scene needs fewer than ten levels of nesting. The limit protects recursive functions from a stack overflow
+        // on a file full of brackets.
         constexpr std::size_t deepest = 100;
         if (open_.size() == deepest)
             Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
@@ -115,7 +117,7 @@ private:
         return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column);
     }
 
-    /// Returns the library's message without its prefix and position.
+    /// Returns the error message of the library without its prefix and position.
     static std::string reason(const std::string& what) {
         const std::size_t start = what.find(": ");
         return start == std::string::npos ? what : what.substr(start + 2);
@@ -141,7 +143,7 @@ Json read_json(const std::filesystem::path& file, const std::string& expected) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", expected, {}}.raise();
     if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", expected, {}}.raise();
-    // refuses devices such as /dev/zero, which is endless; a pipe ends
+    // Refuses devices such as /dev/zero, which are endless. Pipes are allowed, because they end.
     if (std::filesystem::is_character_file(file, error))
         Complaint{file.string(), {}, {}, "a device", expected, {}}.raise();
     std::ifstream stream(file, std::ios::binary);

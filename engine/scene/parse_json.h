@@ -1,4 +1,4 @@
-// Strict conversion of text to JSON.
+// Strict conversion of text to a JSON document.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 namespace skerry {
 
 /// Parses plain JSON (RFC 8259). Comments, trailing commas, duplicate keys and non-finite numbers are refused. Throws
-/// SceneError with line and column. `expected` describes the expected content in messages.
+/// SceneError with line and column. `expected` describes the expected content in error messages.
 Json parse_json(const std::string& text, const std::filesystem::path& file,
                 const std::string& expected = "a scene in JSON");
 
-/// Reads and parses a file. Throws SceneError.
+/// Reads and parses a JSON file. Throws SceneError.
 Json read_json(const std::filesystem::path& file, const std::string& expected = "a scene in JSON");
 
 }  // namespace skerry

@@ -73,7 +73,7 @@ std::string listed(std::span<const std::string> names) {
 }
 
 std::string described(const Json& value) {
-    constexpr std::size_t longest = 60;  // longest value repeated in a message [characters]
+    constexpr std::size_t longest = 60;  // longest value that is repeated in an error message [characters]
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (value.is_object())
         return text.size() <= longest ? "the object " + text
@@ -95,7 +95,8 @@ std::string nearest_name(std::string_view text, std::span<const std::string> nam
 
 std::string nearest_hint(std::string_view text, std::span<const std::string> names) {
     const std::string nearest = nearest_name(text, names);
-    constexpr std::size_t letters_per_slip = 3;  // with more differences it is a different word
+    // One letter in so many may differ. A name with more differences is probably another word, not a typing mistake.
+    constexpr std::size_t letters_per_slip = 3;
     const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
     return nearest.empty() || edit_distance(text, nearest) > most ? std::string()
                                                                   : "the nearest known one is " + in_quotes(nearest);

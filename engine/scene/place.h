@@ -1,4 +1,4 @@
-// Places in a scene file, and error messages about them.
+// Locations in a scene file, and error messages about them.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,11 @@
 
 namespace skerry {
 
-/// JSON that keeps the order of keys: the file's order when reading, the tables' order in the schema.
+/// JSON document that keeps the order of keys: the order in the file when reading, the order of the key tables in the
+/// schema.
 using Json = nlohmann::ordered_json;
 
-/// A place in a file, written like bodies[3].mesh.ball, and the named object it belongs to.
+/// A location in a scene file, written like bodies[3].mesh.ball, and the name of the object to which it belongs.
 class Place {
 public:
     Place() = default;
@@ -24,13 +25,13 @@ public:
 
     Place key(std::string_view name) const;
     Place item(std::size_t index) const;
-    /// Returns this place with the name of its object, such as: body "ball".
+    /// Returns this location with the name of its object, such as: body "ball".
     Place of(std::string object) const;
 
     const std::filesystem::path& file() const { return file_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Reports an error from an inner function that does not know files and keys.
+    /// Throws SceneError with the message of an inner function that does not know files and keys.
     [[noreturn]] void refuse_inner(const std::string& message) const;
 
 private:
@@ -39,7 +40,7 @@ private:
     std::string object_;
 };
 
-/// Calls function() and adds the place to its error messages.
+/// Calls function() and adds the location in the file to its error messages.
 template <class Function>
 auto called_at(const Place& place, Function function) {
     try {
@@ -52,14 +53,14 @@ auto called_at(const Place& place, Function function) {
 }
 
 std::string in_quotes(std::string_view text);
-/// Returns, for example, "a", "b", "c".
+/// Returns the names in quotes and separated by commas: "a", "b", "c".
 std::string listed(std::span<const std::string> names);
-/// Describes a value for messages: the text "x", the number 3, a list of 2 values, ...
+/// Describes a JSON value for error messages: the text "x", the number 3, a list of 2 values, ...
 std::string described(const Json& value);
-/// Returns the name closest to `text`, with the fewest changed, missing, added or swapped letters. Empty if there are
-/// no names.
+/// Returns the name closest to `text`: the one with the fewest changed, missing, added or swapped letters. Empty if
+/// there are no names.
 std::string nearest_name(std::string_view text, std::span<const std::string> names);
-/// Returns a hint with the nearest name. Empty if more than a third of the letters differ.
+/// Returns a hint that contains the nearest name. Empty if more than a third of the letters differ.
 std::string nearest_hint(std::string_view text, std::span<const std::string> names);
 
 }  // namespace skerry

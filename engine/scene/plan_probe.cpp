@@ -1,4 +1,4 @@
-// Resolves the names used by probes.
+// Resolves the names of bodies and colliders that probes use.
 #include <algorithm>
 
 #include "engine/scene/scene_plan.h"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
-/// Returns the index of a name in a list of plans, or nowhere.
+/// Returns the index of a name in a list of plans, or `nowhere`.
 std::size_t find_name(const auto& plans, const std::string& name) {
     const auto found = std::ranges::find(plans, name, [](const auto& plan) { return plan.settings.name; });
     return found == plans.end() ? nowhere : static_cast<std::size_t>(found - plans.begin());
@@ -44,7 +44,7 @@ std::size_t find_collider(const ScenePlan& plan, const std::string& name, const 
     return collider;
 }
 
-/// Finds the partner of a force: a body or a collider. Only one of them may have the name.
+/// Finds the body or collider that exerts a force. Throws SceneError if a body and a collider both have the name.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
     const std::size_t body = find_name(plan.bodies, *entry.by), collider = find_name(plan.colliders, *entry.by);
@@ -68,7 +68,8 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
         lower = lower.cwiseMin(node);
         upper = upper.cwiseMax(node);
     }
-    constexpr Real reach = 0.01;  // of the diagonal: tolerance for rounding and for facets of round shapes
+    // Tolerance for rounding and for the facets of round shapes, as a fraction of the diagonal of the bounding box.
+    constexpr Real reach = 0.01;
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;
     const Vec3& nearest = mesh.nodes[static_cast<std::size_t>(nearest_node(mesh.nodes, *entry.point).first)];

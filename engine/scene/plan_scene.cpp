@@ -78,7 +78,7 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     return pin;
 }
 
-/// Positions of the copies of a body.
+/// Returns the positions of all copies of a body.
 std::vector<Vec3> positions_of(const BodyEntry& entry) {
     std::vector<Vec3> positions = entry.positions;
     if (entry.repeat) {
@@ -122,13 +122,14 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
     return found;
 }
 
-/// Names and mesh files of the bodies planned so far.
+/// Names and mesh files of the bodies that have been planned so far.
 struct PlannedBodies {
     std::set<std::string> names;
-    std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;  // by path and scale
+    // Index in ScenePlan::meshes of each file that was read, by path and scale.
+    std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;
 };
 
-/// Returns the index of the body's mesh in plan.meshes. Each file is read once.
+/// Returns the index of the body's mesh in plan.meshes. Each mesh file is read only once.
 std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& plan) {
     const std::size_t next = plan.meshes.size();
     if (entry.mesh && entry.mesh->file) {
@@ -159,7 +160,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
-        // pinned bodies are explicit unless the scene chooses their dynamics
+        // Pinned bodies are explicit unless the scene chooses their dynamics.
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;

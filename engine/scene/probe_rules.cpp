@@ -1,4 +1,4 @@
-// Keys of probes, and the subset that each quantity accepts.
+// Keys of probes in a scene file, and the keys that each quantity accepts.
 #include <algorithm>
 
 #include "engine/scene/scene_rules.h"

@@ -6,14 +6,15 @@ namespace skerry {
 
 namespace {
 
-/// Reads a file and the files it includes. `open` lists the files being read, outermost first.
+/// Reads a scene file and the files that it includes. `open` lists the files that are being read, outermost first.
 void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<const std::string> assignments,
                std::vector<std::filesystem::path>& open) {
     Json json = read_json(file);
     for (const std::string& assignment : assignments) assign(assignment, file, json);
     const Place place(file);
 
-    // The first reading finds the included files. The second one adds this file's content on top of theirs.
+    // The file is read twice. The first reading finds the included files. The second reading adds the content of this
+    // file to the content of the included files.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
     open.push_back(std::filesystem::weakly_canonical(file));

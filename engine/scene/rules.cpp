@@ -107,7 +107,8 @@ void RuleTable::read_keys(const Json& json, const Place& place, void* object) co
         if (key.doc.required && std::find(seen.begin(), seen.end(), key.name) == seen.end())
             place.refuse("no key " + in_quotes(key.name), in_quotes(key.name) + ": " + std::string(key.doc.meaning));
     for (const KeyGroup& group : groups_) check_group(group, json, place);
-    // Reads in table order, not file order: of several mistakes the same one is reported for any order of keys.
+    // Values are read in table order, not in file order. If a file has several mistakes, the reported one does not
+    // depend on the order of keys in the file.
     for (const Key& key : keys_)
         for (const auto& [name, value] : json.items())
             if (find(name) == &key)

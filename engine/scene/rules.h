@@ -1,5 +1,5 @@
-// Describes the keys of an object in a scene file once. Reading, the check for unknown keys and the schema all use
-// that description.
+// Rules: descriptions of the keys of an object in a scene file. Reading, the check for unknown keys and the schema all
+// use the same description.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace skerry {
 
-/// Bounds of a number, of each number of a vector, or of the length of a list or text.
+/// Bounds of a number, of each component of a vector, or of the length of a list or text.
 struct Limits {
     std::optional<Real> at_least, above, at_most, below;
 };
@@ -29,7 +29,7 @@ inline Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
-/// Documentation of a key. The texts must live as long as the program.
+/// Documentation of a key in a scene file. The texts must live as long as the program.
 struct KeyDoc {
     std::string_view meaning;
     std::string_view unit = {};   // SI unit
@@ -38,33 +38,34 @@ struct KeyDoc {
     bool required = false;
 };
 
-/// Definitions of a schema by name, in order of first use.
+/// Definitions of a JSON schema by name, in order of first use.
 using SchemaBook = Json;
 
-/// Reads a C++ type from JSON and describes it in a schema. Specialised in values.h; all other types are objects with
-/// a Rule.
+/// Reads a value of a C++ type from JSON and describes the type in a schema. values.h has the specialisations for
+/// simple types. All other types are objects with a Rule.
 template <class T>
 struct Value;
 
-/// A removed key of earlier versions, and a hint that names its replacement.
+/// A key that earlier versions had, and a hint that names its replacement.
 struct Withdrawn {
     std::string_view key, instead;
 };
 
-/// A condition on the presence of several keys of an object.
+/// A condition on which keys of a group an object may or must have.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
     std::vector<std::string> keys;
 };
 
-/// Part of a rule that does not depend on the object's type; compiled once, in rules.cpp.
+/// Part of a rule that does not depend on the object's type. It is compiled only once, in rules.cpp.
 class RuleTable {
 public:
     const std::string& name() const { return name_; }
     Json schema(SchemaBook& book) const;
 
 protected:
-    /// Functions that read the value of a key and describe its type, for any type.
+    /// Functions that read the value of a key and describe its type in a schema; they are available for values of any
+    /// type.
     struct ValueFunctions {
         void (*read)(const Json&, const Place&, const KeyDoc&, void* value);
         Json (*describe)(SchemaBook&, const KeyDoc&);
@@ -72,7 +73,7 @@ protected:
     struct Key {
         std::string name;
         KeyDoc doc;
-        std::size_t offset;  // offset of the value in the object [bytes]
+        std::size_t offset;  // offset of the value within the object [bytes]
         ValueFunctions value;
     };
 
@@ -83,9 +84,10 @@ protected:
     void add_key(std::string_view name, const KeyDoc& doc, std::size_t offset, const ValueFunctions& value);
     void add_group(KeyGroup::Kind kind, std::vector<std::string> keys);
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
-    /// Returns the place of the object, with the object's own name if it has one.
+    /// Returns the location of the object in the file, with the object's own name if it has one.
     Place place_of(const Json& json, const Place& outer) const;
-    /// Reads the keys. Refuses a JSON value that is not an object with these keys.
+    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys break the
+    /// rule.
     void read_keys(const Json& json, const Place& place, void* object) const;
 
 private:
@@ -104,11 +106,11 @@ void read_value(const Json& json, const Place& place, const KeyDoc& doc, void* v
     Value<V>::read(json, place, doc, *static_cast<V*>(value));
 }
 
-/// Rule for objects of type T.
+/// Rule for the objects of type T in a scene file.
 template <class T>
 class Rule : public RuleTable {
 public:
-    /// `name` is the title of the definition in the schema. In messages it precedes the object's own name.
+    /// `name` is the title of the definition in the schema. In error messages it precedes the object's own name.
     Rule(std::string name, std::string meaning) : RuleTable(std::move(name), std::move(meaning)) {}
 
     template <class V>
@@ -119,12 +121,12 @@ public:
     Rule& exactly_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::exactly_one, std::move(keys)); }
     Rule& at_most_one(std::vector<std::string> keys) { return group(KeyGroup::Kind::at_most_one, std::move(keys)); }
     Rule& together(std::vector<std::string> keys) { return group(KeyGroup::Kind::together, std::move(keys)); }
-    /// Declares a removed key. Reading refuses it with a hint that names its replacement.
+    /// Declares a removed key. Reading such a key throws SceneError with a hint that names the replacement.
     Rule& withdrawn(std::string_view key, std::string_view instead) {
         add_withdrawn({key, instead});
         return *this;
     }
-    /// Adds a condition on the values. The function itself refuses invalid ones.
+    /// Adds a condition on the values of an object. The function throws SceneError for invalid values.
     Rule& check(std::function<void(const Place&, const T&)> check) {
         checks_.push_back(std::move(check));
         return *this;
@@ -146,10 +148,10 @@ private:
     std::vector<std::function<void(const Place&, const T&)>> checks_;
 };
 
-/// Returns the complete JSON schema of files that hold one object of a rule.
+/// Returns the complete JSON schema for files that contain one object with the given rule.
 std::string schema_document(const std::string& title, const RuleTable& rule);
 
-/// Returns the rule of a type. scene_rules.h declares most specialisations.
+/// Returns the rule for objects of type T. scene_rules.h declares most specialisations.
 template <class T>
 const Rule<T>& rule_of();
 

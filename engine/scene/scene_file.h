@@ -1,4 +1,4 @@
-// Content of a scene file, key by key, before anything is built from it.
+// Content of a scene file, key by key, before meshes are read and names are resolved.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct SkittleMesh {
     Real height = 1;  // [m]
     int resolution = 4;
 };
-/// Exactly one of the shapes or the file is set.
+/// A mesh in a scene file. Exactly one of the shapes or the file is set.
 struct MeshEntry {
     std::optional<BoxMesh> box;
     std::optional<BallMesh> ball;
@@ -48,7 +48,7 @@ struct MeshEntry {
 };
 
 struct RestBox {
-    Vec3 lower = Vec3::Zero();  // in the mesh's own frame [m]
+    Vec3 lower = Vec3::Zero();  // lower corner in the mesh's own frame [m]
     Vec3 upper = Vec3::Zero();
 };
 struct KeyEntry {
@@ -137,7 +137,8 @@ struct JointEntry {
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };
-/// contacts: sticking and sliding of a part of a body, in the report. All others are time series of numbers in a file.
+/// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
+/// quantities are time series of numbers, for a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, energy, stress, volume };
 template <>
 struct EnumNames<ProbeQuantity> {
@@ -156,13 +157,13 @@ struct ProbeEntry {
     ProbeQuantity quantity = ProbeQuantity::contacts;
     std::optional<std::string> body, collider, by;
     std::optional<RestBox> box;
-    std::optional<Vec3> point;  // in the mesh's own frame [m]
+    std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;
     Place place;
 };
 
 struct SceneFile {
-    std::string schema;  // used by editors only
+    std::string schema;  // location of the JSON schema, used only by editors
     std::string name;
     std::string description;
     Real seconds = 2;
@@ -177,7 +178,8 @@ struct SceneFile {
     std::optional<Real> probe_step;
 };
 
-/// Reads a scene file and all files it includes. `assignments` (assign.h) are applied to it first. Throws SceneError.
+/// Reads a scene file and all files that it includes. `assignments` (assign.h) are applied to the content of the file
+/// first. Throws SceneError.
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments = {});
 
 }  // namespace skerry

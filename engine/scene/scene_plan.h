@@ -1,4 +1,4 @@
-// A scene with meshes read, copies placed and names resolved, ready to be added to a world.
+// A scene in which meshes are read, copies placed and names resolved. It is ready to be added to a world.
 #pragma once
 
 #include <string>
@@ -15,15 +15,16 @@ namespace skerry {
 struct PinPlan {
     std::vector<Index> nodes;  // local numbers
     Motion motion;
-    Vec3 pivot = Vec3::Zero();  // in world coordinates [m]
+    Vec3 pivot = Vec3::Zero();  // position of the pivot in world coordinates [m]
     Place place;
 };
 struct BodyPlan {
-    BodySettings settings;  // without handles of materials, which exist only in the built world
-    std::size_t mesh = 0;   // index in ScenePlan::meshes; for a shape: the mesh that draws it
+    BodySettings settings;  // settings without handles of materials, which exist only in the built world
+    // Index in ScenePlan::meshes. For a sphere, capsule or cylinder: the mesh that represents it in output.
+    std::size_t mesh = 0;
     BodyShapeEntry shape{};
     std::size_t material = 0;                            // index in ScenePlan::materials
-    std::vector<std::pair<int, std::size_t>> materials;  // label, index in ScenePlan::materials
+    std::vector<std::pair<int, std::size_t>> materials;  // pairs (label of tetrahedra, index in ScenePlan::materials)
     std::vector<PinPlan> pins;
     Place place;
 };
@@ -35,7 +36,7 @@ struct ColliderPlan {
 struct JointPlan {
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
-    JointSettings settings;               // without handles of bodies, which exist only in the built world
+    JointSettings settings;               // settings without handles of bodies, which exist only in the built world
     Place place;
 };
 struct ProbePlan {
@@ -43,7 +44,7 @@ struct ProbePlan {
     std::size_t body = 0;      // index in ScenePlan::bodies
     std::vector<Index> nodes;  // local numbers
 };
-/// A time series. The quantity determines which members are used.
+/// A time series to be recorded. The quantity determines which members are used.
 struct SeriesPlan {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::energy;
@@ -61,7 +62,7 @@ struct ScenePlan {
     Real frame_step = 0;  // [s]
     Settings settings;
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    std::vector<Mesh> meshes;  // one for each entry of "bodies" or each mesh file; copies share it
+    std::vector<Mesh> meshes;  // one mesh for each entry of "bodies" or each mesh file; copies share it
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;
@@ -71,16 +72,17 @@ struct ScenePlan {
     std::filesystem::path file;
 };
 
-/// Reads a scene and resolves it. Throws SceneError.
+/// Reads a scene, its meshes and the files that it includes, and resolves all names. Throws SceneError.
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
-/// Returns the nodes of a mesh inside a box of its own frame. Throws SceneError if there are none.
+/// Returns the nodes of a mesh inside a box, which is given in the mesh's own frame. Throws SceneError if the box
+/// contains no node.
 std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place);
 
-/// Adds a probe to a plan that already has all bodies and colliders.
+/// Adds a probe to a plan that already contains all bodies and colliders.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
-/// Builds the world. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
+/// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
 Scene build_scene(const ScenePlan& plan);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Keys of a scene: settings, materials, bodies, colliders, probes.
+// Keys of a scene file: settings, materials, bodies, colliders, probes.
 #include "engine/scene/scene_rules.h"
 
 #include <cstdint>
@@ -42,7 +42,7 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
             .key("seed", &RepeatEntry::seed,
                  {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)})
             .check([](const Place& place, const RepeatEntry& grid) {
-                // more copies would not fit into memory and are probably a typing mistake
+                // A larger number of copies would not fit into memory and is probably a typing mistake.
                 constexpr std::int64_t most_copies = 1000000;
                 const std::int64_t copies = std::int64_t{1} * grid.count[0] * grid.count[1] * grid.count[2];
                 if (copies > most_copies)

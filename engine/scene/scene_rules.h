@@ -1,4 +1,5 @@
-// Keys of scene files: declarations of the rules in scene_, shape_, joint_ and probe_rules.cpp.
+// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp and
+// probe_rules.cpp define.
 #pragma once
 
 #include "engine/scene/scene_file.h"

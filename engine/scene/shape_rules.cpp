@@ -1,11 +1,11 @@
-// Keys of meshes, collider shapes and motions.
+// Keys of meshes, collider shapes and motions in a scene file.
 #include "engine/scene/scene_rules.h"
 
 namespace skerry {
 
 namespace {
 
-// More cells would not fit into memory and are probably a typing mistake.
+// A larger number of cells would not fit into memory and is probably a typing mistake.
 const Limits cell_count = within(1, 1000);
 const Limits positive = above(0);
 

@@ -40,10 +40,10 @@ void check_limits(Real number, const Json& json, const Place& place, const KeyDo
     if (!inside) place.refuse(json.dump(), expected_number(doc, kind));
 }
 
-/// Largest deviation of the rows from a rotation: files print few digits.
+/// Largest accepted deviation of a matrix from a rotation matrix. It is not zero because files contain few digits.
 constexpr Real rotation_tolerance = 1e-6;
 
-/// Axis and angle: the form of a rotation written as an object.
+/// A rotation that a scene file gives as an object with axis and angle.
 struct AxisAngle {
     Vec3 axis = Vec3::UnitZ();
     std::optional<Real> degrees, radians;
@@ -93,7 +93,7 @@ void Value<bool>::read(const Json& json, const Place& place, const KeyDoc&, bool
 
 namespace {
 
-/// Reads a whole number between `least` and `largest` and within the limits of the key.
+/// Reads a whole number that must lie between `least` and `largest` and within the limits of the key.
 Real read_whole(const Json& json, const Place& place, const KeyDoc& doc, Real least, Real largest) {
     const std::string kind = "a whole number";
     if (!json.is_number()) place.refuse(described(json), expected_number(doc, kind));
@@ -191,7 +191,7 @@ Json either_schema(Json one, Json other) {
 Json rule_schema(SchemaBook& book, const RuleTable& rule) {
     const std::string& name = rule.name();
     if (!book.contains(name)) {
-        book[name] = nullptr;  // placeholder, in case the type contains itself
+        book[name] = nullptr;  // placeholder that ends the recursion if the type contains itself
         Json definition = rule.schema(book);
         book[name] = std::move(definition);
     }
@@ -207,7 +207,7 @@ void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc
 void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& doc, FilePath& out) {
     std::string text;
     Value<std::string>::read(json, place, doc, text);
-    out.path = place.file().parent_path() / text;  // an absolute path is not changed
+    out.path = place.file().parent_path() / text;  // an absolute path remains unchanged
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
         place.refuse("no file " + in_quotes(out.path.string()), "the path of a file, from the folder of the scene on");

@@ -1,4 +1,4 @@
-// Reads values of each type from JSON and describes them in the schema.
+// Functions that read values of each type from JSON and describe the types in the schema.
 #pragma once
 
 #include <array>
@@ -14,32 +14,32 @@
 
 namespace skerry {
 
-/// A path in a scene file. Relative paths start at the folder of that file.
+/// A path in a scene file. A relative path starts at the folder of the scene file.
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation, stored as axis times angle. A scene file may write it in three ways.
+/// A rotation, stored as axis times angle. A scene file may write it in three forms.
 struct Rotation {
     Vec3 value = Vec3::Zero();  // [rad]
 };
-/// Objects by name, in the order of the file.
+/// A list of objects with names, in the order of the file.
 template <class T>
 struct Named {
     std::vector<std::pair<std::string, T>> items;
 };
-/// Objects by number. JSON keys are text, so the whole numbers are written as text.
+/// A list of objects with numbers. JSON keys are texts, so a file contains each whole number as text.
 template <class T>
 struct ByNumber {
     std::vector<std::pair<int, T>> items;
 };
-/// One object, or a list of them.
+/// A single object or a list of objects.
 template <class T>
 struct OneOrMore {
     std::vector<T> items;
 };
-/// A 3 x 3 rotation matrix, given by its rows.
+/// A rotation that a scene file gives by the rows of its 3 x 3 matrix.
 struct RotationRows {
-    Vec3 value = Vec3::Zero();  // axis times angle [rad]
+    Vec3 value = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
 Real read_number(const Json& json, const Place& place, const KeyDoc& doc);
@@ -52,7 +52,7 @@ Json list_schema(Json items, std::size_t count);
 Json named_schema(Json value);
 Json numbered_schema(Json value);
 Json either_schema(Json one, Json other);
-/// Returns a reference to the definition of a rule, and adds the definition to the book if it is missing.
+/// Returns a schema reference to the definition of a rule. Adds the definition to `book` if it is missing.
 Json rule_schema(SchemaBook& book, const RuleTable& rule);
 
 template <>
@@ -118,11 +118,11 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Returns the index of the name that equals the text.
+/// Reads a text, and returns the index of the equal text in `names`.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 
-/// Reads an enum from one of its names.
+/// Reads a value of an enum from its name.
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Value<Enum> {
@@ -144,10 +144,10 @@ struct Value<std::optional<T>> {
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<T>::schema(book, doc); }
 };
-/// Calls item(value, place) for each value of a list.
+/// Calls item(value, place) for each item of a JSON list.
 void read_items(const Json& json, const Place& place, FunctionRef<void(const Json&, const Place&)> item);
 
-/// Appends to `out`: the lists of an included scene come first.
+/// Appends the items of a list to `out`. If a scene includes others, the items of the included scenes come first.
 template <class T>
 struct Value<std::vector<T>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::vector<T>& out) {
@@ -168,7 +168,7 @@ struct Value<OneOrMore<T>> {
         return either_schema(Value<T>::schema(book, doc), Value<std::vector<T>>::schema(book, doc));
     }
 };
-/// Calls item(name, value, place) for each key of an object. `has` tells whether a name already exists.
+/// Calls item(name, value, place) for each key of a JSON object. `has` returns true if a name already exists.
 void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
                 FunctionRef<void(const std::string&, const Json&, const Place&)> item);
 
@@ -189,8 +189,8 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Calls item(number, value, place) for each key of an object. Keys must be plain 32-bit whole numbers: no sign except
-/// minus, no leading zeros.
+/// Calls item(number, value, place) for each key of a JSON object. The keys must be whole numbers that fit 32 bits: no
+/// sign except minus, no leading zeros.
 void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
 
 template <class T>
@@ -203,7 +203,7 @@ struct Value<ByNumber<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return numbered_schema(Value<T>::schema(book, doc)); }
 };
 
-/// All other types are objects with a rule.
+/// Reads values of all other types, which are objects with a rule.
 template <class T>
 struct Value {
     static void read(const Json& json, const Place& place, const KeyDoc&, T& out) {

@@ -1,4 +1,4 @@
-// Output of a run: a ParaView time series and a page that plays in a browser.
+// Output of a run: a time series for ParaView, and an HTML page that plays the run in a browser.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,29 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Writes frames for ParaView. NAME.pvd lists for each frame one .vtu of all bodies (displacement, velocity, speed,
-/// stress, strain, numbers of body and material), one .vtp of the contacts (impulse, force, normal, gap, slip, state,
-/// region) and one .vtp of the colliders, written anew when they have changed. Displacements are measured from the
-/// position in which a body was first written. Stress is Cauchy stress [Pa], strain is Green strain. Both are given by
-/// tetrahedron and by node, with components in the order of VTK: XX, YY, ZZ, XY, YZ, XZ. Field data hold the names of
-/// bodies, materials and colliders by number. Files appear complete or not at all. Throws SceneError if the folder
-/// cannot be written.
+/// Writes frames for ParaView. The index file NAME.pvd lists three files for each frame:
+/// - one .vtu file of all bodies, with displacement, velocity, speed, stress, strain, and the numbers of body and
+///   material;
+/// - one .vtp file of the contacts, with impulse, force, normal, gap, slip, state and region;
+/// - one .vtp file of the colliders, which is written again only when a collider has changed.
+///
+/// Displacements are measured from the position in which a body was first written. Stress is Cauchy stress [Pa], strain
+/// is Green strain. Both are given by tetrahedron and by node, with components in the order of VTK: XX, YY, ZZ, XY, YZ,
+/// XZ. Field data map the numbers of bodies, materials and colliders to names. Files appear complete or not at all.
+/// Throws SceneError if the folder cannot be written.
 class VtkWriter {
 public:
     VtkWriter(const std::filesystem::path& folder, const std::string& name);
     ~VtkWriter();
-    /// Continues a series of `frames` frames, `frame_step` seconds apart. Those of them that are in the folder are
-    /// listed in the .pvd, and the next frame gets the next number. Must be called before the first frame.
+    /// Continues an existing series of `frames` frames, `frame_step` seconds apart. Frames of this series whose files
+    /// are in the folder are listed in the .pvd file, and the next frame gets the next number. Must be called before
+    /// the first frame.
     void go_on(const World& world, std::size_t frames, Real frame_step);
-    /// Names of the materials, in the order in which these were added; by default "material NUMBER". Must be called
-    /// before the first frame.
+    /// Sets the names of the materials, in the order in which the materials were added. The default name is "material
+    /// NUMBER". Must be called before the first frame.
     void name_materials(std::vector<std::string> names);
     void write_frame(const World& world);
-    /// Writes the .pvd. The files of single frames can be opened without it.
+    /// Writes the .pvd file. The files of single frames can be opened without it.
     void close();
 
 private:
@@ -36,17 +40,17 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Collects frames and writes one self-contained HTML page that plays the run: bodies coloured by speed, stress or
-/// strain, contacts by stick or slide, values under the pointer, pictures and videos, stage times and energies as
-/// plots. Works offline; three.js is inlined. Keeps the frames compressed in memory, as they are in the page. Positions
-/// are accurate to 1/32768 of a body's extent, and values are stored as square roots in 11 bits
-/// (docs/decisions/0016-page-stream.md).
+/// Collects frames and writes one self-contained HTML page that plays the run. The page shows bodies coloured by speed,
+/// stress or strain, contacts by stick or slide, values under the pointer, and plots of stage times and energies. It
+/// can export pictures and videos. It works offline, because three.js is inlined. The frames are kept in memory in the
+/// compressed form of the page. Positions are accurate to 1/32768 of a body's extent, and values are stored as square
+/// roots in 11 bits (docs/decisions/0016-page-stream.md).
 class PageWriter {
 public:
     PageWriter(const std::filesystem::path& file, const std::string& title);
     ~PageWriter();
     void add_frame(const World& world);
-    /// Writes the page at once, with the report of the whole run. Throws SceneError when it cannot be written.
+    /// Writes the page, with the report of the whole run. Throws SceneError if the page cannot be written.
     void close(const World& world);
 
 private:

@@ -1,4 +1,4 @@
-// Frictional contact problems from files (FCLIB), and their solution without a world.
+// Frictional contact problems from files (FCLIB format), and their solution without a world.
 #pragma once
 
 #include <array>
@@ -14,18 +14,20 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// A local contact problem u = W r + q, with components (normal, tangent 1, tangent 2) for each contact. The solution r
-/// lies in the friction cone K_mu, (u_N + mu |u_T|, u_T) lies in the dual cone, and the two are orthogonal. W is stored
-/// in compressed rows of 3x3 blocks.
+/// A local contact problem u = W r + q with the relative velocities u and the impulses (reactions) r. Both have the
+/// components (normal, tangent 1, tangent 2) for each contact. The solution r lies in the friction cone K_mu, the
+/// vector (u_N + mu |u_T|, u_T) lies in the dual cone, and the two vectors are orthogonal. The matrix W is stored in
+/// compressed rows of 3x3 blocks.
 struct ContactProblem {
     std::string name;
-    std::vector<Index> row_offset;  // first block of each row; contacts + 1 entries
-    std::vector<Index> column;      // block columns, ascending in each row, with the diagonal
-    std::vector<Mat3> block;        // blocks of W [1/kg]
-    std::vector<Vec3> q;            // velocities without reactions [m/s]
-    std::vector<Real> mu;           // coefficients of friction
-    std::string description;        // description in the file
-    Index freedoms = 0;  // degrees of freedom of the global problem that was condensed; 0 for a local problem
+    std::vector<Index> row_offset;  // index of the first block of each row; contacts + 1 entries
+    std::vector<Index> column;      // column of each block, ascending in each row; the diagonal block is always stored
+    std::vector<Mat3> block;        // 3x3 blocks of W, row by row [1/kg]
+    std::vector<Vec3> q;            // relative velocities without reactions [m/s]
+    std::vector<Real> mu;           // coefficient of friction of each contact
+    std::string description;        // description text of the file
+    // Degrees of freedom of the global problem from which this problem was condensed; 0 if it was local from the start.
+    Index freedoms = 0;
 
     Index contacts() const { return static_cast<Index>(q.size()); }
 };
@@ -33,113 +35,125 @@ struct ContactProblem {
 struct ProblemSettings {
     SolverMethod method = SolverMethod::automatic;
     Friction friction = Friction::cone;
-    Real tolerance = 1e-6;  // bound on ProblemSolution::error
+    Real tolerance = 1e-6;  // upper bound on ProblemSolution::error
     Index max_iterations = 100000;
-    Real relaxation = 1;  // relaxation factor of the sweeps, > 0 and < 2; only for methods that sweep
+    // Relaxation factor of the sweeps, > 0 and < 2. Only methods that sweep use it.
+    Real relaxation = 1;
 };
 
 struct ProblemSolution {
-    std::vector<Vec3> reaction;  // in the contact frames of the problem [N s]
+    std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
     Index regions = 0;
-    Index iterations = 0;      // largest number of any region
-    double seconds = 0;        // time of the solve alone [s]; median of repeated solves if it is short
-    Real error = 0;            // measure of FCLIB and Siconos: |e| / max(|q|, |r|, |u|)
-    Real error_absolute = 0;   // |e|
-    Real error_over_q = 0;     // |e| / |q|
-    Real energy_gap = 0;       // Coulomb gap, sum of r_N u_N + mu r_N |u_T| + r_T . u_T; 0 if Coulomb's law holds [J]
-    Index largest_region = 0;  // contacts of the largest region
-    Index unconverged = 0;     // regions that reached the iteration limit; 0 if converged
-    bool converged = false;    // error <= tolerance
+    Index iterations = 0;  // iterations of the region that needed most iterations
+    // Computing time of the solve, without reading and checking [s]. If the solve is short, it is repeated and this is
+    // the median.
+    double seconds = 0;
+    // Relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|), where e is the natural map residual.
+    Real error = 0;
+    Real error_absolute = 0;  // norm |e| of the natural map residual
+    Real error_over_q = 0;    // relative error |e| / |q|
+    // Violation of Coulomb's law [J]: sum of r_N u_N + mu r_N |u_T| + r_T . u_T over all contacts; 0 for an exact
+    // solution.
+    Real energy_gap = 0;
+    Index largest_region = 0;  // number of contacts of the largest region
+    Index unconverged = 0;     // number of regions that reached the iteration limit; 0 if converged
+    bool converged = false;    // true if error <= tolerance
 };
 
-/// Reads the problem of an FCLIB file (HDF5). A local problem is read as it is. A global problem (M v = H r + f,
-/// u = H^T v + w) is condensed to its contacts: W = H^T M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
+/// Reads the contact problem of an FCLIB file (HDF5). A local problem is read unchanged. A global problem (M v = H r +
+/// f, u = H^T v + w, with the mass matrix M and the velocities v of the bodies) is condensed to its contacts: W = H^T
+/// M^-1 H and q = H^T M^-1 f + w. Throws SceneError.
 ContactProblem read_problem(const std::filesystem::path& file);
 
 /// Writes a local problem in the format of FCLIB, with W in compressed columns, so that other solvers can read it. If
-/// reactions are given (one per contact), a solution is written, too. Equal problems give equal bytes. The file appears
-/// complete or not at all. Throws SceneError if the problem is empty, if its arrays disagree, or if the file cannot be
-/// written.
+/// `reaction` is given (one vector per contact), a solution is written, too. Equal problems give equal bytes. The file
+/// appears complete or not at all. Throws SceneError if the problem is empty, if its arrays have inconsistent sizes, or
+/// if the file cannot be written.
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file,
                    std::span<const Vec3> reaction = {});
 
-/// The subproblem of the given contacts (in ascending order), with the reactions of all others zero. Exact for a
-/// region. Throws SceneError.
+/// Returns the subproblem of the given contacts (in ascending order), in which the reactions of all other contacts are
+/// zero. For a complete region this is exact. Throws SceneError.
 ContactProblem part_of(const ContactProblem& problem, std::span<const Index> contacts);
 
-/// Separates the problem into regions and solves them from r = 0. With Friction::pyramid the errors of the solution,
-/// and so `converged`, refer to the pyramid: the natural map clamps tangential components one by one. Throws SceneError
-/// if the arrays of the problem disagree or a setting is out of its range.
+/// Separates the problem into independent regions and solves each region, starting from r = 0. With Friction::pyramid
+/// the errors of the solution, and so `converged`, refer to the friction pyramid: the natural map clamps each
+/// tangential component separately. Throws SceneError if the arrays of the problem have inconsistent sizes or a setting
+/// is out of its range.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
-/// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the Coulomb gap.
+/// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the energy gap of
+/// Coulomb's law.
 struct ProblemError {
-    Real absolute, relative, over_q;  // |e|, |e| / max(|q|, |r|, |u|), |e| / |q|
+    Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
-/// Nodes with a coupled mass matrix: an impulse on one of them moves all.
+/// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all.
 struct CoupledNodes {
     std::vector<Index> node;
-    std::vector<Real> inverse;  // inverse mass matrix, row by row, symmetric [1/kg]
+    std::vector<Real> inverse;  // inverse mass matrix, stored row by row, symmetric [1/kg]
 };
 
-/// The nodes of a rigid body, or of the rigid motion of an implicit body, that contacts touch.
+/// The nodes that contacts touch and that move rigidly: nodes of a rigid body, or the rigid motion of an implicit body.
 struct RigidPoints {
     std::vector<Index> node;
-    std::vector<Vec3> arm;                // position relative to the centre of mass [m]
+    std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
     Real inverse_mass = 0;                // [1/kg]
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
-    Real radius = 0;            // of a round body: distance of its contact points from its nodes, the core [m]
-    std::vector<Vec3> touch{};  // of a cylinder: contact point of each contact, from the centre of mass [m]
+    // For a sphere or capsule: distance of the contact points from the centre or the axis, where the nodes lie [m].
+    Real radius = 0;
+    // For a cylinder: position of each contact's point relative to the centre of mass [m].
+    std::vector<Vec3> touch{};
 };
 
-/// The nodes of an implicit body that contacts touch: response of its deformation, without the rigid motion
-/// (RigidPoints).
+/// The nodes of an implicit body that contacts touch. `response` describes the deformation of the body only;
+/// RigidPoints describes its rigid motion.
 struct StrainedPoints {
     std::vector<Index> node;
-    std::vector<Mat3> response;  // velocity per impulse, row by row, symmetric [1/kg]
+    std::vector<Mat3> response;  // velocity change per impulse, for each pair of nodes, row by row, symmetric [1/kg]
 };
 
-/// Contacts between point masses, in world axes: u_i = sum_a weight[a] velocity[node[a]] + offset_i. An impulse r_i
-/// adds weight[a] inverse_mass[node[a]] r_i to the velocity of node a.
+/// Contacts between point masses, in world axes. The relative velocity of contact i is u_i = sum_a weight[a]
+/// velocity[node[a]] + offset_i over the four nodes a of its stencil. An impulse r_i adds weight[a]
+/// inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
-    // one entry per contact
+    // The next arrays have one entry per contact.
     std::vector<std::array<Index, 4>> node;
     std::vector<std::array<Real, 4>> weight;
-    std::vector<Vec3> normal;  // unit
-    // velocity offset from gaps, collider motion and the spin of round bodies, less half of the rotation of the slip by
-    // forces within the step [m/s]
+    std::vector<Vec3> normal;  // unit normal of the contact
+    // Velocity offset: the contribution of the gap, of the collider's motion and of the angular velocity of round
+    // bodies, minus half of the change in sliding direction caused by the forces of the step [m/s].
     std::vector<Vec3> offset;
-    std::vector<Real> friction;  // mu
-    // one entry per node
-    std::vector<Real> inverse_mass;  // 0: no impulse moves the node [1/kg]
-    std::vector<Vec3> velocity;      // without the contacts [m/s]
-    // for nodes in these lists inverse_mass must not be 0, and its value is not used
+    std::vector<Real> friction;  // coefficient of friction mu
+    // The next arrays have one entry per node.
+    std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
+    std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
+    // For nodes in the following lists inverse_mass must not be 0, but its value is not used.
     std::vector<CoupledNodes> coupled{};
     std::vector<RigidPoints> rigid{};
     std::vector<StrainedPoints> strained{};
 };
 
 /// Converts lumped contacts to a problem with general blocks. The frame of a contact is right-handed: its normal and
-/// two tangents that depend on the normal alone. Every contact needs a node that moves.
+/// two tangents that depend on the normal alone. Each contact must have at least one node that can move.
 ContactProblem assemble_problem(const LumpedContacts& contacts, const std::string& name);
 
-/// Transforms world vectors, one per contact, into the contact frames.
+/// Transforms vectors from world axes into the contact frames, one vector per contact.
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
-/// The contact problem of one step of a world as its solver received it, and the impulses that the step used. Contacts
-/// that no impulse can move are left out.
+/// The contact problem of one step of a world as the solver received it, and the impulses of the step. Contacts that no
+/// impulse can move are omitted.
 struct StepProblem {
-    std::uint64_t step = 0;      // number of the step, from 1
+    std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]
     Real step_size = 0;          // [s]
-    LumpedContacts lumped;       // contacts as used by the step
-    ContactProblem problem;      // the same contacts as general blocks
-    std::vector<Vec3> impulse;   // in the contact frames of the problem [N s]
-    std::vector<Index> contact;  // index of each contact of the problem in World::contacts()
-    std::vector<Index> region;   // region of each contact of the problem
+    LumpedContacts lumped;       // contacts in the form that the step used
+    ContactProblem problem;      // the same contacts in the form of general blocks
+    std::vector<Vec3> impulse;   // impulses of the step in the contact frames of `problem` [N s]
+    std::vector<Index> contact;  // index in World::contacts() of each contact of `problem`
+    std::vector<Index> region;   // region number of each contact of `problem`
 };
 
 }  // namespace skerry

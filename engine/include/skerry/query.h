@@ -1,4 +1,4 @@
-// Queries of the present surfaces of a world: World::cast_ray, World::nearest_point.
+// Geometric queries of the present surfaces of a world: World::cast_ray, World::nearest_point.
 #pragma once
 
 #include <array>
@@ -15,21 +15,22 @@ namespace skerry {
 struct QueryFilter {
     bool bodies = true;
     bool colliders = true;
-    std::uint32_t groups = 0xffffffffu;  // only bodies and colliders in one of these collision groups
+    std::uint32_t groups = 0xffffffffu;  // only bodies and colliders whose collision group is in this bit set
     std::vector<BodyHandle> except_bodies{};
     std::vector<ColliderHandle> except_colliders{};
 };
 
 /// A point on the surface of a body or a collider.
 struct SurfaceHit {
-    BodyHandle body{};          // the body; a stale handle if the surface is that of a collider
-    ColliderHandle collider{};  // the collider; a stale handle if the surface is that of a body
-    // triangle of World::surface, or of the mesh of a collider; -1 for analytic colliders and round rigid bodies
+    BodyHandle body{};          // the body; a stale handle if the point is on a collider
+    ColliderHandle collider{};  // the collider; a stale handle if the point is on a body
+    // Index of the triangle in World::surface, or in the mesh of a mesh collider; -1 for analytic colliders and round
+    // rigid bodies.
     Index triangle = -1;
-    std::array<Real, 3> barycentric{};  // weights of the triangle's corners, in [0, 1], their sum 1
-    Vec3 point = Vec3::Zero();          // [m]
+    std::array<Real, 3> barycentric{};  // weights of the triangle's corners at `point`: in [0, 1], with sum 1
+    Vec3 point = Vec3::Zero();          // position of the hit in the world [m]
     Vec3 normal = Vec3::Zero();         // outward unit normal of the triangle or the shape
-    Real distance = 0;                  // from the origin of the ray, or from the queried point [m]
+    Real distance = 0;                  // distance from the origin of the ray, or from the queried point [m]
 };
 
 }  // namespace skerry

@@ -12,7 +12,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Changes that the caller makes to the settings of a scene.
+/// Settings by which the caller overrides those of a scene file.
 struct SceneOverrides {
     std::optional<int> threads{};
     std::optional<Backend> backend{};
@@ -24,38 +24,39 @@ struct SceneOverrides {
     std::optional<StartOverlaps> start_overlaps{};
     std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
-    std::optional<ElementKind> element{};  // element kind of all bodies
-    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They change the scene file itself, not the files
-    // that it includes, in this order and before all members above. PLACE is written as in error messages. VALUE is
-    // JSON, else it is taken as a string.
+    std::optional<ElementKind> element{};  // element kind for all bodies
+    // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied to the scene file itself, not to
+    // the files that it includes, in the given order and before all members above. PLACE has the form used in error
+    // messages. VALUE is read as JSON; if it is not valid JSON, it is taken as a text.
     std::vector<std::string> assignments{};
 };
 
-/// A part of a body whose contacts a run reports, such as the feet of a table.
+/// A set of nodes of a body whose contacts a run reports, such as the feet of a table.
 struct Probe {
     std::string name;
     BodyHandle body;
-    std::vector<Index> nodes;  // local node numbers
+    std::vector<Index> nodes;  // numbers of the nodes within the body
 };
 
-/// A scene with its world built.
+/// A scene file's content, with the world already built.
 struct Scene {
     std::string name;
     std::string description;
     std::vector<std::string> materials;  // names of the materials, in the order added
-    Real seconds = 2;                    // default length of a run [s]
-    Real frame_step = 1.0 / 60;          // time between frames of output [s]
+    Real seconds = 2;                    // default duration of a run [s]
+    Real frame_step = 1.0 / 60;          // time between two frames of output [s]
     World world;
     std::vector<Probe> probes;
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
-    Real probe_step = 1.0 / 60;           // time between two samples of the probes, or two rows [s]
+    // Time between two samples of `probes`, or between two rows of `recorded` [s].
+    Real probe_step = 1.0 / 60;
 };
 
-/// Reads a scene and builds its world. Mesh files are searched beside the scene file. Throws SceneError for any input
-/// that it does not understand; for an unknown key the message names the nearest known one.
+/// Reads a scene file and builds its world. Relative paths of mesh files start at the folder of the scene file. Throws
+/// SceneError for any invalid input; for an unknown key the message names the nearest known key.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
-/// The JSON schema of scene files.
+/// Returns the JSON schema of scene files.
 std::string scene_schema();
 
 }  // namespace skerry

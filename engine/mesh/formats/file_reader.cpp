@@ -103,13 +103,13 @@ std::string_view FileReader::word(const char* expected) {
 
 Real FileReader::parse_real(std::string_view text, const char* field) const {
     std::string_view digits = text;
-    // from_chars does not accept a plus sign
+    // std::from_chars does not accept a plus sign before a number.
     if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') digits.remove_prefix(1);
     Real value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
         complain(field, in_quotes(text), "a number");
-    // Out of range: tiny numbers may become zero, huge ones infinite. strtod distinguishes them.
+    // If the number is out of range, strtod returns zero for tiny numbers and infinity for huge ones.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
     return value;
 }
@@ -146,7 +146,8 @@ bool FileReader::skip_behind(std::string_view mark) {
 
 std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, const char* field) const {
     if (count < 0) complain(field, std::to_string(count), "a count that is not negative");
-    const std::size_t fits = remaining() / bytes + 1;  // one more: the last row may lack its line end
+    // One more row may fit, because the last row of the file may lack its line end.
+    const std::size_t fits = remaining() / bytes + 1;
     if (static_cast<std::uint64_t>(count) > fits)
         complain(field, std::to_string(count), "at most " + std::to_string(fits),
                  std::to_string(remaining()) + " bytes are left of the file");

@@ -1,4 +1,5 @@
-// Reads a file from memory, front to back: lines, words, numbers and binary numbers. Errors name their position.
+// Reads a file that was loaded into memory, from start to end: lines, words, and numbers in text or binary form. Error
+// messages name the position in the file.
 #pragma once
 
 #include <bit>
@@ -21,12 +22,12 @@ public:
     std::size_t remaining() const { return data_.size() - position_; }
     std::string_view rest() const { return std::string_view(data_).substr(position_); }
 
-    /// Sets the section named in the following error messages, for example "$Nodes".
+    /// Sets the name of the file's section, for example "$Nodes". Later error messages contain it.
     void set_section(std::string section) {
         section_ = std::move(section);
         row_kind_ = nullptr;
     }
-    /// Sets the row of the section for error messages, for example "node 3 of 14". set_section clears it.
+    /// Sets the row of the section for error messages, for example "node 3 of 14". set_section() clears the row.
     void set_row(const char* kind, std::size_t number, std::size_t count);
 
     // Lines.
@@ -37,15 +38,15 @@ public:
     std::string_view line();
     /// Returns the next line that is not empty. At the end of the file: throws SceneError that `expected` is missing.
     std::string_view filled_line(const char* expected);
-    /// Splits a line into words. The result is valid until the next call.
+    /// Splits a line into words. The returned list is valid until the next call.
     const std::vector<std::string_view>& words_of(std::string_view line);
 
     // Words and numbers of text.
     // ---------------------------------------------------------------------------------------------------
-    /// Returns the next word after white space, possibly on a later line. At the end of the file: throws SceneError
-    /// that `expected` is missing.
+    /// Skips white space and line ends, then returns the next word. At the end of the file: throws SceneError that
+    /// `expected` is missing.
     std::string_view word(const char* expected);
-    /// Returns the word that word() would return; empty at the end.
+    /// Returns the word that word() would return, without moving on; empty at the end of the file.
     std::string_view peek_word() const;
     Real parse_real(std::string_view text, const char* field) const;
     std::int64_t parse_integer(std::string_view text, const char* field) const;
@@ -65,19 +66,21 @@ public:
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Moves behind the next occurrence of `mark` that ends a word; it may follow binary numbers without a line end.
-    /// Returns false and does not move if there is none.
+    /// Moves to the position after the next occurrence of `mark` at the end of a word; no line end is needed between
+    /// binary numbers and `mark`. Returns false and does not move if there is no such occurrence.
     bool skip_behind(std::string_view mark);
 
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
-    /// Checks a count that was read: not negative, and so many rows of at least `bytes` bytes must fit into the rest
-    /// of the file. A wrong count therefore cannot allocate more than a small multiple of the file's size.
+    /// Checks a number of rows that was read from the file. It must not be negative, and that many rows of at least
+    /// `bytes` bytes must fit into the rest of the file. A wrong count therefore cannot allocate more than a small
+    /// multiple of the file size.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;
 
-    /// Throws SceneError with file, section, row and line (or byte), field, found, expected.
+    /// Throws SceneError that names the file, section, row, line (or byte), field, and the found and the expected
+    /// value.
     [[noreturn]] void complain(std::string field, std::string found, std::string expected, std::string hint = {}) const;
 
 private:
@@ -88,13 +91,13 @@ private:
     const char* row_kind_ = nullptr;
     std::size_t row_number_ = 0, row_count_ = 0;
     std::size_t position_ = 0;
-    std::size_t start_ = 0;  // start of the item read last, for error messages
+    std::size_t start_ = 0;  // position of the last item read, for error messages
     bool last_was_binary_ = false;
     bool foreign_bytes_ = false;
     std::vector<std::string_view> words_;
 };
 
-/// Returns a word of the file in a form suitable for a message: quoted, short, printable.
+/// Converts a word of the file for use in an error message: in quotes, shortened, and with printable characters only.
 std::string in_quotes(std::string_view text);
 
 }  // namespace skerry::mesh

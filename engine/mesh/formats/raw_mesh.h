@@ -1,4 +1,4 @@
-// Content of a mesh file before conversion to a mesh.
+// Content of a mesh file before its conversion to a Mesh.
 #pragma once
 
 #include <array>
@@ -12,23 +12,23 @@
 
 namespace skerry::mesh {
 
-/// Nodes, and elements as rows of indices into them.
+/// Nodes and elements of a mesh file. Each element is a row of indices into `nodes`.
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
-    std::vector<int> label;  // by tetrahedron, or empty
+    std::vector<int> label;  // label of each tetrahedron, or empty
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
-    std::size_t others = 0;            // number of elements of ignored kinds
+    std::size_t others = 0;            // number of elements of kinds that are ignored
 };
 
-/// Maps the node numbers of a file to rows of nodes.
+/// Maps the node numbers in a file to indices into RawMesh::nodes.
 class NodeNumbers {
 public:
     void reserve(std::size_t count) { row_.reserve(count); }
-    /// Gives the next node this number. Throws SceneError if another node has it.
+    /// Assigns `number` to the next node. Throws SceneError if another node has the same number.
     void add(std::int64_t number, const FileReader& reader);
-    /// Returns the row of a number. Throws SceneError if there is no such node.
+    /// Returns the index of the node with the given number. Throws SceneError if there is no such node.
     Index row(std::int64_t number, const FileReader& reader) const;
     std::size_t size() const { return row_.size(); }
 
@@ -36,7 +36,7 @@ private:
     std::unordered_map<std::int64_t, Index> row_;
 };
 
-/// Converts a number to a label; empty unless it is a 32-bit whole number.
+/// Converts a number to a label. Returns nothing unless the number is a whole number that fits 32 bits.
 std::optional<int> as_label(Real number);
 
 /// Throws SceneError if an element uses a node twice.
@@ -47,10 +47,10 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
             if (nodes[a] == nodes[b]) reader.complain("nodes", "the same node twice", "different nodes");
 }
 
-// One function for each format. All throw SceneError.
-RawMesh read_gmsh(FileReader& reader);         // versions 1, 2 and 4.1
-RawMesh read_vtk(FileReader& reader);          // legacy format; unstructured grids and polygons
-RawMesh read_tetgen(const std::string& path);  // .node and .ele with the same base name; either name is accepted
+// Readers of the file formats. All throw SceneError.
+RawMesh read_gmsh(FileReader& reader);         // Gmsh file versions 1, 2 and 4.1
+RawMesh read_vtk(FileReader& reader);          // legacy VTK files with unstructured grids or polygons
+RawMesh read_tetgen(const std::string& path);  // files .node and .ele of the same name; `path` may name either
 RawMesh read_obj(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 

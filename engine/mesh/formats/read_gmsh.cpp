@@ -7,8 +7,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Number of nodes by Gmsh element type; 0: unknown (type 0, and gaps). The types are lines, triangles, quadrangles,
-// tetrahedra, hexahedra, prisms, pyramids and points.
+// Number of nodes of each Gmsh element type; 0 for type 0, which does not exist. The types are lines, triangles,
+// quadrangles, tetrahedra, hexahedra, prisms, pyramids and points.
 constexpr std::array<std::size_t, 32> nodes_of_type{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
 constexpr std::int64_t triangle_type = 2, tetrahedron_type = 4;
@@ -71,7 +71,7 @@ struct Header {
     bool binary = false;
 };
 
-/// Reads the lines of $MeshFormat, up to and including $EndMeshFormat.
+/// Reads the lines of section $MeshFormat, up to and including $EndMeshFormat.
 Header read_header(FileReader& reader) {
     reader.set_section("$MeshFormat");
     const std::string_view text = reader.filled_line("version, file type and data size");
@@ -107,12 +107,13 @@ void require_end(FileReader& reader, const std::string& mark) {
         reader.complain({}, in_quotes(end), mark, "more rows than the section announces?");
 }
 
-/// Labels are physical groups, which users number. A mesh without any gets the tags of its geometric volumes.
+/// Sets the labels of the tetrahedra: the physical groups, which users number. If no tetrahedron is in a physical
+/// group, the labels are the numbers of the geometric volumes.
 void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;
     for (const GmshTags& tags : mesh.tags) {
-        // the sign of a group only encodes an orientation
+        // the sign of a group number only encodes an orientation
         const Real tag = static_cast<Real>(grouped ? tags.physical : tags.elementary);
         const std::optional<int> number = as_label(grouped ? std::abs(tag) : tag);
         if (!number) return;
@@ -136,14 +137,14 @@ RawMesh read_gmsh(FileReader& reader) {
         header = read_header(reader);
     else
         reader.set_section("$NOD");
-    bool first = name == "$NOD";  // the name of this section has been read already
+    bool first = name == "$NOD";  // true if `name` is the name of a section that is not read yet
     while (first || !reader.at_end()) {
         if (!first) {
             reader.set_section({});
             name = reader.filled_line("a section");
         }
         first = false;
-        if (name.empty() || name.front() != '$') continue;  // text between sections is ignored, as in Gmsh
+        if (name.empty() || name.front() != '$') continue;  // text between two sections is ignored, as in Gmsh
         const std::string section(name);
         reader.set_section(section);
         const bool version_1 = header.version == 1;

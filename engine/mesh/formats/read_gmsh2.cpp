@@ -3,10 +3,12 @@
 namespace skerry::mesh {
 namespace {
 
-constexpr std::size_t shortest_row = 8;         // "1 0 0 0" and a line end: a node in text [bytes]
-constexpr std::size_t binary_node = 4 + 3 * 8;  // [bytes]
+// Size of the shortest line of text that defines a node: "1 0 0 0" and a line end [bytes].
+constexpr std::size_t shortest_row = 8;
+// Size of a node in a binary file: a 4-byte number and three 8-byte coordinates [bytes].
+constexpr std::size_t binary_node = 4 + 3 * 8;
 
-/// Returns the words of the next line. A new section here means that rows are missing.
+/// Returns the words of the next line. If a new section begins here, rows are missing: throws SceneError.
 const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
     const std::string_view text = reader.filled_line(expected);
     if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
@@ -90,7 +92,8 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
     take_gmsh_element(type, parse_nodes(reader, words, 3 + static_cast<std::size_t>(tags)), own, numbers, reader, mesh);
 }
 
-/// Reads a block: one header, then elements of one type with equally many tags. Returns the number of elements.
+/// Reads a block: one header, followed by elements of one type with equally many tags each. Returns the number of
+/// elements.
 std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t count, const NodeNumbers& numbers,
                               GmshMesh& mesh) {
     const auto type = reader.binary<std::int32_t>("type");

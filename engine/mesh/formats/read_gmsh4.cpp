@@ -9,7 +9,8 @@ namespace {
 
 using Numbers4 = std::array<std::int64_t, 4>;
 
-/// Reads four numbers: in text from one line, in binary with the given sizes (4 or 8 bytes).
+/// Reads four integers: in a text file from one line, in a binary file with the given size of each integer (4 or 8
+/// bytes).
 Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& sizes, const char* field,
                    const char* meaning) {
     Numbers4 numbers;
@@ -24,7 +25,8 @@ Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& si
     return numbers;
 }
 
-/// Reads "blocks, rows, smallest and largest number", the first line of both sections.
+/// Reads the header of section $Nodes or $Elements: number of blocks, number of nodes (elements), and the smallest and
+/// the largest number of a node (element).
 Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_bytes) {
     const Numbers4 header = read_four(reader, binary, {8, 8, 8, 8}, "header",
                                       "4 integers: count of blocks, count of rows, smallest and largest number");
@@ -33,26 +35,27 @@ Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_by
     return header;
 }
 
-/// Reads "dimension, tag, parametric or type, rows", the line before each block.
+/// Reads the header of a block of nodes or elements: dimension, tag, third number (parametric or element type), and
+/// number of rows.
 Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning) {
     const Numbers4 block = read_four(reader, binary, {4, 4, 4, 8}, "block header", meaning);
     if (block[0] < 0 || block[0] > 3) reader.complain("dimension", std::to_string(block[0]), "0 to 3");
     return block;
 }
 
-/// Reads a word of the rows of a section. A new section here means that rows are missing.
+/// Reads the next word of a node or element. If a new section begins here, rows are missing: throws SceneError.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);
     if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
     return text;
 }
 
-/// Reads the tag of an entity or of a group.
+/// Reads the tag of a geometric entity or of a physical group.
 std::int64_t read_tag(FileReader& reader, bool binary) {
     return binary ? reader.binary<std::int32_t>("tag") : reader.parse_integer(row_word(reader, "a tag"), "tag");
 }
 
-/// Reads a count and that many tags.
+/// Reads a count, followed by that many tags.
 std::vector<std::int64_t> read_tags(FileReader& reader, bool binary) {
     const std::int64_t announced = binary ? static_cast<std::int64_t>(reader.binary<std::uint64_t>("count of tags"))
                                           : reader.parse_integer(row_word(reader, "a count of tags"), "count of tags");
@@ -67,7 +70,7 @@ void require_total(const FileReader& reader, std::size_t found, std::int64_t ann
                         "as many as its blocks announce");
 }
 
-/// Reads the numbers, then the positions of the nodes of a block.
+/// Reads a block of nodes: first the numbers of all its nodes, then their positions.
 void read_node_block(FileReader& reader, bool binary, std::size_t rows, std::size_t parameters, std::size_t total,
                      NodeNumbers& numbers, std::array<std::int64_t, 2>& range, GmshMesh& mesh) {
     const std::size_t first = mesh.nodes.size();
@@ -122,11 +125,11 @@ GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {
         for (std::size_t i = 0; i < rows; ++i) {
             reader.set_row(kind[dimension], i + 1, rows);
             const std::int64_t tag = read_tag(reader, binary);
-            // position of a point, or bounding box of any other entity
+            // skips the position of a point, or the bounding box of any other entity
             for (int a = 0; a < (dimension == 0 ? 3 : 6); ++a)
                 binary ? void(reader.binary<double>("position")) : void(row_word(reader, "a coordinate"));
             const std::vector<std::int64_t> groups = read_tags(reader, binary);
-            if (dimension > 0) read_tags(reader, binary);  // tags of its boundary
+            if (dimension > 0) read_tags(reader, binary);  // skips the tags of the entity's boundary
             if (dimension == 3 && !groups.empty()) volumes[tag] = groups.front();
         }
     }

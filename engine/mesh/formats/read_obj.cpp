@@ -1,11 +1,12 @@
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Wavefront .obj: lines "v x y z" and "f a b c ...". All other lines (normals, texture, groups, materials, lines) are
-// ignored.
+// Reader of Wavefront .obj files. It reads the lines "v x y z" (node) and "f a b c ..." (face). All other lines
+// (normals, texture, groups, materials, lines) are ignored.
 namespace skerry::mesh {
 namespace {
 
-/// Reads "7", "7/2", "7//3" or "-1" (the last node so far). The number before the first slash is the node.
+/// Reads a corner of a face: "7", "7/2", "7//3", or "-1" for the last node so far. The number before the first slash is
+/// the node.
 Index parse_corner(const FileReader& reader, std::string_view word, std::size_t node_count) {
     const std::int64_t number = reader.parse_integer(word.substr(0, word.find('/')), "node");
     const auto count = static_cast<std::int64_t>(node_count);

@@ -2,8 +2,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// STL repeats the corners of each triangle. Equal positions become one node; triangles left with fewer than three
-// different nodes are dropped.
+// Reader of STL files. STL repeats the positions of the corners for each triangle. Equal positions become one node;
+// triangles left with fewer than three different nodes are dropped.
 namespace skerry::mesh {
 namespace {
 
@@ -22,7 +22,7 @@ public:
 
 private:
     Index node(const Vec3& x) {
-        // keys with -0 and 0 are equal
+        // keys that contain -0 and 0 are equal
         const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
         if (added) mesh_.nodes.push_back(x);
         return place->second;
@@ -35,7 +35,7 @@ private:
 constexpr std::size_t header_bytes = 80, triangle_bytes = 50;
 
 void read_binary(FileReader& reader, Welder& welder) {
-    reader.set_foreign_bytes(std::endian::native == std::endian::big);  // STL is little-endian
+    reader.set_foreign_bytes(std::endian::native == std::endian::big);  // STL files are little-endian
     reader.skip_bytes(header_bytes, "header");
     const std::size_t count = reader.checked_count(reader.binary<std::uint32_t>("count"), triangle_bytes, "count");
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
             reader.set_section("facet " + std::to_string(i));
             if (key != "facet") reader.complain({}, in_quotes(key), "facet or endsolid");
             require_word(reader, "normal");
-            for (int a = 0; a < 3; ++a) reader.word("a normal");  // normals are not needed, and often zero or wrong
+            for (int a = 0; a < 3; ++a) reader.word("a normal");  // unused: many files have wrong normals
             require_word(reader, "outer");
             require_word(reader, "loop");
             std::array<Vec3, 3> corners;
@@ -79,7 +79,7 @@ void read_ascii(FileReader& reader, Welder& welder) {
             require_word(reader, "endfacet");
             welder.add(corners);
         }
-        reader.line();  // rest of the line, which repeats the name
+        reader.line();  // skips the rest of the line, which repeats the name of the solid
     }
 }
 
@@ -88,7 +88,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
 RawMesh read_stl(FileReader& reader) {
     RawMesh mesh;
     Welder welder(mesh);
-    // A binary header may begin with "solid", too. The file size decides: it is exact in a binary file.
+    // The header of a binary file may begin with "solid", too. Only the file size tells the two forms apart: the size
+    // of a binary file follows exactly from the number of triangles.
     const std::string_view bytes = reader.rest();
     bool binary = false;
     if (bytes.size() >= header_bytes + 4) {

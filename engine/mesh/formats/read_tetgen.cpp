@@ -6,7 +6,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Returns the words of the next line that has any outside comments. Throws SceneError at the end of the file.
+/// Returns the words of the next line that contains words outside of comments. Throws SceneError at the end of the
+/// file.
 const std::vector<std::string_view>& node_row_words(FileReader& reader, const char* expected) {
     while (!reader.at_end()) {
         const std::string_view text = reader.line();
@@ -16,7 +17,7 @@ const std::vector<std::string_view>& node_row_words(FileReader& reader, const ch
     reader.complain({}, "the end of the file", expected);
 }
 
-/// Reads the header line: one to `most` integers. Missing ones are 0.
+/// Reads the header line, which has one to `most` integers. Missing integers are 0.
 std::array<std::int64_t, 4> read_header(FileReader& reader, std::size_t most, const char* meaning) {
     reader.set_section("header");
     const std::vector<std::string_view>& words = node_row_words(reader, meaning);
@@ -59,7 +60,7 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
         const std::vector<std::string_view>& words = node_row_words(reader, "number x y z");
         require_words(reader, words.size(), 4, most, "number x y z attributes marker");
         const std::int64_t number = reader.parse_integer(words[0], "number");
-        // TetGen numbers nodes from 0 or from 1, in order. Any other different numbers are accepted too.
+        // TetGen numbers nodes from 0 or from 1, in order. Any other numbers are accepted, too, if they differ.
         numbers.add(number, reader);
         Vec3 x;
         for (std::size_t a = 0; a < 3; ++a)
@@ -90,7 +91,7 @@ void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& me
         for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
         require_different(nodes, reader);
         mesh.tetrahedra.push_back(nodes);
-        // with -A TetGen appends the number of the region to all other attributes
+        // with its option -A TetGen writes the number of the region as the last attribute
         labelled = labelled && words.size() == 5 + static_cast<std::size_t>(attributes);
         if (!labelled) continue;
         const std::optional<int> number = as_label(reader.parse_real(words.back(), "attribute"));

@@ -7,7 +7,8 @@
 
 #include "engine/mesh/formats/raw_mesh.h"
 
-// Legacy VTK. Format: "VTK File Formats", VTK user's guide. File version 5.1 introduced OFFSETS and CONNECTIVITY.
+// Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. File version 5.1 introduced OFFSETS and
+// CONNECTIVITY.
 namespace skerry::mesh {
 namespace {
 
@@ -46,7 +47,7 @@ private:
         const std::string_view format = reader_.filled_line("ASCII or BINARY");
         if (format != "ASCII" && format != "BINARY") reader_.complain("format", in_quotes(format), "ASCII or BINARY");
         binary_ = format == "BINARY";
-        reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // VTK writes big-endian
+        reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // binary VTK files are big-endian
         const std::string_view key = reader_.word("DATASET");
         if (key != "DATASET") reader_.complain({}, in_quotes(key), "DATASET");
         dataset_ = reader_.word("the kind of data set");
@@ -54,7 +55,7 @@ private:
             reader_.complain("DATASET", in_quotes(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
     }
 
-    /// Reads the section with the given name. Returns false if the rest of the file does not belong to the mesh.
+    /// Reads the section with the given name. Returns false if the rest of the file contains no mesh data.
     bool read_section(const std::string& name) {
         reader_.set_section(name);
         if (name == "POINT_DATA" || name == "CELL_DATA") return read_data(name == "CELL_DATA");
@@ -78,9 +79,9 @@ private:
         return true;
     }
 
-    /// Skips lines up to an empty one or the end of the file.
+    /// Skips lines up to an empty line or the end of the file.
     void skip_metadata() {
-        reader_.line();  // rest of the line with the keyword
+        reader_.line();  // skips the rest of the line with the keyword
         while (reader_.remaining() > 0 && !reader_.line().empty()) {
         }
     }
@@ -121,7 +122,7 @@ private:
         return found->type;
     }
 
-    /// Skips the line end after the counts, before binary rows.
+    /// Skips the line end between the counts and binary rows.
     void begin_rows() {
         if (binary_) reader_.line();
     }
@@ -180,8 +181,8 @@ private:
         return static_cast<Index>(node);
     }
 
-    /// Reads the nodes of CELLS or POLYGONS: old form (count and nodes of each cell) or new form (offsets, then all
-    /// nodes).
+    /// Reads the nodes of the cells in section CELLS or POLYGONS. Old form: count and nodes of each cell. New form:
+    /// offsets of all cells, then all nodes.
     void read_cells(bool& has_rows) {
         if (!has_points_) reader_.complain({}, "cells before points", "the points first");
         if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of its name", "one");
@@ -197,7 +198,8 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = read_integer(type, "node count");
-            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);  // minus the counts read
+            // Number of integers that are left in the section after the counts and nodes read so far.
+            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
                                  "what the size in the header leaves");
@@ -270,7 +272,7 @@ private:
         offsets_.assign(1, 0);
     }
 
-    /// Divides a polygon into triangles that share its first corner.
+    /// Divides a polygon into triangles that share the polygon's first corner.
     void take_polygon(std::size_t begin, std::size_t end) {
         if (end - begin < 3) reader_.complain("node count", std::to_string(end - begin), "at least 3");
         for (std::size_t a = begin + 1; a + 1 < end; ++a) {
@@ -306,8 +308,8 @@ private:
         }
     }
 
-    /// Reads data of points or cells, array by array, and keeps only labels. Returns false at the end of the file and
-    /// at unknown content, which a mesh does not need.
+    /// Reads the data arrays of points or cells, and stores only labels. Returns false at the end of the file and at
+    /// unknown content; the rest of the file is not needed for a mesh.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
         const std::size_t rows = of_cells ? types_.size() : mesh_.nodes.size();
@@ -323,7 +325,8 @@ private:
         return false;
     }
 
-    /// Reads one array, or a field of several, after its keyword. Returns false for an unknown keyword or type.
+    /// Reads the array, or the field of several arrays, that follows its keyword. Returns false for an unknown keyword
+    /// or type.
     bool read_attribute(const std::string& keyword, std::size_t rows, bool of_cells) {
         reader_.set_section(keyword);
         if (keyword == "METADATA") {
@@ -334,7 +337,7 @@ private:
         if (keyword == "FIELD") return read_field_data(rows, of_cells);
         if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
             const std::size_t count = read_count("count", 1);
-            // bytes in binary files, fractions in text
+            // each component is a byte in binary files and a fraction in text files
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
                               {Kind::uint8, 1});
         }
@@ -351,7 +354,8 @@ private:
         return false;
     }
 
-    /// Continues after "SCALARS name type". The number of components and the colour table are optional.
+    /// Reads the rest of an array after "SCALARS name type". The number of components and the colour table are
+    /// optional.
     bool read_scalars(const std::string& name, std::size_t rows, bool of_cells, const NumberType& type) {
         std::size_t components = 1;
         if (const std::string_view rest = reader_.line(); !rest.empty())
@@ -369,7 +373,7 @@ private:
         for (std::size_t i = 0; i < arrays; ++i) {
             reader_.set_row("array", i + 1, arrays);
             const std::string name(reader_.word("the name of the array"));
-            if (name == "METADATA") {  // belongs to the previous array
+            if (name == "METADATA") {  // METADATA belongs to the previous array
                 skip_metadata();
                 --i;
                 continue;
@@ -383,7 +387,7 @@ private:
         return true;
     }
 
-    /// Keeps the array if it is the first one with labels.
+    /// Stores the array if it is the first array with labels; otherwise skips it.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
         constexpr std::array<std::string_view, 4> known{"region", "gmsh:physical", "medit:ref", "CellEntityIds"};
@@ -417,7 +421,7 @@ private:
         return true;
     }
 
-    /// Skips "FIELD name arrays" with its arrays "name components rows type" and their numbers.
+    /// Skips "FIELD name arrays", where each array has the form "name components rows type", followed by its numbers.
     void skip_field() {
         reader_.word("the name of the field");
         const std::size_t arrays = read_count("arrays", 4);
@@ -436,7 +440,7 @@ private:
     std::vector<std::size_t> offsets_{0};
     std::vector<Index> cell_nodes_;
     std::vector<std::int64_t> types_;
-    std::vector<int> cell_label_;  // by cell, or empty
+    std::vector<int> cell_label_;  // label of each cell, or empty
     RawMesh mesh_;
 };
 

@@ -11,7 +11,8 @@ namespace skerry::mesh {
 
 namespace {
 
-/// A face: its nodes in ascending order, and their corners (4 per tetrahedron).
+/// A face of a tetrahedron: its nodes in ascending order, and the corners at these nodes. Corners are numbered four per
+/// tetrahedron.
 struct Face {
     std::array<Index, 3> node, corner;
 };
@@ -34,7 +35,7 @@ std::vector<Face> faces_of(const Mesh& mesh) {
     return faces;
 }
 
-/// Number of connected components, where tetrahedra that share a node are connected.
+/// Returns the number of connected components, where tetrahedra that share a node are connected.
 std::size_t count_parts(const Mesh& mesh) {
     UnionFind parts;
     parts.start(mesh.nodes.size());
@@ -60,8 +61,9 @@ PartedMesh part_fans(const Mesh& mesh) {
     for (std::size_t f = 1; f < faces.size(); ++f)
         if (faces[f].node == faces[f - 1].node)
             for (std::size_t i = 0; i < 3; ++i) fans.join(faces[f].corner[i], faces[f - 1].corner[i]);
-    std::vector<Index> first_fan(mesh.nodes.size(), no_index);         // by node
-    std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);  // by root, which is the first corner of its fan
+    std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // root of the first fan of each node
+    // Node of each fan. The index is the root of the fan, which is its first corner.
+    std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);
     std::vector<bool> has_more(mesh.nodes.size());
     for (std::size_t c = 0; c < node_of.size(); ++c) {
         const auto root = static_cast<std::size_t>(fans.root(static_cast<Index>(c)));

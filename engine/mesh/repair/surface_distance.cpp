@@ -29,7 +29,7 @@ Real mean_edge(const SurfaceMesh& surface) {
 
 Real greatest_distance(const SurfaceMesh& from, const SurfaceMesh& to) {
     constexpr Real parts_of_mean_edge = 8;
-    constexpr int most_parts = 64;  // a triangle of 500 mean edges then has 2,145 points
+    constexpr int most_parts = 64;  // at most 2,145 sample points per triangle
     const TriangleTree tree(to);
     const Real mean = mean_edge(from);
     std::vector<Vec3> points;

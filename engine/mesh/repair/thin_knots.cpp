@@ -18,31 +18,41 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Corners = std::array<Vec3, 3>;
 
-constexpr Real least_gain = 1.1;          // of the smallest altitude; smaller gains are not worth the distance moved
-constexpr Real share_of_tolerance = 0.8;  // the rest is a margin for the surface between the sample points
-constexpr Real least_turn = 0.5;          // cosine: a triangle turns by at most 60 degrees
-constexpr Real least_turn_of_flat = 0.2;  // cosine, to the mean normal: that of a flat triangle is noise
-constexpr int parts = 4;                  // intervals per edge of a triangle: 15 sample points for the distance
+// Smallest ratio of altitudes (smallest altitude after a change, over smallest altitude before). Smaller gains are not
+// worth the distance moved.
+constexpr Real least_gain = 1.1;
+// Largest distance of sample points from the other surface, as a fraction of the tolerance. The rest is a margin for
+// the surface between the points.
+constexpr Real share_of_tolerance = 0.8;
+// Smallest cosine of the angle by which a change may rotate a triangle: at most 60 degrees.
+constexpr Real least_turn = 0.5;
+// Smallest cosine between the normal of a triangle that replaces a flat one, and the mean normal of the removed
+// triangles. The normal of a flat triangle itself is noise.
+constexpr Real least_turn_of_flat = 0.2;
+// Number of intervals per edge of a triangle, which gives 15 sample points for distances.
+constexpr int parts = 4;
 
 Vec3 area_vector(const Corners& x) {
     return (x[1] - x[0]).cross(x[2] - x[0]);
 }
 
-/// Smallest altitude: twice the area over the longest edge [m].
+/// Smallest altitude of a triangle: twice the area over the longest edge [m].
 Real altitude_of(const Corners& x) {
     const Real longest =
         std::max({(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(), (x[0] - x[2]).squaredNorm()});
     return longest > 0 ? area_vector(x).norm() / std::sqrt(longest) : 0;
 }
 
-/// A local change: triangles to remove and their replacements.
+/// A local change of the surface: triangles to remove, and the triangles that replace them.
 struct Change {
     std::vector<Index> gone;
     std::vector<Triangle> made;
-    std::vector<Index> made_from;             // for each new triangle, the one of `gone` that it replaces
-    Index moved = no_index, lost = no_index;  // for a collapse: the remaining node and the removed one
-    Vec3 position = Vec3::Zero();             // new position of `moved` [m]
-    Real altitude = 0;                        // smallest altitude of the new triangles [m]
+    // For each triangle in `made`, the triangle of `gone` that it replaces.
+    std::vector<Index> made_from;
+    // For an edge collapse: the node that remains, and the node that is removed.
+    Index moved = no_index, lost = no_index;
+    Vec3 position = Vec3::Zero();  // new position of `moved` [m]
+    Real altitude = 0;             // smallest altitude of the new triangles [m]
 };
 
 class Thinner {
@@ -90,7 +100,7 @@ private:
         samples_.emplace_back();
     }
 
-    /// Adds a triangle to the list if it is flat.
+    /// Adds a triangle to the list of flat triangles if its altitude is below settings.altitude.
     void ask(Index t) {
         const Real altitude = altitude_of(corners(triangle(t)));
         if (alive_[static_cast<std::size_t>(t)] && altitude < settings_.altitude) flat_.emplace(altitude, t);
@@ -126,12 +136,14 @@ private:
         return best;
     }
 
-    /// Moves both ends to the point at the fraction `place` of the way from a to b. The lower-numbered node remains.
+    /// Collapses the edge from a to b: both ends move to the point a + place (b - a). The node with the lower number
+    /// remains.
     std::optional<Change> collapse(Index a, Index b, Real place) const {
         const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
         std::vector<Index> common;
         std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
-        // Link condition. A tetrahedron is the smallest closed surface and is not reduced further.
+        // The link condition preserves the topology. A tetrahedron is the smallest closed surface, so it is not reduced
+        // further.
         if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
         Change change;
         change.position = (1 - place) * node(a) + place * node(b);
@@ -160,7 +172,7 @@ private:
             apex[s] = *std::find_if(triangle(sides[s]).begin(), triangle(sides[s]).end(),
                                     [&](Index n) { return n != a && n != b; });
         if (apex[0] == apex[1] || !triangles_with(apex[0], apex[1]).empty()) return std::nullopt;
-        // Each new triangle keeps one end of the edge; the other end is replaced by the opposite apex.
+        // Each new triangle keeps one end of the flipped edge. The other end is replaced by the opposite apex.
         for (std::size_t s = 0; s < 2; ++s) {
             Triangle made = triangle(sides[s]);
             std::replace(made.begin(), made.end(), next_after(made, apex[s]), apex[1 - s]);
@@ -175,7 +187,7 @@ private:
         return no_index;
     }
 
-    /// Returns the change with its altitude, or nothing if the gain is too small.
+    /// Returns the change with its altitude, or nothing if the altitude grows too little.
     std::optional<Change> finished(Change change) const {
         Real before = std::numeric_limits<Real>::infinity();
         for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
@@ -212,7 +224,7 @@ private:
                            [&](const Vec3& point) { return original_.distance_squared(point, 2 * limit) <= limit; });
     }
 
-    /// Returns the index of the nearest new triangle and its squared distance [m^2].
+    /// Returns the index of the new triangle nearest to the point, and the squared distance [m^2].
     std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
         std::pair<std::size_t, Real> nearest{0, std::numeric_limits<Real>::infinity()};
         for (std::size_t i = 0; i < change.made.size(); ++i) {
@@ -239,7 +251,7 @@ private:
             add(change.made[i]);
             samples_.back() = std::move(samples[i]);
         }
-        // Changes that were rejected before may be possible next to the new triangles.
+        // Changes that were rejected before may now be possible next to the new triangles.
         for (auto t = first; t < static_cast<Index>(triangles_.size()); ++t)
             for (const Index n : triangle(t))
                 for (const Index beside : around(n)) ask(beside);
@@ -265,11 +277,13 @@ private:
     KnotSettings settings_;
     TriangleTree original_;
     std::vector<Vec3> nodes_;
-    std::vector<Triangle> triangles_;  // including removed ones
+    std::vector<Triangle> triangles_;  // all triangles, including removed ones
     std::vector<bool> alive_;
-    std::vector<std::vector<Vec3>> samples_;  // points of the old surface, by the triangle that now represents them
-    std::vector<std::vector<Index>> around_;  // triangles at each node
-    std::set<std::pair<Real, Index>> flat_;   // altitude and triangle: flattest first, ties by number
+    // Sample points of the old surface, listed by the triangle that now represents them.
+    std::vector<std::vector<Vec3>> samples_;
+    std::vector<std::vector<Index>> around_;  // numbers of the triangles at each node
+    // Altitude and number of each flat triangle, flattest first. Ties are ordered by number.
+    std::set<std::pair<Real, Index>> flat_;
 };
 
 }  // namespace

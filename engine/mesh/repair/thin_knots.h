@@ -1,4 +1,5 @@
-// Removes needles and caps from a surface: a tetrahedron behind a flat triangle is hardly thicker than the triangle.
+// Removes needles and caps (degenerate triangles) from a surface, because a tetrahedron behind such a triangle is
+// hardly thicker than the triangle.
 #pragma once
 
 #include "skerry/mesh.h"
@@ -6,21 +7,22 @@
 namespace skerry::mesh {
 
 struct KnotSettings {
-    Real tolerance = 0;  // distance the surface may move; above 0 [m]
-    Real altitude = 0;   // triangles with a smaller altitude than this are repaired [m]
+    Real tolerance = 0;  // largest distance that the surface may move, > 0 [m]
+    Real altitude = 0;   // triangles with a smaller altitude are repaired [m]
 };
 
 struct ThinnedSurface {
     SurfaceMesh surface;
-    std::size_t collapsed = 0, flipped = 0;  // numbers of edges
+    std::size_t collapsed = 0, flipped = 0;  // numbers of collapsed and of flipped edges
 };
 
-/// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips the edge of it
-/// that makes the smallest altitude around it largest. Triangles that no change improves are left. The surface is
-/// unchanged elsewhere. Every change keeps the topology (link condition: Dey, Edelsbrunner, Guha, Nekhayev, Topology
-/// preserving edge contraction, 1999), the orientation of triangles, and both surfaces within the tolerance of each
-/// other. The surface must be closed, with two triangles at every edge. Self-intersections are not checked: they do
-/// not occur with a tolerance below the thickness of the body. Deterministic.
+/// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips one of its edges.
+/// It chooses the change that makes the smallest altitude of the surrounding triangles largest. Triangles that no
+/// change improves are left, and the surface is unchanged elsewhere. Every change preserves the topology (link
+/// condition: Dey, Edelsbrunner, Guha, Nekhayev, Topology preserving edge contraction, 1999) and the orientation of
+/// triangles. The old and the new surface stay within the tolerance of each other. The surface must be closed, with two
+/// triangles at every edge. Self-intersections are not checked: they do not occur with a tolerance below the thickness
+/// of the body. The result is deterministic.
 ThinnedSurface thin_knots(const SurfaceMesh& surface, const KnotSettings& settings);
 
 }  // namespace skerry::mesh

@@ -32,7 +32,7 @@ void TriangleTree::search(Index row, const Vec3& point, Real& nearest) const {
         }
         return;
     }
-    // Visits the nearer child first: its result often rules the other one out.
+    // Visits the nearer child first, because its result often excludes the other child.
     Index child[2] = {row + 1, node.right};
     Real gap[2];
     for (int i = 0; i < 2; ++i) gap[i] = skerry::distance_squared(bvh_.box[static_cast<std::size_t>(child[i])], point);

@@ -8,13 +8,13 @@
 
 namespace skerry::mesh {
 
-/// A constant surface, with a tree over its triangles.
+/// A constant surface with a bounding volume tree over its triangles.
 class TriangleTree {
 public:
     /// The surface must have at least one triangle.
     explicit TriangleTree(SurfaceMesh surface);
 
-    /// Exact squared distance to the nearest triangle, or `limit` if none is nearer than that [m^2].
+    /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit` if no triangle is nearer.
     Real distance_squared(const Vec3& point, Real limit = std::numeric_limits<Real>::infinity()) const;
 
 private:

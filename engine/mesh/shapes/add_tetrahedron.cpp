@@ -26,7 +26,8 @@ void require_count(const char* name, int value) {
 }
 
 void require_fits(const char* name, double tetrahedra) {
-    constexpr int most = 0x7fffffff / 4;  // four rows per tetrahedron in the table of corners
+    // The table of corners has four rows per tetrahedron, and its indices have 32 bits.
+    constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
         throw std::invalid_argument(std::string(name) + ": too fine, about " + std::to_string(tetrahedra) +
                                     " tetrahedra do not fit a 32-bit index");

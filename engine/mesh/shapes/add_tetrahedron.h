@@ -1,4 +1,4 @@
-// Helpers of the built-in shapes: checks of parameters, and tetrahedra with positive orientation.
+// Helper functions of the built-in shapes: checks of parameters, and tetrahedra with positive orientation.
 #pragma once
 
 #include <array>
@@ -10,11 +10,12 @@ namespace skerry::mesh {
 /// Appends a tetrahedron with the given nodes, ordered so that its volume is positive.
 void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes);
 
-/// Throw std::invalid_argument that names the parameter. A size must be finite and positive, a count at least 1.
+/// Throw std::invalid_argument that names the parameter, unless a size is finite and positive, and a count is at least
+/// 1.
 void require_size(const char* name, Real value);
 void require_count(const char* name, int value);
 
-/// Throws std::invalid_argument if the corners of so many tetrahedra (four each) do not fit a 32-bit index.
+/// Throws std::invalid_argument if the corners of this number of tetrahedra (four corners each) exceed a 32-bit index.
 void require_fits(const char* name, double tetrahedra);
 
 }  // namespace skerry::mesh

@@ -8,12 +8,14 @@
 namespace skerry::mesh {
 namespace {
 
-/// Divides an icosahedron from its centre into 20 nearly regular tetrahedra, and each of them into n^3, for n shells.
-/// Shells are rounded to spheres; shell s has 10 s^2 + 2 nodes. Six fivefold axes leave no preferred grid direction.
+/// Builds a ball from an icosahedron. The icosahedron is divided from its centre into 20 nearly regular tetrahedra, and
+/// each of these into n^3 tetrahedra, where n is the number of shells. Shells are rounded to spheres; shell s has 10
+/// s^2 + 2 nodes. With its six fivefold axes the mesh has no preferred grid direction.
 class BallBuilder {
 public:
     BallBuilder(Real radius, int shells) : radius_(radius), shells_(shells) {
-        // The poles are on z, with a vertical fivefold axis: a ball stands on a node and is fivefold about z.
+        // The poles lie on the z axis, which is a fivefold axis. Therefore a ball stands on a node and is symmetric
+        // about z.
         const Real height = 1 / std::sqrt(Real{5}), wide = 2 * height, fifth = 2 * std::acos(Real{-1}) / 5;
         corner_[0] = Vec3(0, 0, -1);
         corner_[11] = Vec3(0, 0, 1);
@@ -23,7 +25,7 @@ public:
             corner_[static_cast<std::size_t>(6 + i)] =
                 Vec3(wide * std::cos(fifth * (i + 0.5)), wide * std::sin(fifth * (i + 0.5)), height);
         }
-        angle_ = std::atan(2.0);  // between neighbouring corners, seen from the centre
+        angle_ = std::atan(2.0);  // angle between neighbouring corners, as seen from the centre
     }
 
     Mesh build() {
@@ -39,9 +41,10 @@ public:
     }
 
 private:
-    // barycentric steps: towards the three corners of the sector and (last) towards the centre
+    // Barycentric coordinates of a node, as numbers of steps towards the three corners of the sector and (last) the
+    // centre.
     using Steps = std::array<int, 4>;
-    // (corner, steps), sorted: identical for all sectors that share the node
+    // Sorted pairs (corner, steps) that identify a node. They are identical for all sectors that share the node.
     using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
@@ -52,7 +55,7 @@ private:
         std::sort(key.begin(), key.end());
         const auto [place, added] = row_.try_emplace(key, static_cast<Index>(mesh_.nodes.size()));
         if (added) {
-            // On an edge this divides the arc evenly; inside a sector the spacing is nearly even.
+            // On an edge of the sector the nodes divide the arc evenly; inside the sector the spacing is nearly even.
             Vec3 direction = Vec3::Zero();
             for (const auto& [corner, count] : key)
                 if (count > 0)
@@ -83,8 +86,8 @@ private:
                     }
     }
 
-    /// Adds four tetrahedra around the shortest of the three diagonals, or the first of equal ones. The ends of
-    /// diagonal d are at places 2 d and 2 d + 1.
+    /// Divides an octahedron into four tetrahedra around the shortest of its three diagonals, or the first of equally
+    /// short ones. The ends of diagonal d are n[2 d] and n[2 d + 1].
     void split_octahedron(const std::array<Index, 6>& n) {
         std::size_t best = 0;
         Real shortest = 0;
@@ -92,7 +95,8 @@ private:
             const Real length =
                 (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])])
                     .norm();
-            // Diagonals of symmetric sectors are equal up to rounding: the margin gives the same choice everywhere.
+            // Diagonals of symmetric sectors are equal up to rounding. The margin of 1e-9 gives the same choice in all
+            // sectors.
             if (d == 0 || length < shortest * (1 - 1e-9)) {
                 best = d;
                 shortest = length;
@@ -125,7 +129,7 @@ Mesh ball(Real radius, int resolution) {
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
     const SurfaceMesh skin = boundary(ball(radius, resolution));
-    // corners of the icosahedron have five faces instead of six; they come first
+    // Corners of the icosahedron have five triangles instead of six. They become the first nodes after the centre.
     std::vector<int> faces(skin.nodes.size(), 0);
     for (const auto& triangle : skin.triangles)
         for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];

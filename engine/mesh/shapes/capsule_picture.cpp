@@ -6,16 +6,18 @@
 namespace skerry::mesh {
 namespace {
 
-constexpr int around = 16, caps = 4;  // nodes around the axis; rings of a round end including its rim
+// Number of nodes around the axis, and number of rings of a round end, including the rim.
+constexpr int around = 16, caps = 4;
 
-/// Builds two round ends, each divided from the centre of its ball, and wedges for the straight part between them.
+/// Builds a capsule from two round ends and a straight part. The tetrahedra of a round end meet at the centre of its
+/// ball. The straight part consists of wedges between the axis and the surface.
 class CapsuleBuilder {
 public:
     CapsuleBuilder(Real radius, Real length) : radius_(radius), half_(length / 2) {}
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // nodes that show the rotation of the body come first: the pole and four places on the rim of both ends
+        // The first nodes show the rotation of the body: the pole and four nodes of the rim, for both ends.
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);
@@ -46,8 +48,8 @@ private:
                 add_tetrahedron(mesh_, {end, row(end, ring, k + 1), row(end, ring + 1, k), row(end, ring + 1, k + 1)});
         }
     }
-    /// Neighbouring wedges use the same diagonal of their common side: from the lower end of the axis to the upper
-    /// rim.
+    /// Fills a wedge with three tetrahedra. Neighbouring wedges use the same diagonal of their common side, from the
+    /// lower end of the axis to the upper rim.
     void fill_wedge(int k) {
         const Index a = row(0, 0, k), b = row(0, 0, k + 1), c = row(1, 0, k), d = row(1, 0, k + 1);
         add_tetrahedron(mesh_, {0, a, b, d});

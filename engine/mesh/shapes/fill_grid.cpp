@@ -26,7 +26,8 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
         return row[place];
     };
 
-    // Each order of the axes is a path along edges from one end of the diagonal to the other, and gives a tetrahedron.
+    // Each order of the three axes is a path along edges of the cell, from one end of the diagonal to the other. The
+    // nodes of the path form a tetrahedron.
     constexpr std::array<std::array<std::size_t, 3>, 6> walks{
         {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
     std::array<int, 3> cell;
@@ -36,7 +37,7 @@ Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>
             for (cell[0] = 0; cell[0] + 1 < lines_along(0); ++cell[0]) {
                 if (!keep(cell)) continue;
                 for (const std::array<std::size_t, 3>& walk : walks) {
-                    std::array<int, 3> corner;  // corner of the cell farthest from the middle
+                    std::array<int, 3> corner;  // corner of the cell that is farthest from the middle of the grid
                     for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = cell[axis] + (mirrored(axis) ? 1 : 0);
                     std::array<Index, 4> nodes{node_at(corner)};
                     for (std::size_t i = 0; i < 3; ++i) {

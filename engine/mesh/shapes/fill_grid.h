@@ -1,4 +1,4 @@
-// Fills the cells of a grid with tetrahedra.
+// Fills the cells of a regular grid with tetrahedra.
 #pragma once
 
 #include <array>
@@ -12,14 +12,15 @@ namespace skerry::mesh {
 /// Ascending coordinates of the grid lines along x, y and z.
 using GridLines = std::array<std::vector<Real>, 3>;
 
-/// Appends `count` equal cells between two coordinates to lines that end at `from` (or are empty).
+/// Appends the grid lines of `count` equal cells from `from` to `to`. `lines` must be empty or end at `from`.
 void append_lines(Real from, Real to, int count, std::vector<Real>& lines);
 
-/// Adds six tetrahedra per kept cell (Kuhn's triangulation). The diagonal of a cell points to the middle of the grid.
-/// Cells on the same side of the middle planes are divided alike, and mirrored across them, so that a symmetric body
-/// moves symmetrically. Nodes without a kept cell are omitted. The smallest altitude is 0.71 of a cubic cell's edge.
-/// Mirroring every pair of neighbours would suit linear tetrahedra better and smoothed elements much worse
-/// (docs/methods/elasticity.md 7.3): the edges of diagonals would then meet in every other node.
+/// Adds six tetrahedra for each cell that `keep` accepts (Kuhn's triangulation). The diagonal of a cell points towards
+/// the middle of the grid. Cells on the same side of the middle planes are divided in the same way, cells on opposite
+/// sides as mirror images, so that a symmetric body moves symmetrically. Nodes that no accepted cell uses are omitted.
+/// The smallest altitude is 0.71 of the edge of a cubic cell. Mirroring every pair of neighbouring cells would suit
+/// linear tetrahedra better, but smoothed elements much worse (docs/methods/elasticity.md 7.3): the edges along
+/// diagonals would then meet in every other node.
 Mesh fill_grid(const GridLines& lines, FunctionRef<bool(const std::array<int, 3>& cell)> keep);
 
 }  // namespace skerry::mesh

@@ -12,10 +12,13 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-constexpr Real layer_height = 1.0;  // in units of the ring spacing: maximises the smallest altitude
-constexpr Real sharp_turn = 0.25;   // kinks of the outline above this angle get a layer of their own [rad]
-constexpr Real least_layer = 0.6;   // in units of the ring spacing: kinks closer than this to another layer are rounded
-constexpr Real point_radius = 0.3;  // in units of the ring spacing: narrower ends close to a point
+constexpr Real layer_height = 1.0;  // height of a layer over ring spacing; this ratio maximises the smallest altitude
+// Kinks of the outline by more than this angle get a layer boundary of their own [rad].
+constexpr Real sharp_turn = 0.25;
+// Smallest distance between layer boundaries, over ring spacing. Kinks closer than this to another boundary are
+// rounded.
+constexpr Real least_layer = 0.6;
+constexpr Real point_radius = 0.3;  // ends with a smaller radius than this, over ring spacing, close to a point
 
 void check_profile(std::span<const ProfilePoint> profile) {
     if (profile.size() < 2)
@@ -36,8 +39,8 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Returns the ends of the outline and its sharp kinks, ascending. The sharpest come first when kinks are too close
-/// together for layers between them.
+/// Returns z of the ends of the outline and of its sharp kinks, ascending. If kinks are too close together for layers
+/// between them, the sharpest kinks are used.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
@@ -66,7 +69,7 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
     std::vector<Real> planes{breaks.front()};
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
         Real layers = std::max(Real{1}, std::round((breaks[b + 1] - breaks[b]) / (layer_height * spacing)));
-        // A body pointed at both ends needs a plane between them.
+        // A body that is pointed at both ends needs at least one plane between them.
         if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back()))
             layers = std::max(layers, Real{2});
         require_fits("lathe layers", layers);
@@ -80,7 +83,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is one point: equally narrow planes next to it would only contain tiny elements.
+    // A pointed end is a single point. Equally narrow planes next to it would only produce tiny elements, so they are
+    // removed.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)
@@ -93,8 +97,8 @@ std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing
         discs.push_back(
             {planes[i], radius, std::clamp(static_cast<int>(std::lround(radius / spacing)), least, most_rings)});
     }
-    // Neighbouring discs may differ by one ring at most, as stack_discs requires. The wider disc is reduced: elements
-    // may become longer, not shorter.
+    // Neighbouring discs may differ by at most one ring, as stack_discs requires. The number of rings of the wider disc
+    // is reduced, so that elements may become longer but not shorter.
     for (std::size_t i = 1; i < discs.size(); ++i) discs[i].rings = std::min(discs[i].rings, discs[i - 1].rings + 1);
     for (std::size_t i = discs.size() - 1; i-- > 0;) discs[i].rings = std::min(discs[i].rings, discs[i + 1].rings + 1);
     return discs;
@@ -120,7 +124,8 @@ Mesh cylinder(Real radius, Real height, int resolution) {
 
 Mesh skittle(Real height, int resolution) {
     require_size("skittle height", height);
-    // A ninepin: foot, belly at 0.3 of the height, neck at 0.7, head. Radius and z are relative to the height.
+    // Outline of a ninepin: foot, belly at 0.3 of the height, neck at 0.7, head. Radius and z are relative to the
+    // height.
     std::array<ProfilePoint, 12> profile{{{0.110, 0.00},
                                           {0.134, 0.10},
                                           {0.147, 0.20},

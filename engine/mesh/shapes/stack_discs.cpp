@@ -10,8 +10,8 @@
 namespace skerry::mesh {
 namespace {
 
-// Node numbers of a disc: the centre, then ring after ring, counter-clockwise from the x axis. They do not depend on
-// the number of rings, so node n of a disc lies above node n of the disc below.
+// Numbering of the nodes of a disc: the centre, then ring after ring, each counter-clockwise from the x axis. The
+// numbers do not depend on the number of rings, so node n of a disc corresponds to node n of the disc below.
 int ring_begin(int ring) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
@@ -22,9 +22,9 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// Colours the nodes with three colours so that neighbours differ; topologically they form a hexagon of the triangular
-/// lattice. The colours determine the diagonals of the walls between prisms. All corners of a sixth are treated alike,
-/// so the mesh has no sense of rotation.
+/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. Topologically the nodes form a
+/// hexagon of the triangular lattice. The colours determine the diagonals of the walls between prisms. All six sectors
+/// of the disc are treated alike, so the mesh has no sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -38,8 +38,8 @@ std::vector<int> paint_nodes(int rings) {
     return colour;
 }
 
-/// Visits the triangles between ring - 1 and ring: `wide` ones with an edge on the outer ring (outer, outer, inner),
-/// and `narrow` ones with an edge on the inner ring (inner, inner, outer).
+/// Visits the triangles between two neighbouring rings. `wide` gets the triangles with an edge on the outer ring
+/// (outer, outer, inner), `narrow` those with an edge on the inner ring (inner, inner, outer).
 template <class Wide, class Narrow>
 void for_each_triangle(int ring, Wide&& wide, Narrow&& narrow) {
     for (int sector = 0; sector < 6; ++sector)
@@ -85,7 +85,8 @@ private:
             for_each_triangle(ring, prism, prism);
         }
         if (below == above) return;
-        // The last ring of the wider disc is closed onto the last ring of the narrower one.
+        // The last ring of the wider disc is connected to the last ring of the narrower disc by tetrahedra and
+        // pyramids.
         const std::size_t wide = below > above ? layer : layer + 1, narrow = below > above ? layer + 1 : layer;
         for_each_triangle(
             shared + 1,
@@ -95,8 +96,8 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// True if the diagonal of a wall rises from `from` to `to`: towards the higher colour in even layers, the lower
-    /// colour in odd ones.
+    /// True if the diagonal of the wall over the edge (`from`, `to`) rises from `from` to `to`. In even layers it rises
+    /// towards the node of higher colour, in odd layers towards the node of lower colour.
     bool cut_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }
@@ -111,7 +112,8 @@ private:
         }
     }
 
-    /// Adds a pyramid: the wall over nodes a and b, and a tip outside of it.
+    /// Adds a pyramid as two tetrahedra. Its base is the wall over nodes a and b, its tip is a node outside of the
+    /// wall.
     void add_pyramid(std::size_t layer, int a, int b, Index tip) {
         if (!cut_rises(layer, a, b)) std::swap(a, b);
         add_tetrahedron(mesh_, {node(layer, a), node(layer, b), node(layer + 1, b), tip});
@@ -122,7 +124,7 @@ private:
 
     const std::vector<Disc>& discs_;
     std::vector<int> colour_;
-    std::vector<Index> first_;  // node 0 of each disc
+    std::vector<Index> first_;  // index of node 0 of each disc
     Mesh mesh_;
 };
 

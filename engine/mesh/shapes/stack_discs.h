@@ -1,4 +1,4 @@
-// Bodies of revolution as a stack of discs.
+// Meshes of bodies of revolution, built as a stack of discs.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 namespace skerry::mesh {
 
 /// A disc about the z axis, triangulated by a centre and `rings` equally spaced rings; ring k has 6 k nodes. The
-/// triangles are nearly equilateral. Without rings it is a point.
+/// triangles are nearly equilateral. A disc without rings is a point.
 struct Disc {
     Real z;       // [m]
     Real radius;  // [m]
     int rings;
 };
 
-/// Fills the space between neighbouring discs. z must ascend. Neighbours may differ by one ring at most and must not
-/// both be points.
+/// Fills the spaces between neighbouring discs with tetrahedra. z must ascend. Neighbouring discs may differ by at most
+/// one ring and must not both be points.
 Mesh stack_discs(const std::vector<Disc>& discs);
 
 }  // namespace skerry::mesh
