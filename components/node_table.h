@@ -17,6 +17,7 @@ struct NodeTable {
     Column<Vec3> force;  // elastic and external, on nodes without degrees of freedom; written by predict_velocity [N]
     Column<Vec3> load;   // set by the user, kept until changed [N]
     Column<Vec3> applied_force;        // sum of all force elements in this step, loads included; unused without any [N]
+    Column<Vec3> applied_before;       // applied_force of the last committed step, for the balance of energy [N]
     Column<Vec3> rest_position;        // as added, in the frame of the mesh [m]
     Column<Vec3> displacement_origin;  // position when the displacement of its body was last zero [m]
     Column<Vec3> still_position;       // position when the drift of its body was last zero [m]
@@ -39,6 +40,7 @@ struct NodeTable {
         visit("push_out", push_out, ColumnRole::derived);
         visit("force", force, ColumnRole::scratch);
         visit("applied_force", applied_force, ColumnRole::scratch);
+        visit("applied_before", applied_before, ColumnRole::memory);
         visit("displacement_origin", displacement_origin, ColumnRole::memory);
     }
 };

@@ -12,4 +12,7 @@ namespace skerry {
 /// by node [N]. Parallel over nodes.
 void add_nodal_loads(Executor& executor, std::span<const Vec3> load, std::span<Vec3> applied_force);
 
+/// After a step: copies the applied forces, by node, for the balance of the next step [N]. Parallel over nodes.
+void keep_applied_forces(Executor& executor, std::span<const Vec3> applied_force, std::span<Vec3> applied_before);
+
 }  // namespace skerry

@@ -152,6 +152,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     const WholeMotion whole = motion_of(model, before);
     model.bodies.surface[after] = model.bodies.surface[before];
     copy_rows(model.nodes.load, from, to);
+    copy_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);
     note_seams(model);
     if (model.is_rigid(after)) {

@@ -38,7 +38,7 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
         nodes.position[n] = nodes.displacement_origin[n] = nodes.still_position[n] =
             body.position + body.rotation * body.nodes[n - begin];
         nodes.velocity[n] = nodes.velocity_next[n] = nodes.push_out[n] = nodes.force[n] = nodes.load[n] =
-            nodes.applied_force[n] = Vec3::Zero();
+            nodes.applied_force[n] = nodes.applied_before[n] = Vec3::Zero();
         nodes.body[n] = row;
     }
     const auto looked_at = static_cast<std::size_t>(step_nodes_of(appended(begin, end), body.core_nodes).end);

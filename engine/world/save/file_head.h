@@ -11,7 +11,7 @@ namespace skerry {
 
 /// HDF5 allows a user block of this size before its data.
 inline constexpr std::size_t head_bytes = 512;
-inline constexpr int world_file_version = 21;
+inline constexpr int world_file_version = 22;
 
 /// The head of a file whose HDF5 part is `body`.
 std::string head_of(std::span<const char> body);

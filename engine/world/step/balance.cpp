@@ -7,7 +7,6 @@
 #include "engine/world/kernels.h"
 #include "engine/world/state/model.h"
 #include "engine/world/state/step_scratch.h"
-#include "engine/world/step/seams.h"
 #include "engine/world/step/step.h"
 
 namespace skerry {
@@ -50,8 +49,10 @@ Present measure(const Model& model, Real lag) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
-        for (const ForceElement* element : force_elements)
-            if (element->any(model)) power += element->power(model);
+        if (model.forced)  // work is added up with the forces of the last step
+            for (std::size_t n = 0; n < nodes.position.size(); ++n)
+                if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
+                    power += nodes.applied_before[n].dot(nodes.velocity[n]);
         now.kinetic += lag * power;
     }
     now.elastic = kernels().elastic_energy(model.all_elements(), model.all_blocks(), nodes.position) + implicit;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <span>
 
 #include "components/any_table.h"
@@ -39,6 +40,7 @@ void note_seams(Model& model) {
         model.force_rate.resize(model.bodies.slot.size());
         element->add_rate(model, model.force_rate);
     }
+    if (!model.forced) std::ranges::fill(model.nodes.applied_before, Vec3::Zero());
     model.links = {};
     model.for_each_joining([&](const char*, auto& table, auto&) { add_links(table, model.links); });
 }

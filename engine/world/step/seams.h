@@ -17,9 +17,8 @@ using ListStages = void (*)(WorldState&, TaskGraph&);
 /// A force element: a force on nodes that is neither elastic nor a constraint. All bodies take its forces by their
 /// nodes, however they move. Its forces count as work from outside in the balance of a run.
 struct ForceElement {
-    bool (*any)(const Model&);    // whether the world has one; without any, the stages of all are skipped
-    ListStages add_forces;        // adds its forces at the start of the step to NodeTable::applied_force
-    Real (*power)(const Model&);  // power of its forces on moving nodes, at the present positions and velocities [W]
+    bool (*any)(const Model&);  // whether the world has one; without any, the stages of all are skipped
+    ListStages add_forces;      // adds its forces at the start of the step to NodeTable::applied_force
     // For each body, adds a bound on the part of this element in the squares of its natural frequencies, which limits
     // the stable step [1/s^2]. Null: its forces do not depend on positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;

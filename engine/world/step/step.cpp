@@ -14,6 +14,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/forces/add_nodal_loads.h"
 
 namespace skerry {
 
@@ -28,6 +29,7 @@ void check_end(WorldState&, TaskGraph&);
 void wake(WorldState&, TaskGraph&);
 void measure_travel(WorldState&, TaskGraph&);
 void put_to_rest(WorldState&, TaskGraph&);
+void keep_forces(WorldState&, TaskGraph&);
 
 void add_applied_forces(WorldState& world, TaskGraph& graph) {
     for (const ForceElement* element : force_elements) element->add_forces(world, graph);
@@ -77,6 +79,7 @@ void build_step(WorldState& w) {
     g.begin_phase("Remember for the next step");
     measure_travel(w, g);
     put_to_rest(w, g);
+    keep_forces(w, g);
     of_laws<&ConstraintLaw::remember>(w, g);
     g.compile();
 }
@@ -164,8 +167,8 @@ void check_end(WorldState& w, TaskGraph& g) {
     const auto if_any = only_if([](bool forced, std::span<const Index> held) { return forced || !held.empty(); },
                                 value(m.forced), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
-                        inputs<WorkInputs>(n, m.attachments, b, m.forced, m.any_asleep, p.gravity), value(p.h),
-                        value(p.kick), make(w.scratch.work_parts), if_any);
+                        inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
+                        value(p.h), value(p.kick), value(p.lag), make(w.scratch.work_parts), if_any);
 }
 
 auto if_sleepy(const WorldState& w) {
@@ -187,6 +190,13 @@ void measure_travel(WorldState& w, TaskGraph& g) {
     g.stage("dynamics/measure_displacement", kernels().measure_displacement,
             inputs<DisplacementInputs>(w.model.node_blocks, b, n), value(w.scratch.parameters.h),
             outputs<DisplacementOutputs>(n, w.cache.search.memory.rebase, b), if_taken(w));
+}
+
+void keep_forces(WorldState& w, TaskGraph& g) {
+    NodeTable& n = w.model.nodes;
+    const auto if_forced = only_if([](bool forced) { return forced; }, value(w.model.forced));
+    g.stage("forces/keep_applied_forces", keep_applied_forces, read(n.applied_force), write(n.applied_before),
+            if_taken(w), if_forced);
 }
 
 void put_to_rest(WorldState& w, TaskGraph& g) {

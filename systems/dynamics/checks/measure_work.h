@@ -8,6 +8,7 @@
 #include "components/column.h"
 #include "components/node_table.h"
 #include "components/resting_nodes.h"
+#include "components/rigid_body_table.h"
 #include "jobs/access.h"
 #include "jobs/executor.h"
 
@@ -19,11 +20,15 @@ struct ExternalWork {
 };
 
 struct WorkInputs {
-    std::span<const Vec3> load;   // applied force by node; empty if there is none [N]
-    std::span<const Vec3> force;  // force of elements, weight and loads by node; used at held nodes [N]
-    std::span<const Vec3> velocity_next;
-    std::span<const Real> mass;   // kg, by node
-    std::span<const Index> held;  // nodes
+    std::span<const Vec3> load;         // applied force by node; empty if there is none [N]
+    std::span<const Vec3> load_before;  // applied force of the last step by node; empty if there is none [N]
+    std::span<const Vec3> force;        // force of elements, weight and loads by node; used at held nodes [N]
+    std::span<const Vec3> velocity, velocity_next;  // [m/s]
+    std::span<const Real> inverse_mass;             // by node; 0: held [1/kg]
+    std::span<const Range> body_rigid;              // BodyTable
+    std::span<const Index> holder;                  // RigidBodyTable
+    std::span<const Real> mass;                     // kg, by node
+    std::span<const Index> held;                    // nodes
     std::span<const Index> node_body;
     std::span<const Range> body_implicit;  // rows of implicit bodies, whose `force` holds for the whole step
     RestingNodes resting;
@@ -31,10 +36,16 @@ struct WorkInputs {
 
     /// `forced`: true if the world has force elements. `any_asleep`: true if at least one body is asleep.
     static WorkInputs bind(const Binder& binder, const NodeTable& node, const AttachmentTable& attachment,
-                           const BodyTable& body, const bool& forced, const bool& any_asleep, const Vec3& gravity) {
+                           const BodyTable& body, const RigidBodyTable& rigid, const bool& forced,
+                           const bool& any_asleep, const Vec3& gravity) {
         return {.load = binder.read_if(binder.value(forced), node.applied_force),
+                .load_before = binder.read_if(binder.value(forced), node.applied_before),
                 .force = binder.read(node.force),
+                .velocity = binder.read(node.velocity),
                 .velocity_next = binder.read(node.velocity_next),
+                .inverse_mass = binder.read(node.inverse_mass),
+                .body_rigid = binder.read(body.rigid),
+                .holder = binder.read(rigid.holder),
                 .mass = binder.read(node.mass),
                 .held = binder.read(attachment.node),
                 .node_body = binder.read(node.body),
@@ -43,15 +54,23 @@ struct WorkInputs {
                             .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep)},
                 .gravity = binder.value(gravity)};
     }
+
+    /// Whether a node moves by forces: it is neither held nor part of a held body.
+    bool is_free(std::size_t n) const {
+        const Range rigid = body_rigid[static_cast<std::size_t>(node_body[n])];
+        return inverse_mass[n] > 0 && (rigid.size() == 0 || holder[static_cast<std::size_t>(rigid.begin)] == no_index);
+    }
 };
 
 /// Sum of impulse and work over two kinds of forces: the loads on all nodes, and the forces that hold the nodes `held`.
 /// A holding force is the opposite of `force`. The impulse of a force F is kick F with the force interval `kick` [s]. A
-/// load is constant and does the work h F . velocity_next, since h velocity_next is the displacement in symplectic
-/// Euler. A holding force works against weight and loads for the step length `h` [s], but against element forces for
-/// `kick`. Nodes of sleeping bodies do not count, because the forces that hold these nodes are unknown. Loads are
-/// summed over fixed groups of nodes, in a fixed order.
-ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick,
+/// constant force does the work h F . velocity_next, since h velocity_next is the displacement in symplectic Euler. A
+/// force that has changed since the last step by dF does lag dF . velocity more on a free node: each force works over
+/// half of the step before and half of the step after. `lag`: half of the step before [s]. A holding force works
+/// against weight and loads for the step length `h` [s], but against element forces for `kick`. Nodes of sleeping
+/// bodies do not count, because the forces that hold these nodes are unknown. Loads are summed over fixed groups of
+/// nodes, in a fixed order.
+ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 
 }  // namespace skerry

@@ -17,17 +17,8 @@ void list_loads(WorldState& w, TaskGraph& g) {
     g.stage("forces/add_nodal_loads", add_nodal_loads, read(n.load), write(n.applied_force), if_forced);
 }
 
-Real power_of_loads(const Model& model) {
-    const NodeTable& nodes = model.nodes;
-    Real power = 0;
-    for (std::size_t n = 0; n < nodes.position.size(); ++n)
-        if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
-            power += nodes.load[n].dot(nodes.velocity[n]);
-    return power;
-}
-
 }  // namespace
 
-constinit const ForceElement nodal_loads{.any = any_load, .add_forces = list_loads, .power = power_of_loads};
+constinit const ForceElement nodal_loads{.any = any_load, .add_forces = list_loads};
 
 }  // namespace skerry
