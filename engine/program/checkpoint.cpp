@@ -34,7 +34,8 @@ Json to_json(const RunMemory& memory) {
 }
 
 RunMemory memory_of(const std::filesystem::path& file, const std::string& text) {
-    if (text.empty()) refuse(file, "a world without a run", "a file that `skerry run --checkpoint` wrote");
+    if (text.empty())
+        refuse(file, "a saved world without the state of a run", "a file that `skerry run --checkpoint` wrote");
     RunMemory memory;
     try {
         const Json json = Json::parse(text);
@@ -49,12 +50,12 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
         json.at("peak_kinetic_energy").get_to(memory.peak_kinetic_energy);
         memory.probes = json.at("probes");
     } catch (const std::exception& error) {
-        refuse(file, std::string("a run that cannot be read (") + error.what() + ")",
+        refuse(file, std::string("the state of a run that cannot be read (") + error.what() + ")",
                "a file that `skerry run --checkpoint` wrote");
     }
     const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
                       memory.frame >= 0 && memory.sample >= 0 && memory.sample < memory.samples;
-    if (!good) refuse(file, "a run that is nowhere", "a frame and a sample in it");
+    if (!good) refuse(file, "an invalid number of a frame or sample", "numbers that `skerry run --checkpoint` wrote");
     return memory;
 }
 
@@ -136,8 +137,8 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path file, double every, dou
 }
 
 std::string CheckpointWriter::summary() const {
-    if (written_ == 0) return {};
-    return "  wrote         " + file_.string() + " (checkpoint, " + std::to_string(written_) + " times)\n";
+    return file_.string() + " (checkpoint for --restart, written " + std::to_string(written_) +
+           (written_ == 1 ? " time)" : " times)");
 }
 
 bool CheckpointWriter::due(double time) const {

@@ -47,7 +47,7 @@ public:
     void write(World& world, const RunMemory& memory);
     int written() const { return written_; }
     int failed() const { return failed_; }
-    /// One line of text; empty if no checkpoint was written.
+    /// Describes the written file for the user.
     std::string summary() const;
 
 private:

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,10 +37,11 @@ struct RunOptions {
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    std::filesystem::path out, stats, page, trace, problems, probes;  // empty: not written
+    std::map<std::string, std::filesystem::path> outputs;  // place by option of output_formats(); empty: not written
     ProblemsOf problems_of = ProblemsOf::step;
     std::optional<int> problems_every;  // export interval [steps]
     bool quiet = false;
+    bool profile = false;              // also print times, solver figures and other details at the end
     bool strict = false;               // warnings make the run fail
     std::filesystem::path checkpoint;  // empty: not written
     std::optional<Real> every;         // simulated time between two checkpoints [s]

@@ -6,11 +6,11 @@
 
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
-#include "engine/program/course.h"
 #include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
+#include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
 #include "engine/scene/scene_plan.h"
 
@@ -382,7 +382,7 @@ int inspect_scene(const InspectOptions& options) {
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true, became);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
-    const double steps = course_of(scene, run).steps(scene.world);
+    const double steps = plan_run(scene, run).steps(scene.world);
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
     const SceneCost cost = try_steps(scene.world, overlap);

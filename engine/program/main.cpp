@@ -13,6 +13,7 @@
 #endif
 
 #include "engine/program/commands.h"
+#include "engine/program/output_formats.h"
 #include "engine/program/sweep/cases/sweep_file.h"
 #include "engine/scene/place.h"
 #include "skerry/instruction_set.h"
@@ -22,31 +23,36 @@ namespace {
 using namespace skerry;
 
 const char* const general_examples = R"(Examples:
-  skerry run scenes/skittles.json                          simulate, and print what it cost and how accurate it was
-  skerry run scenes/skittles.json --page skittles.html     the same, and a page that plays the run in a browser
+  skerry run scenes/skittles.json                          simulate, and print a summary
+  skerry run scenes/skittles.json --page skittles.html     and write a page that plays it in a browser
   skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, figures for scripts
-  skerry inspect scenes/table.json                         how large, how long the steps, what looks wrong
-  skerry inspect bunny.msh                                 sizes, quality and faults of a mesh
+  skerry inspect scenes/table.json                         sizes, step length, cost and problems of a scene
+  skerry inspect bunny.msh                                 sizes, quality and problems of a mesh
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
-  skerry sweep examples/incline_sweep.json                 a scene with many values, a case a core
+  skerry sweep examples/incline_sweep.json                 a scene with many values, one case per core
 
-Exit codes: 0 ok, 1 the simulation failed, a problem did not converge, or a --strict run is doubted, 2 bad input, 3 an
+Exit codes: 0 ok, 1 the simulation failed, a problem did not converge, or a --strict run has warnings, 2 bad input, 3 an
 output of a run could not be written, 128 + n stopped by signal n.
-`skerry COMMAND --help` says more.)";
+`skerry COMMAND --help` describes the options of a command.)";
 
 const char* const run_examples = R"(Examples:
   skerry run scenes/skittles.json --seconds 2 --threads 2
-  skerry run scenes/bucket.json --contact-regions global --stats global.json     one region instead of many, to compare
   skerry run scenes/table.json --page table.html --frames-per-second 30
+  skerry run scenes/table.json --profile                                         with the times of all stages
+  skerry run scenes/bucket.json --contact-regions global --stats global.json     one contact region instead of many
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
-  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      figures alone
-  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           then, should it be killed:
+  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      only the figures
+  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           if it is killed, continue with:
   skerry run --restart bucket.skerry --checkpoint bucket.skerry --every 0.5
 
---restart takes scene, settings, length and frames from the checkpoint; SCENE is needed only where its file was moved.
---seconds may ask for more, --threads may differ. --stats covers the whole run, but for seconds
-of stages; probes go on; --out goes on with the numbers of frames, and lists those of the first part if it is the same
-folder; --page and --trace begin at the checkpoint.)";
+At the end the run prints a short summary: what was simulated, how long it took, the most telling figures, warnings (the
+reasons not to rely on the result, each with its remedy) and the written files. --profile adds step limits, solver
+figures, energies, the times of all stages and the hash of the final state. --stats has all of these as JSON.
+
+--restart takes the scene, its settings, the length and the frames from the checkpoint. Give SCENE only if its file has
+moved. --seconds may be larger and --threads may differ. --stats then covers the whole run, except for the times of the
+stages. Probes and the frames of --out continue; use the same files and folder. --page and --trace begin at the
+checkpoint.)";
 
 const char* const inspect_examples = R"(Examples:
   skerry inspect bunny.msh                                 sizes, quality, faults, and which tetrahedra bound the step
@@ -88,7 +94,7 @@ Results: case_000000.json and so on, one for each case, which appear when they a
 sweep.csv, a table for spreadsheets, and sweep.html, a page with the same table and a plot. A case that is refused or
 fails is a result, too; one that was killed is none, and is run again.
 Exit codes: 0 all cases of this process have a result, 1 one of them has none (--strict: or one failed, was refused or
-is doubted), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
+has warnings), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
 /// Accepts finite numbers above 0, as needed for a length, a time or a tolerance.
 const CLI::Validator positive_number(
@@ -148,68 +154,83 @@ void add_set(CLI::App& command, std::vector<std::string>& assignments) {
         ->allow_extra_args(false);
 }
 
+/// Adds an option for a whole number. Its target stays empty unless the option is given.
+void add_count(CLI::App& app, const std::string& flag, std::optional<int>& target, int least,
+               const std::string& meaning) {
+    constexpr int most = 2147483647;
+    app.add_option_function<int>(
+           flag, [&target](const int& value) { target = value; }, meaning)
+        ->check(CLI::Range(least, most));
+}
+
+void add_outputs(CLI::App& command, RunOptions& options) {
+    for (const OutputFormat& format : output_formats())
+        command.add_option(format.option, options.outputs[format.option], format.meaning);
+    add_number(command, "--frames-per-second", options.frames_per_second, "frames of output per simulated second");
+    add_count(command, "--export-every", options.problems_every, 1,
+              "export every N-th step, if it has contacts; by default about 20 steps of the run");
+    add_choice<ProblemsOf>(command, "--export-problems-of", options.problems_of,
+                           "content of each file: a whole step (default), or one contact region of it");
+    CLI::Option* quiet =
+        command.add_flag("--quiet", options.quiet, "no progress, no summary; warnings go to standard error");
+    command
+        .add_flag("--profile", options.profile,
+                  "after the summary print step limits, solver figures, energies, stage times and the state hash")
+        ->excludes(quiet);
+    command.add_flag("--strict", options.strict, "end with exit code 1 if the run has warnings");
+}
+
+/// Adds the options that replace settings of the scene.
+void add_overrides(CLI::App& command, SceneOverrides& overrides) {
+    add_set(command, overrides.assignments);
+    add_choice<Backend>(command, "--backend", overrides.backend, "library that runs the threads");
+    add_number(command, "--step", overrides.step_size, "step size [s]; by default the stable step");
+    add_choice<SolverMethod>(command, "--method", overrides.method, "contact solver");
+    add_choice<Friction>(command, "--friction", overrides.friction, "friction law");
+    add_number(command, "--tolerance", overrides.tolerance, "relative error allowed in each contact region");
+    add_count(command, "--max-iterations", overrides.max_iterations, 1, "most sweeps over a contact region in a step");
+    add_choice<StartOverlaps>(command, "--start-overlaps", overrides.start_overlaps,
+                              "treatment of bodies that overlap at the start");
+    add_number(command, "--relaxation", overrides.relaxation,
+               "relaxation factor of the sweeps, below 2; above 1 is over-relaxation");
+    add_choice<ElementKind>(command, "--element", overrides.element,
+                            "elements of all bodies; smoothed ones bend correctly on coarse meshes");
+    add_choice<ContactRegions>(command, "--contact-regions", overrides.contact_regions,
+                               "grouping of contacts into regions, each of which is solved on its own");
+}
+
+/// Adds the options to stop and continue a run. Returns --restart.
+CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
+    CLI::Option* checkpoint = command.add_option(
+        "--checkpoint", options.checkpoint,
+        "file for the state of the run, for --restart; replaced several times during the run and at its end");
+    add_number(command, "--every", options.every,
+               "simulated time between checkpoints [s], by default a tenth of the run; written at the end of a frame "
+               "or of a sample of the probes")
+        ->needs(checkpoint);
+    CLI::Option* restart =
+        command.add_option("--restart", options.restart,
+                           "checkpoint to continue from; the result has the bits of a run that was not stopped");
+    for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
+                              "--relaxation", "--element", "--contact-regions"})
+        restart->excludes(command.get_option(fixed));
+    return restart;
+}
+
 void add_run(CLI::App& app, RunOptions& options) {
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene");
     command.footer(run_examples);
     CLI::Option* scene =
-        command.add_option("SCENE", options.scene, "a scene in JSON; `skerry schema` prints what it may hold");
-    add_number(command, "--seconds", options.seconds, "simulated time [s]; by default what the scene says");
+        command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format");
+    add_number(command, "--seconds", options.seconds, "simulated time [s]; by default \"seconds\" of the scene");
     command
         .add_option_function<int>(
             "--threads", [&options](const int& count) { options.overrides.threads = count; },
-            "worker threads; 0: as many as there are")
+            "worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
-    add_set(command, options.overrides.assignments);
-    command.add_option("--out", options.out,
-                       "folder for ParaView frames (SCENE.pvd), in place of those of an earlier run");
-    command.add_option("--page", options.page, "HTML file that plays the run in a browser, offline");
-    command.add_option("--stats", options.stats, "JSON file with the figures of the run");
-    command.add_option("--probes", options.probes,
-                       "file with the series of the scene's probes: .csv grows row by row, .h5 or .hdf5 at the end");
-    command.add_option("--trace", options.trace, "file with what every thread did, for Perfetto or chrome://tracing");
-    command.add_option("--export-problems", options.problems,
-                       "folder for contact problems of steps, in FCLIB's HDF5 form (local)");
-    command
-        .add_option_function<int>(
-            "--export-every", [&options](const int& steps) { options.problems_every = steps; },
-            "export every N-th step, if it has contacts; by default a 20th of the steps of the run")
-        ->check(CLI::Range(1, 2147483647));
-    add_choice<ProblemsOf>(command, "--export-problems-of", options.problems_of,
-                           "a file holds a step (default), or one region of it");
-    add_number(command, "--frames-per-second", options.frames_per_second, "frames of output in a simulated second");
-    add_choice<Backend>(command, "--backend", options.overrides.backend, "what runs the threads");
-    add_number(command, "--step", options.overrides.step_size, "step size [s]; by default the stable step");
-    add_choice<SolverMethod>(command, "--method", options.overrides.method, "contact solver");
-    add_choice<Friction>(command, "--friction", options.overrides.friction, "friction law");
-    add_number(command, "--tolerance", options.overrides.tolerance, "relative error of a region");
-    command
-        .add_option_function<int>(
-            "--max-iterations", [&options](const int& sweeps) { options.overrides.max_iterations = sweeps; },
-            "sweeps of a region")
-        ->check(CLI::Range(1, 2147483647));
-    add_choice<StartOverlaps>(command, "--start-overlaps", options.overrides.start_overlaps,
-                              "what is done about bodies that overlap something at the start");
-    add_number(command, "--relaxation", options.overrides.relaxation,
-               "of the sweeps, below 2; above 1 is over-relaxation");
-    add_choice<ElementKind>(command, "--element", options.overrides.element,
-                            "what carries the stress of all bodies; smoothed bends as it should on coarse meshes");
-    add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions,
-                               "how contacts are grouped");
-    command.add_flag("--quiet", options.quiet,
-                     "no progress, no summary; what speaks against relying on the run goes to standard error");
-    command.add_flag("--strict", options.strict, "end with 1 where something speaks against relying on the run");
-    CLI::Option* checkpoint = command.add_option(
-        "--checkpoint", options.checkpoint,
-        "file that --restart goes on from, replaced as a whole while the run goes on, and at its end");
-    add_number(command, "--every", options.every,
-               "simulated time between checkpoints [s], by default a tenth of the run; each is written at the end of a "
-               "frame, or of a sample of the probes")
-        ->needs(checkpoint);
-    CLI::Option* restart = command.add_option(
-        "--restart", options.restart, "a checkpoint: go on from it, with the bits of the run that was not stopped");
-    for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
-                              "--relaxation", "--element", "--contact-regions"})
-        restart->excludes(command.get_option(fixed));
+    add_outputs(command, options);
+    add_overrides(command, options.overrides);
+    CLI::Option* restart = add_checkpoints(command, options);
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");
     });
@@ -259,15 +280,6 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
     command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
 }
 
-/// Adds an option for a whole number. Its target stays empty unless the option is given.
-void add_count(CLI::App& app, const std::string& flag, std::optional<int>& target, int least,
-               const std::string& meaning) {
-    constexpr int most = 2147483647;
-    app.add_option_function<int>(
-           flag, [&target](const int& value) { target = value; }, meaning)
-        ->check(CLI::Range(least, most));
-}
-
 void add_sweep(CLI::App& app, SweepOptions& options) {
     CLI::App& command = *app.add_subcommand("sweep", "Simulate a scene with many values, a case a core");
     command.footer(sweep_examples);
@@ -282,7 +294,7 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--redo", options.redo, "replace results of other cases, or of the scene as it was before");
     command.add_flag("--dry-run", options.dry_run, "list the cases of this process, and run none");
     command.add_flag("--table", options.table, "make the table and the page of what is there, and run none");
-    command.add_flag("--strict", options.strict, "end with 1 where a case failed, was refused or is doubted");
+    command.add_flag("--strict", options.strict, "end with exit code 1 if a case failed, was refused or has warnings");
     command.add_flag("--quiet", options.quiet, "no progress, no table");
 }
 

@@ -1,4 +1,4 @@
-// Formats numbers for people.
+// Formats numbers and lines of a summary for people.
 #pragma once
 
 #include <cstdint>
@@ -56,6 +56,12 @@ inline std::string duration_text(double seconds) {
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");
+}
+
+/// A line of a summary with its label in a column of its own. An empty label continues the line above.
+inline std::string summary_line(const std::string& label, const std::string& text) {
+    constexpr std::size_t width = 14;
+    return "  " + label + std::string(label.size() < width ? width - label.size() : 1, ' ') + text + "\n";
 }
 
 }  // namespace skerry

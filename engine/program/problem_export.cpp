@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/program/progress.h"
+#include "skerry/error.h"
 #include "skerry/problem.h"
 
 namespace skerry {
@@ -26,29 +31,52 @@ std::uint64_t default_every(double steps) {
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
-}  // namespace
+/// Writes problems while the world advances. A failure within a step is thrown by the next sample() or close().
+class ExportedProblems final : public Writer {
+public:
+    ExportedProblems(const std::filesystem::path& folder, const std::string& scene, const RunOptions& options)
+        : folder_(folder), scene_(scene), of_(options.problems_of), every_(options.problems_every) {}
 
-ProblemExport::ProblemExport(const RunOptions& options, std::string scene)
-    : options_(options), scene_(std::move(scene)) {
-    if (!options.problems.empty() && (scene_.empty() || scene_.find_first_of("/\\") != std::string::npos))
-        Complaint{.file = options.scene.string(),
-                  .object = {},
-                  .field = "name",
-                  .found = "\"" + scene_ + "\"",
-                  .expected = "a file name without a folder",
-                  .hint = "exported problems bear the name of the scene"}
-            .raise();
-}
+    void open(World& world, const RunStart& start) override {
+        const auto take = [this, &world](const StepProblem& step) {
+            try {
+                write_step(step);
+            } catch (const std::exception&) {
+                failure_ = std::current_exception();
+                world.watch_contact_problems({});
+            }
+        };
+        world.watch_contact_problems(take,
+                                     every_ ? static_cast<std::uint64_t>(*every_) : default_every(start.step_count));
+    }
+    void sample(const World&) override { throw_failure(); }
+    void close(const World&) override { throw_failure(); }
+    double seconds_in_steps() const override { return seconds_; }
+    std::string written() const override {
+        return std::to_string(files_) + " contact problems of " + std::to_string(steps_) + " steps to " +
+               folder_.string();
+    }
 
-std::uint64_t ProblemExport::every(double steps_to_come) const {
-    return options_.problems_every ? static_cast<std::uint64_t>(*options_.problems_every)
-                                   : default_every(steps_to_come);
-}
+private:
+    void throw_failure() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
+    void write_step(const StepProblem& step);
+    void write(ContactProblem problem, const StepProblem& step, const std::string& name, std::span<const Vec3> impulse);
 
-void ProblemExport::write_step(const StepProblem& step) {
+    std::filesystem::path folder_;
+    std::string scene_;
+    ProblemsOf of_;
+    std::optional<int> every_;  // export interval [steps]
+    long files_ = 0, steps_ = 0;
+    double seconds_ = 0;  // time spent on the export [s]
+    std::exception_ptr failure_;
+};
+
+void ExportedProblems::write_step(const StepProblem& step) {
     const Stopwatch watch;
     const std::string name = scene_ + numbered("step", 6, static_cast<std::int64_t>(step.step));
-    if (options_.problems_of == ProblemsOf::step) {
+    if (of_ == ProblemsOf::step) {
         write(step.problem, step, name + numbered("contacts", 1, step.problem.contacts()), step.impulse);
     } else {
         // sorts contacts by region, and regions by number
@@ -72,15 +100,30 @@ void ProblemExport::write_step(const StepProblem& step) {
     seconds_ += watch.seconds();
 }
 
-void ProblemExport::write(ContactProblem problem, const StepProblem& step, const std::string& name,
-                          std::span<const Vec3> impulse) {
+void ExportedProblems::write(ContactProblem problem, const StepProblem& step, const std::string& name,
+                             std::span<const Vec3> impulse) {
     char about[160];
     std::snprintf(about, sizeof about, "step %llu at %.9g s, %.9g s long; ", static_cast<unsigned long long>(step.step),
                   step.time, step.step_size);
     problem.name = name;
     problem.description = scene_ + ": " + about + problem.description;
-    write_problem(problem, options_.problems / (name + ".hdf5"), impulse);
+    write_problem(problem, folder_ / (name + ".hdf5"), impulse);
     ++files_;
+}
+
+}  // namespace
+
+std::unique_ptr<Writer> exported_problems(const std::filesystem::path& folder, const Scene& scene,
+                                          const RunOptions& options) {
+    if (scene.name.empty() || scene.name.find_first_of("/\\") != std::string::npos)
+        Complaint{.file = options.scene.string(),
+                  .object = {},
+                  .field = "name",
+                  .found = "\"" + scene.name + "\"",
+                  .expected = "a file name without a folder",
+                  .hint = "exported problems have the name of the scene"}
+            .raise();
+    return std::make_unique<ExportedProblems>(folder, scene.name, options);
 }
 
 }  // namespace skerry

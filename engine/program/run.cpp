@@ -9,10 +9,10 @@
 #include "engine/mesh/manifold_fault.h"
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
-#include "engine/program/course.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_outputs.h"
+#include "engine/program/run_plan.h"
 #include "engine/program/run_result.h"
 #include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
@@ -49,17 +49,17 @@ private:
 };
 
 const char* const advice =
-    "on the command line: a smaller --step; `skerry inspect` shows the stable step of every body and what overlaps";
+    "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps";
 
 /// Runs all frames from the state in `memory`. result.status holds the error, if any. A run stopped within a frame
 /// keeps the previous checkpoint: advance() divides its duration into equal steps, and the rest of a call would be
 /// another call.
 class FrameLoop {
 public:
-    FrameLoop(Scene& scene, const Course& course, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
+    FrameLoop(Scene& scene, const RunPlan& plan, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
               Progress& progress, RunResult& result)
         : world_(scene.world),
-          course_(course),
+          plan_(plan),
           memory_(std::move(memory)),
           outputs_(outputs),
           checkpoints_(checkpoints),
@@ -71,23 +71,23 @@ public:
         const SignalGuard guard;
         begin();
         const long first = memory_.frame;
-        const double planned = std::exchange(memory_.seconds, course_.seconds);
+        const double planned = std::exchange(memory_.seconds, plan_.seconds);
         int sample = memory_.sample;
-        for (long frame = first; frame < course_.frames() && result_.status == "ok"; ++frame, sample = 0) {
-            const double length = course_.length_of(frame);
-            double duration = length / course_.samples;
-            if (frame == first && cut_short(course_, frame, planned))
-                duration = (static_cast<double>(frame) * course_.frame_step + length - world_.time()) /
-                           (course_.samples - sample);
+        for (long frame = first; frame < plan_.frames() && result_.status == "ok"; ++frame, sample = 0) {
+            const double length = plan_.length_of(frame);
+            double duration = length / plan_.samples;
+            if (frame == first && cut_short(plan_, frame, planned))
+                duration =
+                    (static_cast<double>(frame) * plan_.frame_step + length - world_.time()) / (plan_.samples - sample);
             const Real begin = world_.time();
-            for (; sample < course_.samples && result_.status == "ok"; ++sample) {
+            for (; sample < plan_.samples && result_.status == "ok"; ++sample) {
                 if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
                 advance(duration);
             }
             if (result_.status != "ok" && !(world_.time() > begin)) break;  // no progress since the previous frame
             add_frame();
-            const bool whole = length >= (1 - Course::slack) * course_.frame_step;
-            const bool due = frame + 1 == course_.frames() || checkpoints_.due(world_.time());
+            const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
+            const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());
             if (result_.status == "ok" && due) write_checkpoint(whole ? frame + 1 : frame, 0);
         }
         result_.checkpoints = checkpoints_.written();
@@ -98,16 +98,17 @@ public:
 private:
     void begin() {
         result_.peak_kinetic_energy = memory_.peak_kinetic_energy;
-        if (!result_.restarted_at) return add_frame();
-        probes_.go_on(memory_.probes);
-        outputs_.go_on(world_, memory_);
+        if (result_.restarted_at)
+            probes_.go_on(memory_.probes);
+        else
+            add_frame();
     }
     void add_frame() {
         outputs_.add_frame(world_);
         result_.peak_kinetic_energy = std::max(result_.peak_kinetic_energy, world_.energy().kinetic);
         if (result_.status == "ok" && outputs_.all_failed())
             result_.status =
-                "stopped at " + short_number(world_.time(), 6) + " s: no output is left that can be written";
+                "stopped at " + short_number(world_.time(), 6) + " s, because none of the outputs can be written";
     }
     void advance(double duration) {
         const auto go_on = [&](const StepReport& so_far) {
@@ -140,7 +141,7 @@ private:
     }
 
     World& world_;
-    const Course& course_;
+    const RunPlan& plan_;
     RunMemory memory_;
     RunOutputs& outputs_;
     CheckpointWriter& checkpoints_;
@@ -149,6 +150,16 @@ private:
     ProbeRecorder probes_;
     std::uint64_t steps_ = 0;  // in this part of the run
 };
+
+void count_bodies(const World& world, RunResult& result) {
+    const std::vector<BodyHandle> bodies = world.bodies();
+    for (const BodyHandle body : bodies) {
+        const BodyDynamics dynamics = world.dynamics(body);
+        result.rigid_bodies += dynamics == BodyDynamics::rigid ? 1 : 0;
+        result.implicit_bodies += dynamics == BodyDynamics::implicit_elastic ? 1 : 0;
+        result.mean_edge += world.mean_edge(body) / static_cast<Real>(bodies.size());
+    }
+}
 
 /// Lists meshes whose boundary is not a closed manifold, one body per mesh. Contacts find the way out of a body by its
 /// surface, which fails where the surface does not have two sides.
@@ -199,44 +210,42 @@ RunResult simulate(const RunOptions& asked) {
     result.scene_file = options.scene.string();
     result.settings = world.settings();
     result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
-    const std::vector<BodyHandle> bodies = world.bodies();
-    for (const BodyHandle body : bodies) result.mean_edge += world.mean_edge(body) / static_cast<Real>(bodies.size());
+    count_bodies(world, result);
 
-    const Course course = restart ? course_of(options, memory, world.time()) : course_of(scene, options);
-    memory.frame_step = course.frame_step;
-    memory.samples = course.samples;
-    RunOutputs outputs(options, scene);
-    CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(course.seconds / 10), world.time());
-    if (!options.trace.empty()) world.set_tracing(true);
-    outputs.watch(world, course.steps(world));
-    outputs.record(scene, restart.has_value());
+    const RunPlan run_plan = restart ? plan_run(options, memory, world.time()) : plan_run(scene, options);
+    memory.frame_step = run_plan.frame_step;
+    memory.samples = run_plan.samples;
+    const RunStart start{.step_count = run_plan.steps(world),
+                         .frames = restart ? static_cast<std::size_t>(memory.frame) + 1 : 0,
+                         .frame_step = memory.frame_step};
+    RunOutputs outputs(options, scene, start, result);
+    CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
     {
-        Progress progress(!options.quiet, course.seconds, course.steps(world), course.longest_step(world));
-        FrameLoop(scene, course, std::move(memory), outputs, checkpoints, progress, result).run();
+        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world));
+        FrameLoop(scene, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
     }
 
     result.report = world.report();
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
-    result.seconds_wall -= outputs.seconds_in_steps();
     result.stopped_by = caught_signal;
-    outputs.finish(world, result);
-    result.written = outputs.summary() + checkpoints.summary();
+    outputs.finish(world);
+    if (checkpoints.written() > 0) result.written.push_back(checkpoints.summary());
     return result;
 }
 
 int run(const RunOptions& options) {
     const RunResult result = simulate(options);
-    const std::vector<std::string> doubts = doubts_of(result);
+    const std::vector<std::string> warnings = warnings_of(result);
     if (options.quiet)
-        for (const std::string& doubt : doubts) std::cerr << "skerry: DOUBT: " << doubt << "\n";
+        for (const std::string& warning : warnings) std::cerr << "skerry: WARNING: " << warning << "\n";
     else
-        std::cout << summary_of(result) << result.written << std::flush;
+        std::cout << summary_of(result) << (options.profile ? details_of(result) : "") << std::flush;
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
     if (result.stopped_by != 0) return exit_signal + result.stopped_by;
     if (!result.outputs_failed.empty()) return exit_output;
-    return result.status == "ok" && (doubts.empty() || !options.strict) ? exit_ok : exit_failed;
+    return result.status == "ok" && (warnings.empty() || !options.strict) ? exit_ok : exit_failed;
 }
 
 }  // namespace skerry

@@ -26,8 +26,8 @@ inline Json overlaps_json(const WorldReport& report) {
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
-    return "surfaces begin " + with_unit(depth, "m") +
-           " too deep in each other's contact distance: start further apart, or lower contact_distance";
+    return "surfaces start " + with_unit(depth, "m") +
+           " too deep in each other's contact distance: move the bodies apart, or lower contact_distance";
 }
 
 /// Rotation per step from which a warning is given [rad]. Contacts assume straight motion; the error of a surface's
@@ -36,8 +36,9 @@ inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
     return "collider \"" + report.turning_collider + "\" turns by " + short_number(report.collider_turn) +
-           " rad in a step, for which contacts take its surface to move straight on: shorten the step (--step) to " +
-           short_number(visible_turn / report.collider_turn) + " of that";
+           " rad in a step, but contacts assume that its surface moves straight within a step: shorten the step "
+           "(--step) " +
+           "to " + percent(visible_turn / report.collider_turn) + " of its length";
 }
 
 /// Returns, for example, "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm".

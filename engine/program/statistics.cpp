@@ -1,7 +1,9 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <ostream>
 
+#include "engine/output/write_file.h"
 #include "engine/program/dynamics_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
@@ -21,7 +23,7 @@ Json number_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-/// Error estimates of the run. `doubts` lists in words those that are too large to rely on it.
+/// Error estimates of the run. `warnings` lists in words those that are too large to rely on it.
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
     return {
@@ -40,11 +42,29 @@ Json trust_of(const RunResult& result) {
           {"folded", r.folded},
           {"inverted", r.inverted},
           {"inversions", r.inversions}}},
-        {"doubts", doubts_of(result)},
+        {"warnings", warnings_of(result)},
     };
 }
 
+class StatisticsFile final : public Writer {
+public:
+    StatisticsFile(const std::filesystem::path& file, const RunResult& result) : file_(file), result_(result) {}
+
+    void close(const World&) override {
+        write_file(file_, [&](std::ostream& out) { out << statistics_of(result_).dump(1) << "\n"; });
+    }
+    std::string written() const override { return file_.string() + " (all figures of the run)"; }
+
+private:
+    std::filesystem::path file_;
+    const RunResult& result_;
+};
+
 }  // namespace
+
+std::unique_ptr<Writer> statistics_file(const std::filesystem::path& file, const RunResult& result) {
+    return std::make_unique<StatisticsFile>(file, result);
+}
 
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
@@ -64,7 +84,7 @@ Json statistics_of(const RunResult& result) {
     for (const ProbeRecord& probe : result.probes) probes[probe.name] = to_json(probe);
     const double simulated = result.seconds_simulated, wall = result.seconds_wall;
     return {
-        {"schema", "skerry.run/1"},
+        {"schema", "skerry.run/2"},
         {"scene", result.scene},
         {"scene_file", result.scene_file},
         {"status", result.status},

@@ -152,7 +152,7 @@ bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
     return std::ranges::all_of(mine, [&](int index) {
         const CaseFile file = plan.read(index);
         return file.state != CaseFileState::whole ||
-               (file.result.status == CaseStatus::ok && file.result.doubts.empty());
+               (file.result.status == CaseStatus::ok && file.result.warnings.empty());
     });
 }
 

@@ -18,7 +18,7 @@ SLOW = {**SCENE, "seconds": 1e5, "frame_step": 1e5, "probe_step": 1e5, "settings
 
 
 class ProgramRunTest(ProgramCase):
-    def test_energy_that_misses_some_per_cent_is_doubted(self):
+    def test_an_energy_error_of_some_per_cent_is_a_warning(self):
         # steps of this impact are not shortened for its strain
         crushed = {"name": "crushed", "seconds": 0.05, "settings": {"max_strain_step": 10},
                    "materials": {"firm": {"E": 1e6, "nu": 0.3, "rho": 1000}},
@@ -27,10 +27,10 @@ class ProgramRunTest(ProgramCase):
                    "colliders": [{"shape": {"plane": {}}}]}
         trust = json.loads(self.run_with_stats(self.write("crushed.json", crushed)))["trust"]
         self.assertGreater(trust["energy"]["share"], 0.02)
-        self.assertTrue(any("energy does not add up" in doubt for doubt in trust["doubts"]), trust)
+        self.assertTrue(any("energy balance has an error" in warning for warning in trust["warnings"]), trust)
         calm = json.loads(self.run_with_stats(self.scene))["trust"]
         self.assertLess(calm["energy"]["share"], 0.01)
-        self.assertEqual(calm["doubts"], [])
+        self.assertEqual(calm["warnings"], [])
 
     def blocked(self, *names):
         """A name at which a file cannot be written, from a certain moment of the run on: a full disk to the program."""
@@ -43,7 +43,7 @@ class ProgramRunTest(ProgramCase):
         self.blocked("out", "drop_contacts_0003.vtp.part")
         done = self.skerry("run", self.scene, *outputs, code=3)
         self.assertIn("drop_contacts_0003.vtp: output: found", done.stderr)
-        self.assertIn("--out ends here", done.stderr)
+        self.assertIn("--out could not be written", done.stderr)
         self.assertIn("NOT WRITTEN   --out", done.stdout)
         self.assertNotIn(f"wrote         {out}", done.stdout)
         found = json.loads(stats.read_text())
@@ -58,13 +58,13 @@ class ProgramRunTest(ProgramCase):
 
         self.blocked("page.html.part")
         done = self.skerry("run", self.scene, "--page", page, "--stats", stats, "--out", self.folder / "good", code=3)
-        self.assertIn("--page ends here", done.stderr)
+        self.assertIn("--page could not be written", done.stderr)
         self.assertEqual(list(json.loads(stats.read_text())["outputs_failed"]), ["--page"])
         self.assertTrue((self.folder / "good" / "drop.pvd").exists())
 
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})  # with nothing left to write it ends
         done = self.skerry("run", endless, "--out", out, code=3)
-        self.assertIn("no output is left", done.stderr)
+        self.assertIn("none of the outputs can be written", done.stderr)
 
     def test_frames_of_an_earlier_run_make_room_and_nothing_else_does(self):
         out = self.folder / "out"

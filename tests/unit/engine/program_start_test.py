@@ -26,33 +26,32 @@ class ProgramStartTest(ProgramCase):
 
     def test_bodies_that_overlap_a_bit_are_moved_apart_and_the_run_says_so(self):
         stats = self.folder / "stats.json"
-        done = self.skerry("run", self.overlapping(0.095), "--stats", stats)
+        done = self.skerry("run", self.overlapping(0.095), "--stats", stats, "--profile")
         self.assertIn("1 overlap, 2 bodies moved apart, the furthest ", done.stdout)
-        self.assertNotIn("DOUBT", done.stdout)
+        self.assertNotIn("WARNING", done.stdout)
         start = json.loads(stats.read_text())["start"]
         self.assertEqual([m["body"] for m in start["moves"]], ["left", "right"])
         self.assertTrue(start["overlaps"][0]["resolved"])
         self.assertEqual(json.loads(stats.read_text())["max_penetration"], 0)
 
-    def test_a_strict_run_that_is_doubted_fails_and_writes_its_outputs(self):
+    def test_a_strict_run_with_warnings_fails_and_writes_its_outputs(self):
         stats = self.folder / "stats.json"
         done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"), "--strict", "--quiet", "--stats", stats,
                            code=1)
-        self.assertIn("DOUBT", done.stderr)
-        self.assertTrue(json.loads(stats.read_text())["trust"]["doubts"])
+        self.assertIn("WARNING", done.stderr)
+        self.assertTrue(json.loads(stats.read_text())["trust"]["warnings"])
         self.skerry("run", self.overlapping(0.2), "--strict")
 
-    def test_what_begins_overlapping_is_doubted_with_both_names_quiet_or_not(self):
-        doubt = "DOUBT"
+    def test_a_warning_names_both_bodies_that_overlap_at_the_start_quiet_or_not(self):
         done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"))
-        for part in (doubt, "'left' and 'right' coincide at (0, 0, 0) m at the start: move them apart"):
+        for part in ("WARNING", "'left' and 'right' coincide at (0, 0, 0) m at the start: move them apart"):
             self.assertIn(part, done.stdout)
         done = self.skerry("run", self.overlapping(0.09, start_overlaps="ignore"))
         self.assertIn("settings.start_overlaps to \"resolve\"", done.stdout)
         self.assertNotIn("shorten the step", done.stdout)
         quiet = self.skerry("run", self.overlapping(0, start_overlaps="ignore"), "--quiet")
         self.assertEqual(quiet.stdout, "")
-        self.assertIn("skerry: DOUBT: bodies 'left' and 'right' coincide", quiet.stderr)
+        self.assertIn("skerry: WARNING: bodies 'left' and 'right' coincide", quiet.stderr)
 
     def test_a_contact_distance_out_of_proportion_is_what_is_blamed(self):
         sunk = json.loads(json.dumps(SCENE))
@@ -91,7 +90,7 @@ class ProgramStartTest(ProgramCase):
         self.assertIn(said, self.skerry("run", self.write("mill.json", mill)).stdout)
         problems = json.loads(self.skerry("inspect", self.folder / "mill.json", "--json").stdout)["problems"]
         self.assertTrue(any(said in problem for problem in problems), problems)
-        self.assertNotIn("DOUBT", self.skerry("run", self.folder / "mill.json", "--step", 1e-4).stdout)
+        self.assertNotIn("WARNING", self.skerry("run", self.folder / "mill.json", "--step", 1e-4).stdout)
 
     def test_advice_names_an_option_that_there_is(self):
         stack = json.loads(json.dumps(SCENE))

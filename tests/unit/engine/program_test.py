@@ -25,14 +25,14 @@ STATS_KEYS = {
     "regions": "mean max largest_contacts",
     "solver": "method iterations_mean worst_error unconverged",
     "energy": "kinetic elastic potential dissipated",
-    "trust": "solver energy momentum penetration elements doubts",
+    "trust": "solver energy momentum penetration elements warnings",
 }
 
 
 class ProgramTest(ProgramCase):
     def test_a_run_writes_statistics_with_every_promised_key(self):
         stats = self.folder / "deep" / "stats.json"
-        done = self.skerry("run", self.scene, "--threads", 1, "--stats", stats)
+        done = self.skerry("run", self.scene, "--threads", 1, "--stats", stats, "--profile")
         found = json.loads(stats.read_text())
         for group, keys in STATS_KEYS.items():
             for key in keys.split():
@@ -48,8 +48,22 @@ class ProgramTest(ProgramCase):
         for word in ("real time", "steps", "contacts", "penetration", "state hash", found["state_hash"]):
             self.assertIn(word, done.stdout)
         self.assertEqual([p.name for p in stats.parent.iterdir()], ["stats.json"])  # no temporary file is left
-        self.assertEqual(found["trust"]["doubts"], [])
-        self.assertNotIn("DOUBT", done.stdout)
+        self.assertEqual(found["trust"]["warnings"], [])
+        self.assertNotIn("WARNING", done.stdout)
+
+    def test_the_summary_is_short_and_details_are_printed_on_request(self):
+        short = self.skerry("run", self.scene).stdout
+        self.assertLessEqual(len(short.splitlines()), 15, short)
+        for part in ("real time", str(self.scene), "1 deformable, 1 collider", "tetrahedra", "contacts", "penetration",
+                     "balance", "warnings      none", "base: sticks", "--page FILE.html"):
+            self.assertIn(part, short)
+        details = ("regions", "solver", "stages", "solver/solve_regions", "volume ratio", "kinetic", "state hash")
+        for part in details:
+            self.assertNotIn(part, short)
+        long = self.skerry("run", self.scene, "--profile").stdout
+        for part in details:
+            self.assertIn(part, long)
+        self.skerry("run", self.scene, "--profile", "--quiet", code=2)
 
     def test_a_run_that_is_not_to_be_relied_on_says_so(self):
         stacked = dict(SCENE["bodies"][0], name="upper", position=[0.03, 0.02, 0.32], velocity=[0.5, 0.2, -2])
@@ -58,8 +72,8 @@ class ProgramTest(ProgramCase):
         done = self.skerry("run", scene, "--tolerance", 1e-15, "--stats", stats)
         trust = json.loads(stats.read_text())["trust"]
         self.assertGreater(trust["solver"]["unconverged"], 0)
-        self.assertTrue(any("above the tolerance" in doubt for doubt in trust["doubts"]), trust)
-        self.assertIn("DOUBT", done.stdout)
+        self.assertTrue(any("above the tolerance" in warning for warning in trust["warnings"]), trust)
+        self.assertIn("WARNING", done.stdout)
 
     def test_probes_add_up_to_the_time_of_the_run(self):
         stats = self.folder / "stats.json"

@@ -150,6 +150,15 @@ class SeriesTest(ProgramCase):
         self.assertGreater(len(rows["time [s]"]), 5)
         self.assertTrue(series.read_text().endswith("\n"))
 
+    def test_a_resumed_run_refuses_a_series_of_other_probes_and_leaves_it_as_it_is(self):
+        series, checkpoint = self.folder / "series.csv", self.folder / "run.skerry"
+        self.skerry("run", self.scene, "--seconds", 0.05, "--checkpoint", checkpoint)
+        series.write_text("time [s],other.kinetic [J]\n0,1\n")
+        before = series.read_text()
+        self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", series,
+                            said=["series.csv", "the headings of the same probes"])
+        self.assertEqual(series.read_text(), before)
+
     def test_frames_have_displacements_strains_names_and_forces(self):
         out = self.folder / "frames"
         self.skerry("run", self.scene, "--out", out, "--seconds", 0.3)

@@ -104,7 +104,7 @@ class SweepTest(ProgramCase):
         self.scene.write_text(json.dumps({**SCENE, "seconds": 0.1}))
         self.assert_refused("sweep", self.cases, "--out", self.out, said=["6 files", "as it was before"])
         self.scene.write_text(json.dumps(SCENE))
-        (self.out / "case_000002.json").write_text('{"schema": "skerry.case/1", "case')
+        (self.out / "case_000002.json").write_text('{"schema": "skerry.case/2", "case')
         self.assert_refused("sweep", self.cases, "--out", self.out, said=["case_000002.json", "no result of a case"])
         self.assertIn("1 of 6", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
 
@@ -120,7 +120,7 @@ class SweepTest(ProgramCase):
         """How many there are; those that are not whole would not be read."""
         files = list(self.out.glob("case_*.json"))
         for file in files:
-            self.assertEqual(json.loads(file.read_text())["schema"], "skerry.case/1")
+            self.assertEqual(json.loads(file.read_text())["schema"], "skerry.case/2")
         return len(files)
 
     def children_of(self, process):
@@ -245,9 +245,9 @@ class SweepTest(ProgramCase):
         self.assertIn("case 2 refused:", done.stdout)
         self.assertEqual(rows[3]["status"], "failed", rows[3])
         self.assertIn("block", rows[3]["message"])
-        self.assertGreater(float(rows[4]["doubts"]), 0)
-        self.assertIn("at the start", rows[4]["doubts_text"])
-        self.assertIn("case 4 DOUBT:", done.stdout)
+        self.assertGreater(float(rows[4]["warnings"]), 0)
+        self.assertIn("at the start", rows[4]["warnings_text"])
+        self.assertIn("case 4 WARNING:", done.stdout)
         self.assertIsNone(self.result(0)["report"])
         self.assertIn("0 of 5 cases to run", self.sweep(self.cases, "--out", self.out, "--strict", code=1).stderr)
 

@@ -14,7 +14,7 @@ using Row = std::vector<std::optional<Json>>;
 void add_parameter(Cases& cases, const std::string& name, const std::vector<std::string>& places, const Place& place) {
     if (places.empty()) place.key("set").refuse("an empty list", "at least one place");
     const std::string own = name.empty() ? places.front() : name;
-    constexpr std::array columns{case_column, status_column, message_column, doubts_column, hash_column};
+    constexpr std::array columns{case_column, status_column, message_column, warnings_column, hash_column};
     if (std::ranges::find(columns, own) != columns.end())
         place.key("name").refuse(in_quotes(own) + ", which every table has", "a name of its own");
     std::vector<std::string> seen;

@@ -34,6 +34,6 @@ std::string case_text(const Cases& cases, int index);
 
 /// Columns that every table has in addition to the parameters. No parameter may have one of these names.
 inline constexpr std::string_view case_column = "case", status_column = "status", message_column = "message",
-                                  doubts_column = "doubts_text", hash_column = "state_hash";
+                                  warnings_column = "warnings_text", hash_column = "state_hash";
 
 }  // namespace skerry

@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-constexpr const char* case_schema = "skerry.case/1";
+constexpr const char* case_schema = "skerry.case/2";
 
 Json json_of_figures(const CaseResult& result) {
     Json figures = Json::object();
@@ -27,7 +27,7 @@ CaseResult result_from(const Json& json) {
     json.at("case").get_to(result.index);
     result.status = from_name<CaseStatus>(json.at("status").get<std::string>()).value();
     json.at("message").get_to(result.message);
-    json.at("doubts").get_to(result.doubts);
+    json.at("warnings").get_to(result.warnings);
     json.at("state_hash").get_to(result.state_hash);
     for (const auto& [name, value] : json.at("figures").items())
         result.figures.emplace_back(name, value.is_null() ? std::nan("") : value.get<double>());
@@ -43,7 +43,7 @@ CaseResult result_of(const RunResult& run, double seconds_cpu) {
         result.status = CaseStatus::failed;
         result.message = run.status;
     }
-    result.doubts = doubts_of(run);
+    result.warnings = warnings_of(run);
     char hash[24];
     std::snprintf(hash, sizeof hash, "0x%016" PRIx64, run.state_hash);
     result.state_hash = hash;
@@ -61,7 +61,7 @@ CaseResult result_of(const RunResult& run, double seconds_cpu) {
         {"contacts_max", static_cast<double>(r.max_contacts)},
         {"penetration_m", r.max_penetration},
         {"solver_error", r.worst_error},
-        {"doubts", static_cast<double>(result.doubts.size())},
+        {"warnings", static_cast<double>(result.warnings.size())},
     };
     for (const ProbeRecord& probe : run.probes) {
         const auto add = [&](const char* what, double value) {
@@ -96,7 +96,7 @@ void write_case(const std::filesystem::path& file, const CaseHead& head, const C
         {"version", SKERRY_VERSION},
         {"status", name_of(result.status)},
         {"message", result.message},
-        {"doubts", result.doubts},
+        {"warnings", result.warnings},
         {"figures", json_of_figures(result)},
         {"state_hash", result.state_hash},
         {"report", report},

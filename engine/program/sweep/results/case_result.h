@@ -26,9 +26,9 @@ struct EnumNames<CaseStatus> {
 struct CaseResult {
     int index = 0;
     CaseStatus status = CaseStatus::ok;
-    std::string message;              // reason for failure or refusal
-    std::vector<std::string> doubts;  // warnings: reasons not to rely on the result
-    std::string state_hash;           // hash of the final state; empty if the case did not start
+    std::string message;                // reason for failure or refusal
+    std::vector<std::string> warnings;  // reasons not to rely on the result, one sentence each
+    std::string state_hash;             // hash of the final state; empty if the case did not start
     // Numbers for tables, named with their unit, such as seconds_cpu. A refused case has only this one.
     std::vector<std::pair<std::string, double>> figures;
 };

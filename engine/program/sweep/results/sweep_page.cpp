@@ -27,7 +27,7 @@ Json rows_json(const SweepTable& table) {
         rows.push_back({{"case", i},
                         {"status", whole ? name_of(file.result.status) : "not run"},
                         {"message", file.result.message},
-                        {"doubts", file.result.doubts},
+                        {"warnings", file.result.warnings},
                         {"values", values},
                         {"figures", figures}});
     }

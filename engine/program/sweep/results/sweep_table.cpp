@@ -29,7 +29,7 @@ std::vector<std::string> shown_figures(const SweepTable& table) {
                                    "contacts_mean",     "penetration_m", "energy_error_share"};
     for (const std::string& name : figure_names(table))
         if (name.ends_with(".slip_m")) shown.push_back(name);
-    shown.emplace_back("doubts");
+    shown.emplace_back("warnings");
     return shown;
 }
 
@@ -70,21 +70,22 @@ std::string messages_text(const SweepTable& table) {
     int told = 0, left = 0;
     for (const CaseFile& file : table.files) {
         const CaseResult& result = file.result;
-        if (file.state != CaseFileState::whole || (result.message.empty() && result.doubts.empty())) continue;
+        if (file.state != CaseFileState::whole || (result.message.empty() && result.warnings.empty())) continue;
         if (told++ >= most_messages) {
             ++left;
             continue;
         }
         const std::string of = "case " + std::to_string(result.index) + " ";
         if (!result.message.empty()) text += of + std::string(name_of(result.status)) + ": " + result.message + "\n";
-        for (const std::string& doubt : result.doubts) text += of + "DOUBT: " + doubt + "\n";
+        for (const std::string& warning : result.warnings) text += of + "WARNING: " + warning + "\n";
     }
-    if (left > 0) text += "... " + std::to_string(left) + " more cases have something to say: sweep.csv has all\n";
+    if (left > 0)
+        text += "... " + std::to_string(left) + " more cases have messages or warnings; sweep.csv lists them all\n";
     return text;
 }
 
 std::string totals_text(const SweepTable& table) {
-    int counts[3] = {0, 0, 0}, doubted = 0, missing = 0;
+    int counts[3] = {0, 0, 0}, warned = 0, missing = 0;
     double cpu = 0;
     for (const CaseFile& file : table.files) {
         if (file.state != CaseFileState::whole) {
@@ -92,7 +93,7 @@ std::string totals_text(const SweepTable& table) {
             continue;
         }
         ++counts[static_cast<int>(file.result.status)];
-        if (!file.result.doubts.empty()) ++doubted;
+        if (!file.result.warnings.empty()) ++warned;
         cpu += figure_of(file.result, "seconds_cpu");
     }
     std::string text = std::to_string(table.cases.count()) + " cases: " + std::to_string(counts[0]) + " ok";
@@ -102,7 +103,7 @@ std::string totals_text(const SweepTable& table) {
     add(counts[1], "failed");
     add(counts[2], "refused");
     add(missing, "not run");
-    add(doubted, "doubted");
+    add(warned, "with warnings");
     return text + "; " + duration_text(cpu) + " of CPU in all\n";
 }
 
@@ -178,7 +179,7 @@ std::string table_csv(const SweepTable& table) {
     for (const Parameter& parameter : table.cases.parameters) head.push_back(parameter.name);
     head.emplace_back(status_column);
     head.insert(head.end(), figures.begin(), figures.end());
-    for (const std::string_view name : {hash_column, message_column, doubts_column}) head.emplace_back(name);
+    for (const std::string_view name : {hash_column, message_column, warnings_column}) head.emplace_back(name);
     std::string csv;
     add_line(head, csv);
     for (std::size_t i = 0; i < table.files.size(); ++i) {
@@ -191,7 +192,7 @@ std::string table_csv(const SweepTable& table) {
                                                  : value->dump());
         cells.emplace_back(file.state == CaseFileState::whole ? name_of(file.result.status) : "not run");
         for (const std::string& name : figures) cells.push_back(csv_number(figure_of(file.result, name)));
-        cells.insert(cells.end(), {file.result.state_hash, file.result.message, joined(file.result.doubts)});
+        cells.insert(cells.end(), {file.result.state_hash, file.result.message, joined(file.result.warnings)});
         add_line(cells, csv);
     }
     return csv;

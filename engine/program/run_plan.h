@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-struct Course {
+struct RunPlan {
     static constexpr double slack = 1e-9;  // share of a frame: 0.1 s are six frames of 1/60 s, not seven
 
     double seconds = 0, frame_step = 0;  // [s]
@@ -21,15 +21,15 @@ struct Course {
     double steps(const World& world) const;
 };
 
-/// Course of a new run: options of the command line override values of the scene. Throws SceneError for more than 1e9
+/// Plan of a new run: options of the command line override values of the scene. Throws SceneError for more than 1e9
 /// frames or samples per frame.
-Course course_of(const Scene& scene, const RunOptions& options);
-/// Course of a run that is resumed at `time`. It keeps the frames and samples of the first part, because the calls of
+RunPlan plan_run(const Scene& scene, const RunOptions& options);
+/// Plan of a run that is resumed at `time`. It keeps the frames and samples of the first part, because the calls of
 /// advance have to be the same. Throws SceneError if nothing is left to simulate.
-Course course_of(const RunOptions& options, const RunMemory& memory, double time);
+RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if a run planned for `planned` seconds would have ended within this frame, and `course` makes the frame longer
+/// True if a run planned for `planned` seconds would have ended within this frame, and `plan` makes the frame longer
 /// or shorter.
-bool cut_short(const Course& course, long frame, double planned);
+bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

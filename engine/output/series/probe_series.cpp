@@ -1,0 +1,77 @@
+// Output of a run as time series of its probes: CSV or HDF5.
+#include <optional>
+#include <vector>
+
+#include "engine/output/writer.h"
+#include "skerry/error.h"
+#include "skerry/recorder.h"
+
+namespace skerry {
+
+namespace {
+
+/// Records the rows; derived classes write them.
+class ProbeSeries : public Writer {
+public:
+    ProbeSeries(const std::filesystem::path& file, const Scene& scene) : file_(file), probes_(scene.recorded) {}
+
+    void open(World& world, const RunStart& start) override {
+        recorder_.emplace(world, probes_);
+        begin_file(world, start);
+        if (!start.resumed()) recorder_->sample(world);
+    }
+    void sample(const World& world) override { recorder_->sample(world); }
+    std::string written() const override { return file_.string() + " (time series of the probes)"; }
+
+protected:
+    virtual void begin_file(const World&, const RunStart&) {}
+    const std::filesystem::path& file() const { return file_; }
+    Recorder& recorder() { return *recorder_; }
+
+private:
+    std::filesystem::path file_;
+    std::vector<RecordedProbe> probes_;
+    std::optional<Recorder> recorder_;
+};
+
+/// Appends each row to the file as soon as it is recorded.
+class CsvSeries final : public ProbeSeries {
+public:
+    using ProbeSeries::ProbeSeries;
+
+protected:
+    void begin_file(const World& world, const RunStart& start) override {
+        recorder().stream_csv(file(), start.resumed() ? std::optional(world.time()) : std::nullopt);
+    }
+};
+
+/// Writes all rows at the end.
+class Hdf5Series final : public ProbeSeries {
+public:
+    using ProbeSeries::ProbeSeries;
+    void close(const World&) override { recorder().write_hdf5(file()); }
+};
+
+[[noreturn]] void refuse_series(const std::filesystem::path& file, const std::string& found,
+                                const std::string& expected, const std::string& hint = {}) {
+    Complaint{
+        .file = file.string(), .object = "--probes", .field = {}, .found = found, .expected = expected, .hint = hint}
+        .raise();
+}
+
+}  // namespace
+
+std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Scene& scene) {
+    const std::string extension = file.extension().string();
+    const bool csv = extension == ".csv";
+    if (!csv && extension != ".h5" && extension != ".hdf5")
+        refuse_series(file, extension.empty() ? "a name without extension" : "the extension " + extension,
+                      ".csv, .h5 or .hdf5");
+    if (scene.recorded.empty())
+        refuse_series(file, "a scene without a probe that has a series", "one in \"probes\" with a quantity",
+                      "motion, force, reaction, energy, stress or volume; docs/outputs.md");
+    if (csv) return std::make_unique<CsvSeries>(file, scene);
+    return std::make_unique<Hdf5Series>(file, scene);
+}
+
+}  // namespace skerry

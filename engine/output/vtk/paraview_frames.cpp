@@ -1,0 +1,68 @@
+// Output of a run as frames for ParaView.
+#include <exception>
+#include <system_error>
+#include <vector>
+
+#include "engine/output/vtk/vtk_series.h"
+#include "engine/output/writer.h"
+#include "skerry/error.h"
+#include "skerry/output.h"
+
+namespace skerry {
+
+namespace {
+
+class ParaviewFrames final : public Writer {
+public:
+    ParaviewFrames(const std::filesystem::path& folder, const Scene& scene)
+        : folder_(folder), name_(scene.name), materials_(scene.materials) {}
+
+    bool may_write(const std::filesystem::path& file) const override {
+        const std::filesystem::path place = canonical(file);
+        return place.parent_path() == canonical(folder_ / "frame").parent_path() &&
+               is_series_file(place.filename().string(), name_);
+    }
+    void open(World& world, const RunStart& start) override {
+        writer_ = std::make_unique<VtkWriter>(folder_, name_);
+        writer_->name_materials(materials_);
+        if (start.resumed()) writer_->go_on(world, start.frames, start.frame_step);
+    }
+    void add_frame(const World& world) override {
+        try {
+            writer_->write_frame(world);
+        } catch (const std::exception&) {
+            write_index_if_possible();
+            throw;
+        }
+    }
+    void close(const World&) override { writer_->close(); }
+    std::string written() const override {
+        return (folder_ / (name_ + ".pvd")).string() + " (frames; open it in ParaView)";
+    }
+
+private:
+    static std::filesystem::path canonical(const std::filesystem::path& place) {
+        std::error_code ignored;
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(place), ignored);
+    }
+    /// Makes the frames so far readable, if there is room for the index.
+    void write_index_if_possible() {
+        try {
+            writer_->close();
+        } catch (const SceneError&) {  // the error of the frame is the one to report
+        }
+    }
+
+    std::filesystem::path folder_;
+    std::string name_;  // of the scene
+    std::vector<std::string> materials_;
+    std::unique_ptr<VtkWriter> writer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> paraview_frames(const std::filesystem::path& folder, const Scene& scene) {
+    return std::make_unique<ParaviewFrames>(folder, scene);
+}
+
+}  // namespace skerry

@@ -1,0 +1,97 @@
+// Warnings: reasons not to rely on a run, each with its remedy.
+#include <algorithm>
+
+#include "engine/program/number_text.h"
+#include "engine/program/run_result.h"
+#include "engine/program/start_text.h"
+
+namespace skerry {
+
+namespace {
+
+/// Adds warnings about the start. Returns true if these explain later errors.
+bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) {
+    const WorldReport& r = result.report;
+    constexpr std::size_t most_named = 5;
+    std::size_t left = 0;
+    for (const StartOverlap& overlap : r.start_overlaps)
+        if (!overlap.resolved && left++ < most_named)
+            warnings.push_back(
+                overlap.message() + " at the start: move them apart" +
+                (overlap.kind == OverlapKind::crossing ? ", or set settings.start_overlaps to \"resolve\"" : ""));
+    if (left > most_named)
+        warnings.push_back(grouped(left - most_named) + " more overlaps at the start: --stats lists them all");
+    const Real into_shell = r.start_gap_violation - r.start_penetration;
+    const bool in_shell = into_shell > visible_share * result.mean_edge;
+    if (in_shell) warnings.push_back(into_shell_text(into_shell));
+    if (left == 0 && r.start_penetration > visible_share * result.mean_edge)
+        warnings.push_back("surfaces overlap by " + with_unit(r.start_penetration, "m") +
+                           " in the first step: move the bodies apart");
+    return left > 0 || in_shell;
+}
+
+std::string element_text(const std::string& body, Index element) {
+    return "(the worst: element " + std::to_string(element) + " of body \"" + body + "\")";
+}
+
+void warn_of_elements(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
+    const std::string worst = element_text(r.worst_volume_body, r.worst_volume_element);
+    if (r.inverted > 0)
+        warnings.push_back(grouped(static_cast<std::uint64_t>(r.inverted)) + " elements are turned inside out " +
+                           worst + ": " + shorter + ", or refine the mesh there");
+    else if (r.inversions > 0)
+        warnings.push_back("elements were turned inside out for some steps, " + grouped(r.inversions) +
+                           " times: " + shorter);
+    else if (r.near_inversion > 0)
+        warnings.push_back(grouped(static_cast<std::uint64_t>(r.near_inversion)) +
+                           " elements are pressed to less than a tenth of their volume " + worst +
+                           ": reduce the load, stiffen the material or refine the mesh there");
+    if (r.folded > 0)
+        warnings.push_back(grouped(static_cast<std::uint64_t>(r.folded)) + " smoothed elements are folded " +
+                           element_text(r.folded_body, r.folded_element) +
+                           ": set \"element\" of this body to \"linear\", or refine its mesh");
+}
+
+void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
+    constexpr double small_share = 0.02;  // of the energy; at the stable step this error stays below 1 %
+    if (r.energy_error_share > small_share)
+        warnings.push_back("the energy balance has an error of " + percent(r.energy_error_share) + ", more than " +
+                           percent(small_share) + ": " + shorter);
+    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below this
+    if (r.momentum_error_share > rounding)
+        warnings.push_back("the momentum balance has an error of " + percent(r.momentum_error_share) +
+                           ", more than rounding: please report it as a bug, with the scene");
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const RunResult& result) {
+    const WorldReport& r = result.report;
+    std::vector<std::string> warnings;
+    const bool bad_start = warn_of_start(result, warnings);
+    for (const std::string& boundary : result.bad_boundaries)
+        warnings.push_back(boundary +
+                           "; contacts may fail there: repair the mesh (`skerry inspect MESH --repair NEW.msh`)");
+    const std::string shorter = bad_start ? "first correct the start as described above"
+                                          : "shorten the step (--step, or settings.step_safety below " +
+                                                short_number(result.settings.step_safety) + ")";
+    if (r.unconverged > 0)
+        warnings.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
+                           " groups of contacts were solved with an error above the tolerance " +
+                           short_number(result.settings.tolerance) + ", at most " + short_number(r.worst_error) +
+                           ": raise settings.max_iterations (--max-iterations), now " +
+                           std::to_string(result.settings.max_iterations) + ", or the tolerance (--tolerance)");
+    warn_of_balance(r, shorter, warnings);
+    if (r.crossed > 0)
+        warnings.push_back("surfaces passed through each other, at " + grouped(r.crossed) +
+                           " nodes or edges: " + shorter);
+    const bool arose = r.max_penetration > 1.01 * r.start_penetration;
+    if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
+        warnings.push_back("surfaces came to overlap by " + percent(r.max_penetration / result.mean_edge) +
+                           " of the mean edge length: " + shorter);
+    if (r.collider_turn > visible_turn) warnings.push_back(turning_text(r));
+    warn_of_elements(r, shorter, warnings);
+    return warnings;
+}
+
+}  // namespace skerry
