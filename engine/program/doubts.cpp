@@ -49,9 +49,10 @@ std::vector<std::string> doubts_of(const RunResult& result) {
     std::vector<std::string> doubts;
     const bool bad_start = doubt_start(result, doubts);
     doubts.insert(doubts.end(), result.bad_boundaries.begin(), result.bad_boundaries.end());
-    const std::string shorter = bad_start ? "begin as said above"
-                                          : "shorten the step (settings.step_safety below " +
-                                                short_number(result.settings.step_safety) + ", or --step)";
+    const Real longest = std::min(r.stable_step, result.settings.step_size.value_or(r.stable_step));
+    const std::string shorter =
+        bad_start ? "begin as said above"
+                  : "shorten the step (settings.step_size or --step below " + with_unit(longest, "s") + ")";
     constexpr double small_share = 0.02;  // of the energy; at the stable step this error stays below 1 %
     if (r.unconverged > 0)
         doubts.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +

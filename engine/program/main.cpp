@@ -189,8 +189,6 @@ void add_run(CLI::App& app, RunOptions& options) {
         ->check(CLI::Range(1, 2147483647));
     add_choice<StartOverlaps>(command, "--start-overlaps", options.overrides.start_overlaps,
                               "what is done about bodies that overlap something at the start");
-    add_number(command, "--relaxation", options.overrides.relaxation,
-               "of the sweeps, below 2; above 1 is over-relaxation");
     add_choice<ElementKind>(command, "--element", options.overrides.element,
                             "what carries the stress of all bodies; smoothed bends as it should on coarse meshes");
     add_choice<ContactRegions>(command, "--contact-regions", options.overrides.contact_regions,
@@ -208,7 +206,7 @@ void add_run(CLI::App& app, RunOptions& options) {
     CLI::Option* restart = command.add_option(
         "--restart", options.restart, "a checkpoint: go on from it, with the bits of the run that was not stopped");
     for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
-                              "--relaxation", "--element", "--contact-regions"})
+                              "--element", "--contact-regions"})
         restart->excludes(command.get_option(fixed));
     command.callback([scene, restart] {
         if (scene->count() == 0 && restart->count() == 0) throw CLI::RequiredError("SCENE");

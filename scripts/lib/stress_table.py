@@ -36,7 +36,7 @@ NOTES = """
   is added up here wavers about it. `tests/property/elastic_motion_test.cpp` has it to rounding.
 - **18**: `tests/unit/engine` has the same for scene and mesh files.
 - **20**: contacts are solved to a relative error of 1e-3 by default, and a heap creeps by that part of what weight does
-  in a step. A heap that has to lie still for an hour falls asleep (`sleep_speed`) or needs `tolerance` 1e-8.
+  in a step. A heap that has to lie still for an hour falls asleep (`sleep`, on by default) or needs `tolerance` 1e-8.
 """
 
 

@@ -25,7 +25,7 @@ enum class ContactMotion { open, stick, slide };
 /// - rest: the stable step of a body in its shape at rest.
 /// - strain: the stable step of a deformed body, or an implicit body of large strain for which Newton's method fails at
 ///   longer steps.
-/// - speed: an element would deform by more than max_strain_step in a step.
+/// - speed: the deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm).
 /// - inversion: an element would turn inside out.
 /// - crossing: surfaces would cross.
 enum class StepLimit { setting, rest, strain, speed, inversion, crossing };

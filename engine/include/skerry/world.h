@@ -103,8 +103,8 @@ public:
     void watch_steps(std::function<void(const StepReport&)> look);
     Real time() const;
     const Settings& settings() const;
-    /// Stable step of the stiffest body [s]; advance() takes at most step_safety times this. If all bodies are rigid or
-    /// implicit, the step that advance() takes.
+    /// Stable step of the stiffest body [s]; advance() takes no longer steps. If all bodies are rigid or implicit, the
+    /// step that advance() takes.
     Real stable_step() const;
 
     // State of a body. Spans are valid until bodies are added or removed; advance() changes the positions and
@@ -140,7 +140,7 @@ public:
     Real mass(BodyHandle body) const;              // [kg]
     Vec3 center_of_mass(BodyHandle body) const;    // [m]
     Real contact_distance(BodyHandle body) const;  // [m]
-    bool asleep(BodyHandle body) const;            // at rest, see Settings::sleep_speed
+    bool asleep(BodyHandle body) const;            // at rest, see Settings::sleep
     void wake(BodyHandle body);                    // ends its rest; bodies that it touches wake in later steps
     Real mean_edge(BodyHandle body) const;         // mean edge length of the rest surface [m]
     std::vector<BodyHandle> bodies() const;        // in the order added
