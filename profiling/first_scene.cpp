@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/world/tuning.h"
 #include "profiling/measure.h"
 #include "profiling/work_precision/runs.h"
 #include "skerry/world.h"
@@ -98,8 +99,7 @@ Motion run(const Case& one, Real offset, Real seconds) {
     settings.gravity = gravity_at(angle_of(one.subject, offset));
     settings.backend = Backend::serial;
     settings.threads = 1;
-    settings.step_safety = one.step_safety;
-    World world(settings);
+    World world = tuned_world(settings, {.step_safety = one.step_safety});
     MaterialSettings material = one.material;
     material.friction = one.subject.friction;
     world.add_collider(Plane{});

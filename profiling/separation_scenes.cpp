@@ -3,7 +3,9 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
+#include "engine/world/tuning.h"
 #include "profiling/measure.h"
 #include "profiling/separation.h"
 #include "skerry/world.h"
@@ -20,22 +22,20 @@ struct Handling {
 };
 const Handling handlings[] = {
     {"as in the paper", SolverMethod::pcg_pgs, WarmStart::off},
-    {"default settings", Settings{}.method, Settings{}.warm_start},
+    {"default settings", Settings{}.method, Tuning{}.warm_start},
 };
 constexpr ContactRegions modes[] = {ContactRegions::separate, ContactRegions::global};
 
-Settings settings_of(const Handling& handling, ContactRegions mode) {
+World empty_world(const Handling& handling, ContactRegions mode) {
     Settings settings;
     settings.backend = Backend::serial;
     settings.contact_regions = mode;
     settings.method = handling.method;
-    settings.warm_start = handling.warm_start;
     settings.sleep = false;  // settled bodies are to be solved
-    return settings;
+    return tuned_world(settings, {.warm_start = handling.warm_start});
 }
 
-World balls_in_bucket(const Settings& settings, int balls) {
-    World world(settings);
+World balls_in_bucket(World world, int balls) {
     const auto rubber = world.add_material(
         {.young_modulus = 5e4, .poisson_ratio = 0.35, .density = 500, .friction = 0.5, .damping = 8});
     world.add_collider(Bucket{.radius = 0.3, .height = 0.5, .thickness = 0.05}, {.friction = 0.5});
@@ -50,8 +50,7 @@ World balls_in_bucket(const Settings& settings, int balls) {
     return world;
 }
 
-World ball_and_skittles(const Settings& settings) {
-    World world(settings);
+World ball_and_skittles(World world) {
     const auto wood = world.add_material(
         {.young_modulus = 6e4, .poisson_ratio = 0.35, .density = 300, .friction = 0.4, .damping = 4});
     const auto rubber =
@@ -93,10 +92,10 @@ void measure_frame(World& world, Real frame, const std::string& labels, std::ofs
 
 /// Measures two worlds in turns. They differ only in how contacts are grouped.
 void compare(const std::string& scene, int bodies, Real settle, Real seconds, Real frame,
-             const std::function<World(const Settings&)>& build, std::ofstream& csv) {
+             const std::function<World(World)>& build, std::ofstream& csv) {
     for (const Handling& handling : handlings) {
         std::vector<World> worlds;
-        for (const ContactRegions mode : modes) worlds.push_back(build(settings_of(handling, mode)));
+        for (const ContactRegions mode : modes) worlds.push_back(build(empty_world(handling, mode)));
         std::fprintf(stderr, "\r\033[K%s, %d bodies, %s", scene.c_str(), bodies, handling.name);
         for (World& world : worlds)
             if (settle > 0) world.advance(settle);
@@ -160,13 +159,13 @@ std::vector<StepProblem> profile_scenes(const SeparationOptions& options) {
     const Real settle = options.quick ? 0.15 : 0.3;  // [s]
     std::vector<StepProblem> steps;
     for (const int balls : counts) {
-        const auto build = [&](const Settings& settings) { return balls_in_bucket(settings, balls); };
+        const auto build = [&](World empty) { return balls_in_bucket(std::move(empty), balls); };
         compare("bucket", balls, settle, options.quick ? 0.05 : 0.1, 0.01, build, csv);
-        take_problems(build(settings_of(handlings[1], ContactRegions::separate)), settle, 0.05,
+        take_problems(build(empty_world(handlings[1], ContactRegions::separate)), settle, 0.05,
                       options.quick ? 100 : 25, "bucket", steps);
     }
     compare("skittles", 11, 0, options.quick ? 0.4 : 1.2, 1.0 / 120, ball_and_skittles, csv);
-    take_problems(ball_and_skittles(settings_of(handlings[1], ContactRegions::separate)), 0, options.quick ? 0.4 : 0.8,
+    take_problems(ball_and_skittles(empty_world(handlings[1], ContactRegions::separate)), 0, options.quick ? 0.4 : 0.8,
                   options.quick ? 50 : 20, "skittles", steps);
     return steps;
 }

@@ -191,8 +191,6 @@ void add_overrides(CLI::App& command, SceneOverrides& overrides) {
     add_count(command, "--max-iterations", overrides.max_iterations, 1, "most sweeps over a contact region in a step");
     add_choice<StartOverlaps>(command, "--start-overlaps", overrides.start_overlaps,
                               "treatment of bodies that overlap at the start");
-    add_number(command, "--relaxation", overrides.relaxation,
-               "relaxation factor of the sweeps, below 2; above 1 is over-relaxation");
     add_choice<ElementKind>(command, "--element", overrides.element,
                             "elements of all bodies; smoothed ones bend correctly on coarse meshes");
     add_choice<ContactRegions>(command, "--contact-regions", overrides.contact_regions,
@@ -212,7 +210,7 @@ CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
         command.add_option("--restart", options.restart,
                            "checkpoint to continue from; the result has the bits of a run that was not stopped");
     for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
-                              "--relaxation", "--element", "--contact-regions"})
+                              "--element", "--contact-regions"})
         restart->excludes(command.get_option(fixed));
     return restart;
 }

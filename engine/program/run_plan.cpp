@@ -17,7 +17,7 @@ double RunPlan::length_of(long frame) const {
 }
 
 double RunPlan::longest_step(const World& world) const {
-    const Real stable = world.stable_step() * world.settings().step_safety;
+    const Real stable = world.stable_step();
     return std::min({frame_step / samples, seconds / samples, stable, world.settings().step_size.value_or(stable)});
 }
 

@@ -72,9 +72,10 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     for (const std::string& boundary : result.bad_boundaries)
         warnings.push_back(boundary +
                            "; contacts may fail there: repair the mesh (`skerry inspect MESH --repair NEW.msh`)");
-    const std::string shorter = bad_start ? "first correct the start as described above"
-                                          : "shorten the step (--step, or settings.step_safety below " +
-                                                short_number(result.settings.step_safety) + ")";
+    const Real longest = std::min(r.stable_step, result.settings.step_size.value_or(r.stable_step));
+    const std::string shorter =
+        bad_start ? "first correct the start as described above"
+                  : "shorten the step (--step, or settings.step_size, below " + with_unit(longest, "s") + ")";
     if (r.unconverged > 0)
         warnings.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                            " groups of contacts were solved with an error above the tolerance " +

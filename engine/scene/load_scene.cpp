@@ -1,4 +1,5 @@
 #include "engine/scene/scene_plan.h"
+#include "engine/world/tuning.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -58,7 +59,7 @@ Scene build_scene(const ScenePlan& plan) {
                 .materials = {},
                 .seconds = plan.seconds,
                 .frame_step = plan.frame_step,
-                .world = called_at(top.key("settings"), [&] { return World(plan.settings); }),
+                .world = called_at(top.key("settings"), [&] { return tuned_world(plan.settings, plan.tuning); }),
                 .probes = {},
                 .recorded = {},
                 .probe_step = plan.probe_step};

@@ -235,7 +235,6 @@ void apply(const SceneOverrides& overrides, Settings& settings) {
     if (overrides.tolerance) settings.tolerance = *overrides.tolerance;
     if (overrides.max_iterations) settings.max_iterations = *overrides.max_iterations;
     if (overrides.start_overlaps) settings.start_overlaps = *overrides.start_overlaps;
-    if (overrides.relaxation) settings.relaxation = *overrides.relaxation;
     if (overrides.step_size) settings.step_size = *overrides.step_size;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/output/series/follow_point.h"
 #include "engine/scene/place.h"
 #include "engine/scene/scene_file.h"
+#include "engine/world/tuning.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -61,6 +62,7 @@ struct ScenePlan {
     Real seconds = 2;     // [s]
     Real frame_step = 0;  // [s]
     Settings settings;
+    Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
     std::vector<Mesh> meshes;  // one mesh for each entry of "bodies" or each mesh file; copies share it
     std::vector<BodyPlan> bodies;

@@ -2,6 +2,7 @@
 #include "engine/scene/scene_rules.h"
 
 #include <cstdint>
+#include <string_view>
 
 namespace skerry {
 
@@ -173,6 +174,7 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
 template <>
 const Rule<Settings>& rule_of<Settings>() {
     using S = Settings;
+    constexpr std::string_view always_on = "delete the key, which is internal now and always on";
     static const auto rule =
         Rule<S>("settings", "How the world is stepped. Defaults work.")
             .key("gravity", &S::gravity, {.meaning = "gravity; [0, 0, -9.81] by default", .unit = "m/s^2"})
@@ -180,9 +182,6 @@ const Rule<Settings>& rule_of<Settings>() {
                  {.meaning = "at most; by default the stable step of the stiffest body, which is never exceeded",
                   .unit = "s",
                   .limits = above(0)})
-            .key("step_safety", &S::step_safety,
-                 {.meaning = "fraction of the stable step that is used",
-                  .limits = {.at_least = {}, .above = 0, .at_most = 1, .below = {}}})
             .key("integrator", &S::integrator, {.meaning = "how velocities and positions are integrated in time"})
             .key("clusters", &S::clusters,
                  {.meaning = "the few elements that would make all steps several times shorter move as clusters"})
@@ -195,18 +194,8 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})
             .key("method", &S::method, {.meaning = "the contact solver"})
             .key("friction", &S::friction, {.meaning = "the friction law"})
-            .key("warm_start", &S::warm_start,
-                 {.meaning = "whether contacts start from the impulses of the step before"})
             .key("tolerance", &S::tolerance, {.meaning = "relative error of a region", .limits = above(0)})
             .key("max_iterations", &S::max_iterations, {.meaning = "sweeps of a region", .limits = at_least(1)})
-            .key("fixed_iterations", &S::fixed_iterations, {.meaning = "do exactly max_iterations sweeps"})
-            .key("relaxation", &S::relaxation,
-                 {.meaning = "of the sweeps; above 1 they go further than each contact asks",
-                  .limits = {.at_least = {}, .above = 0, .at_most = {}, .below = 2}})
-            .key("restitution_speed", &S::restitution_speed,
-                 {.meaning = "slower impacts do not bounce, whatever the restitution",
-                  .unit = "m/s",
-                  .limits = at_least(0)})
             .key("recovery_speed", &S::recovery_speed,
                  {.meaning = "what overlaps, or lies within the contact distance, is pushed apart no faster",
                   .unit = "m/s",
@@ -225,32 +214,30 @@ const Rule<Settings>& rule_of<Settings>() {
                             "several; 0 (default): all take the same; with symplectic_euler only",
                  .unit = "s",
                  .limits = at_least(0)})
-            .key("max_strain_step", &S::max_strain_step,
-                 {.meaning = "a step in which F of an element changes by more (Frobenius norm) is tried again, shorter",
-                  .limits = above(0)})
             .key("sleep", &S::sleep,
                  {.meaning = "bodies that hardly move for sleep_time, and neither more and more nor on and on, rest "
                              "with all that they touch, until something presses on them; false: they go on moving"})
-            .key("sleep_speed", &S::sleep_speed,
-                 {.meaning = "above 0: bodies slower than this for sleep_time rest, in place of what sleep says",
-                  .unit = "m/s",
-                  .limits = at_least(0)})
             .key("sleep_time", &S::sleep_time,
                  {.meaning = "how long a body has to be still to be put to rest", .unit = "s", .limits = at_least(0)})
-            .key("contact_budgets", &S::contact_budgets,
-                 {.meaning =
-                      "skip what cannot have come close, and steps in which nothing moves; false searches everything"})
             .key("continuous_collision", &S::continuous_collision,
                  {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as "
                              "contacts"})
-            .key("certify_warm_start", &S::certify_warm_start,
-                 {.meaning = "no sweep where last step's impulses still solve a region"})
-            .key("skip_separating", &S::skip_separating, {.meaning = "no impulse where no contact of a region closes"})
-            .key("frictionless_rows", &S::frictionless_rows,
-                 {.meaning = "one row a contact instead of three where a region has no friction"})
-            .key("small_regions_in_lanes", &S::small_regions_in_lanes,
-                 {.meaning = "regions of 2 to 12 contacts are solved eight at a time"})
-            .withdrawn("freeze_contacts", "delete the key: every sweep evaluates all contacts");
+            .withdrawn("freeze_contacts", "delete the key: every sweep evaluates all contacts")
+            .withdrawn("step_safety", "delete the key, which is internal now; for shorter steps set \"step_size\"")
+            .withdrawn("max_strain_step", "delete the key, which is internal now; for shorter steps set \"step_size\"")
+            .withdrawn("restitution_speed",
+                       "delete the key, which is internal now; set \"restitution\" of the materials")
+            .withdrawn("sleep_speed", "delete the key, which is internal now; use \"sleep\" and \"sleep_time\"")
+            .withdrawn("relaxation",
+                       "delete the key, which is internal now; use another \"method\" or more \"max_iterations\"")
+            .withdrawn("fixed_iterations",
+                       "delete the key, which is internal now; bound the sweeps by \"max_iterations\"")
+            .withdrawn("warm_start", always_on)
+            .withdrawn("contact_budgets", always_on)
+            .withdrawn("certify_warm_start", always_on)
+            .withdrawn("skip_separating", always_on)
+            .withdrawn("frictionless_rows", always_on)
+            .withdrawn("small_regions_in_lanes", always_on);
     return rule;
 }
 

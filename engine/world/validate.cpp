@@ -128,21 +128,13 @@ void validate(const Settings& settings) {
     require_finite("settings", "gravity", settings.gravity);
     if (settings.step_size)
         require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
-    require(settings.step_safety > 0 && settings.step_safety <= 1, "settings", "step_safety", settings.step_safety,
-            "a fraction > 0 and <= 1");
     require(settings.threads >= 0, "settings", "threads", settings.threads,
             "a number of threads, or 0 for those of the caller");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,
             "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
-    require(settings.relaxation > 0 && settings.relaxation < 2, "settings", "relaxation", settings.relaxation,
-            "a number > 0 and < 2");
-    require(settings.restitution_speed >= 0, "settings", "restitution_speed", settings.restitution_speed,
-            "a speed >= 0 (m/s)");
     require(settings.recovery_speed > 0, "settings", "recovery_speed", settings.recovery_speed, "a speed > 0 (m/s)");
-    require(settings.sleep_speed >= 0, "settings", "sleep_speed", settings.sleep_speed, "a speed >= 0 (m/s)");
     require(settings.sleep_time >= 0, "settings", "sleep_time", settings.sleep_time, "a time >= 0 (s)");
-    require(settings.max_strain_step > 0, "settings", "max_strain_step", settings.max_strain_step, "a fraction > 0");
     require(settings.theta >= 0.5 && settings.theta <= 1, "settings", "theta", settings.theta,
             "a number from 0.5 to 1");
     require(settings.theta == 1 || settings.integrator == Integrator::symplectic_euler, "settings", "theta",
@@ -151,6 +143,17 @@ void validate(const Settings& settings) {
             settings.implicit_step, "a time >= 0 (s)");
     require(settings.implicit_step == 0 || settings.integrator == Integrator::symplectic_euler, "settings",
             "implicit_step", settings.implicit_step, "0 with this integrator; others go with symplectic_euler only");
+}
+
+void validate(const Tuning& tuning) {
+    require(tuning.step_safety > 0 && tuning.step_safety <= 1, "tuning", "step_safety", tuning.step_safety,
+            "a fraction > 0 and <= 1");
+    require(tuning.max_strain_step > 0, "tuning", "max_strain_step", tuning.max_strain_step, "a fraction > 0");
+    require(tuning.restitution_speed >= 0, "tuning", "restitution_speed", tuning.restitution_speed,
+            "a speed >= 0 (m/s)");
+    require(tuning.sleep_speed >= 0, "tuning", "sleep_speed", tuning.sleep_speed, "a speed >= 0 (m/s)");
+    require(tuning.relaxation > 0 && tuning.relaxation < 2, "tuning", "relaxation", tuning.relaxation,
+            "a number > 0 and < 2");
 }
 
 void validate(const MaterialSettings& material) {

@@ -5,12 +5,14 @@
 #include <string>
 
 #include "engine/world/state/model.h"
+#include "engine/world/tuning.h"
 #include "skerry/settings.h"
 #include "skerry/world.h"
 
 namespace skerry {
 
 void validate(const Settings& settings);
+void validate(const Tuning& tuning);
 void validate(const MaterialSettings& material);
 /// `mesh_is_known`: the mesh has already been found valid for a body.
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);

@@ -16,6 +16,7 @@
 #include "engine/world/edit/material_row.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/step/step.h"
+#include "engine/world/tuning.h"
 #include "engine/world/validate.h"
 #include "systems/dynamics/rigid/move_rigid_bodies.h"
 #include "systems/geometry/rotation.h"
@@ -54,7 +55,7 @@ WorldState::WorldState(const Settings& settings) : executor(make_executor(settin
     model.set_world(next_world_number());
     model.settings = settings;
     model.settings.backend = executor->backend();
-    scratch.parameters = step_parameters(settings);
+    scratch.parameters = step_parameters(settings, model.tuning);
     graph.track(this, sizeof *this, name_of_column);
     build_step(*this);
 }
@@ -131,11 +132,20 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
+World tuned_world(const Settings& settings, const Tuning& tuning) {
+    validate(tuning);
+    World world(settings);
+    WorldState& state = WorldAccess::state_of(world);
+    state.model.tuning = tuning;
+    state.scratch.parameters = step_parameters(settings, tuning);
+    return world;
+}
+
 World World::clone() const {
     WorldState& from = *state_;
     from.require_between_steps("clone");
     from.settle();
-    World copy(from.model.settings);
+    World copy = tuned_world(from.model.settings, from.model.tuning);
     WorldState& to = *copy.state_;
     to.model = from.model;
     to.clock = from.clock;
@@ -384,7 +394,7 @@ void World::set_gravity(const Vec3& gravity) {
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
     const Real kick = parameters.kick;  // contacts of the last step can still be queried
-    parameters = step_parameters(state_->model.settings);
+    parameters = step_parameters(state_->model.settings, state_->model.tuning);
     parameters.kick = kick;
     state_->record.balance.close();
     state_->model.wake_all();

@@ -117,8 +117,7 @@ std::string StepReport::message() const {
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
             return "the step was not taken: " + who + where + " would deform by " + short_text(value) +
-                   " in one step, even in 1/1024 of the stable step; lower its velocities and loads, or raise "
-                   "max_strain_step";
+                   " in one step, even in 1/1024 of the stable step; lower its velocities and loads";
         case StepStatus::too_far:
             return "the step was not taken: " + who + " is so far from the origin that neighbouring positions are " +
                    short_text(value) +

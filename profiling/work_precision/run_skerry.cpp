@@ -3,6 +3,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/world/tuning.h"
 #include "profiling/measure.h"
 #include "profiling/work_precision/runs.h"
 #include "skerry/world.h"
@@ -32,7 +33,7 @@ Built build(const PrecisionScene& scene, const SkerryVariant& variant, Real step
     settings.backend = Backend::serial;
     settings.sleep = false;  // as in the peers
     if (step > 0) settings.step_size = step;
-    Built built{World(settings), {}};
+    Built built{tuned_world(settings, variant.tuning), {}};
     World& world = built.world;
     const MaterialHandle material = world.add_material(scene.material);
     for (const PrecisionBody& body : scene.bodies) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/world/tuning.h"
 #include "profiling/work_precision/record.h"
 
 namespace skerry::profiling {
@@ -13,6 +14,7 @@ namespace skerry::profiling {
 struct SkerryVariant {
     std::string name;
     Settings settings{};  // step size and gravity are set from the scene
+    Tuning tuning{};
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
 };
 

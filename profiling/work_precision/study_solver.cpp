@@ -11,10 +11,9 @@ constexpr Real reference_tolerance = 1e-12;
 constexpr int most_sweeps = 20000;
 
 SkerryVariant variant_of(SolverMethod method, Real tolerance, WarmStart warm_start) {
-    SkerryVariant variant{.name = std::string(name_of(method)), .settings = {}};
+    SkerryVariant variant{.name = std::string(name_of(method)), .settings = {}, .tuning = {.warm_start = warm_start}};
     variant.settings.method = method;
     variant.settings.tolerance = tolerance;
-    variant.settings.warm_start = warm_start;
     variant.settings.max_iterations = most_sweeps;
     if (warm_start == WarmStart::off) variant.name += " cold";
     return variant;

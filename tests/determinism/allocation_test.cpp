@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "engine/world/tuning.h"
 #include "jobs/executor.h"
 #include "tests/support/worlds.h"
 
@@ -48,11 +49,11 @@ Settings two_threads() {
     return settings;
 }
 
-World resting_balls(Backend backend, int threads, Settings settings = {}) {
+World resting_balls(Backend backend, int threads, Settings settings = {}, const Tuning& tuning = {}) {
     settings.backend = backend;
     settings.threads = threads;
     settings.start_overlaps = StartOverlaps::ignore;  // overlapping balls are pushed apart before they rest
-    World world(settings);
+    World world = tuned_world(settings, tuning);
     const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5, .damping = 20});
     world.add_collider(Plane{});
     const Mesh ball = mesh::ball(0.05, 6);
@@ -166,9 +167,7 @@ TEST_CASE("implicit bodies of large strain allocate nothing, whether they swing 
 }
 
 TEST_CASE("bodies at rest beside one that moves allocate nothing, either", "[determinism]") {
-    Settings settings;
-    settings.sleep_speed = 0.01;
-    World world = resting_balls(Backend::serial, 1, settings);
+    World world = resting_balls(Backend::serial, 1, {}, {.sleep_speed = 0.01});
     do REQUIRE(world.advance(0.5).ok());
     while (world.report().asleep < 6 && world.time() < 20);
     REQUIRE(world.report().asleep == 6);
@@ -186,8 +185,7 @@ TEST_CASE("measuring forces allocates nothing, either, and nor do bodies that it
     Settings settings;
     settings.integrator = Integrator::leapfrog;
     for (const Real sleep_speed : {0.0, 0.01}) {
-        settings.sleep_speed = sleep_speed;
-        World world = resting_balls(Backend::serial, 1, settings);
+        World world = resting_balls(Backend::serial, 1, settings, {.sleep_speed = sleep_speed});
         const auto held =
             world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .position = {1, 0, 1}});
         world.attach(held, std::vector<Index>{0, 1, 2});

@@ -5,6 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "engine/world/tuning.h"
+#include "engine/world/world_state.h"
 #include "skerry/scene.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/random.h"
@@ -183,6 +185,30 @@ TEST_CASE("a clone goes on with the same bits, and neither changes the other", "
     check_same_contacts(copy.contacts(), world.contacts());
 }
 
+TEST_CASE("settings that users do not have are carried by clones and files", "[determinism]") {
+    const Tuning tuning{.step_safety = 0.5,
+                        .max_strain_step = 0.3,
+                        .restitution_speed = 0.1,
+                        .sleep_speed = 0.2,
+                        .contact_budgets = false,
+                        .warm_start = WarmStart::off,
+                        .fixed_iterations = true,
+                        .relaxation = 0.9,
+                        .certify_warm_start = false,
+                        .skip_separating = false,
+                        .frictionless_rows = false,
+                        .small_regions_in_lanes = false};
+    const TemporaryFolder folder;
+    const World world = tuned_world({}, tuning);
+    world.save(folder.path() / "world.h5");
+    const World loaded = World::load(folder.path() / "world.h5"), copy = world.clone();
+    for (const World* other : {&loaded, &copy}) {
+        const WorldState& state = WorldAccess::state_of(*other);
+        CHECK(state.model.tuning == tuning);
+        CHECK(state.scratch.parameters.solver == solver_settings({}, tuning));
+    }
+}
+
 TEST_CASE("handles, names, shapes and contacts are what they were after loading", "[determinism]") {
     const TemporaryFolder folder;
     World world = lively_scene({});
@@ -198,7 +224,7 @@ TEST_CASE("handles, names, shapes and contacts are what they were after loading"
     CHECK(loaded.colliders() == world.colliders());
     CHECK_FALSE(loaded.alive(all[1]));
     CHECK(loaded.name(late) == "late");
-    CHECK(loaded.settings().sleep_speed == world.settings().sleep_speed);
+    CHECK(loaded.settings().sleep_time == world.settings().sleep_time);
     for (const BodyHandle body : world.bodies()) {
         CHECK(loaded.element(body) == world.element(body));
         CHECK(std::ranges::equal(loaded.surface(body), world.surface(body)));

@@ -1,6 +1,7 @@
 // Whole worlds give the same bits on any number of workers, on every backend, and in a second run.
 #include <catch2/catch.hpp>
 
+#include "engine/world/tuning.h"
 #include "jobs/executor.h"
 #include "tests/support/worlds.h"
 
@@ -95,10 +96,7 @@ TEST_CASE("budgets that skip what cannot be close change no bit that matters", "
     // Searching everything in every step finds the same contacts in the same order, so the runs stay equal.
     std::vector<std::uint64_t> hashes;
     for (bool budgets : {true, false}) {
-        Settings settings;
-        settings.backend = Backend::serial;
-        settings.contact_budgets = budgets;
-        World world(settings);
+        World world = tuned_world({.backend = Backend::serial}, {.contact_budgets = budgets});
         const auto rubber = world.add_material({.young_modulus = 3e4, .friction = 0.5});
         world.add_collider(Plane{});
         world.add_body(mesh::ball(0.05, 5), {.material = rubber, .position = {0, 0, 0.07}});

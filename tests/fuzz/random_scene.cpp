@@ -1,4 +1,5 @@
 #include "random_scene.h"
+#include "engine/world/tuning.h"
 
 #include <algorithm>
 #include <fstream>
@@ -61,13 +62,14 @@ private:
 
     Json settings() {
         Json s;
+        Tuning& tuning = scene_.tuning;
         // Most scenes ignore start overlaps: a run that goes on tests more than one that is moved apart or refused.
         constexpr std::uint64_t one_in = 16;
         s["start_overlaps"] = seed_ % one_in == 0 ? "resolve" : "ignore";
         // gravity of the Earth, none, or strong enough to matter within so short a run
         const Real strong = random_.by_decade(1e-4, 1e-1) * wave_speed_ * wave_speed_ / scene_.length;
         s["gravity"] = list(random_.one_of<Real>({0, 9.81, strong, strong}) * random_.direction());
-        if (random_.chance(0.3)) s["step_safety"] = random_.within(0.05, 1);
+        if (random_.chance(0.3)) tuning.step_safety = random_.within(0.05, 1);
         if (random_.chance(0.03)) {
             s["step_size"] = random_.by_decade(1e-3, 10) * duration_ / scene_.advances;
             scene_.oversized_step = true;
@@ -75,7 +77,7 @@ private:
         }
         if (random_.chance(0.3)) s["integrator"] = "leapfrog";
         if (random_.chance(0.2)) {
-            s["sleep_speed"] = top_speed_ * random_.by_decade(1e-3, 1);
+            tuning.sleep_speed = top_speed_ * random_.by_decade(1e-3, 1);
             s["sleep_time"] = duration_ * random_.one_of<Real>({0, random_.by_decade(1e-3, 1)});
         } else {
             draw_rest(s);
@@ -85,16 +87,18 @@ private:
         s["contact_regions"] = random_.one_of<const char*>({"separate", "separate", "global"});
         s["method"] = random_.chance(0.4) ? "automatic" : any_name<SolverMethod>();
         s["friction"] = random_.chance(0.5) ? "cone" : any_name<Friction>();
-        s["warm_start"] = any_name<WarmStart>();
+        tuning.warm_start = *from_name<WarmStart>(any_name<WarmStart>());
         s["tolerance"] = random_.by_decade(1e-10, 0.5);
         s["max_iterations"] = random_.count(1, 300);
-        if (random_.chance(0.1)) s["fixed_iterations"] = true;
+        if (random_.chance(0.1)) tuning.fixed_iterations = true;
         // Over-relaxed sweeps may add energy before they converge, and may be cut off there.
-        if (random_.chance(0.1)) s["relaxation"] = random_.within(0.1, 1.9);
-        if (random_.chance(0.2)) s["max_strain_step"] = random_.by_decade(0.01, 1);
-        for (const char* key : {"contact_budgets", "continuous_collision", "certify_warm_start", "skip_separating",
-                                "frictionless_rows", "small_regions_in_lanes"})
-            if (random_.chance(0.3)) s[key] = random_.chance(0.5);
+        if (random_.chance(0.1)) tuning.relaxation = random_.within(0.1, 1.9);
+        if (random_.chance(0.2)) tuning.max_strain_step = random_.by_decade(0.01, 1);
+        bool continuous = Settings{}.continuous_collision;
+        for (bool* const option : {&tuning.contact_budgets, &continuous, &tuning.certify_warm_start,
+                                   &tuning.skip_separating, &tuning.frictionless_rows, &tuning.small_regions_in_lanes})
+            if (random_.chance(0.3)) *option = random_.chance(0.5);
+        s["continuous_collision"] = continuous;
         if (!s.contains("integrator") && of_long_steps_.chance(0.3))
             s["implicit_step"] = duration_ * of_long_steps_.by_decade(1e-3, 1);
         return s;

@@ -1,5 +1,5 @@
-// Random valid scenes. Each is JSON, so that `skerry run` can rerun a failed one, plus changes during the run, which
-// JSON cannot express.
+// Random valid scenes. Each is JSON, which `skerry run` can run, with internal settings and changes during the run,
+// which JSON cannot express. The program random_scenes reruns a failed one from its seed.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components/types.h"
+#include "engine/world/tuning.h"
 #include "skerry/mesh.h"
 
 namespace skerry::test {
@@ -34,6 +35,7 @@ struct SceneChange {
 
 struct RandomScene {
     std::string json;
+    Tuning tuning;
     std::vector<std::pair<std::string, Mesh>> meshes;  // names and contents of the files beside the JSON
     std::vector<SceneChange> changes;                  // sorted by advance, ascending
     int advances = 0;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "check_world.h"
+#include "engine/scene/scene_plan.h"
 #include "random_numbers.h"
 
 namespace skerry::test {
@@ -191,7 +192,9 @@ SceneRun run_random_scene(const RandomScene& scene, const std::filesystem::path&
     SceneRun run;
     std::optional<Scene> built;
     try {
-        built.emplace(load_scene(file, overrides));
+        ScenePlan plan = plan_scene(file, overrides);
+        plan.tuning = scene.tuning;
+        built.emplace(build_scene(plan));
     } catch (const SceneError& error) {
         run.end = SceneEnd::refused;
         run.message = error.what();

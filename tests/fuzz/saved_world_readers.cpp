@@ -5,6 +5,8 @@
 #include <iterator>
 
 #include "engine/world/save/world_file.h"
+#include "engine/world/tuning.h"
+#include "engine/world/world_state.h"
 #include "readers.h"
 #include "skerry/world.h"
 #include "tests/support/temporary_folder.h"
@@ -21,7 +23,7 @@ const TemporaryFolder& folder() {
 
 /// A world with a row in every small table: two kinds of elements, contacts, a held node, a mesh collider, a script.
 World small_world(ElementKind element) {
-    World world({.backend = Backend::serial, .threads = 1, .sleep_speed = 0.01});
+    World world = tuned_world({.backend = Backend::serial, .threads = 1}, {.sleep_speed = 0.01});
     const auto soft = world.add_material({.young_modulus = 2e4});
     const auto stiff = world.add_material({.young_modulus = 2e5, .model = MaterialModel::corotational});
     Mesh box = mesh::box({0.1, 0.1, 0.1}, {1, 1, 2});
@@ -73,7 +75,8 @@ void move(World& world) {
     const Settings& settings = world.settings();
     constexpr int few_sweeps = 1000;
     if (settings.max_iterations > few_sweeps || !(world.stable_step() > 0)) return;
-    const Real step = std::min({world.stable_step() * settings.step_safety, settings.step_size.value_or(1), 1.0});
+    const Real safety = WorldAccess::state_of(world).model.tuning.step_safety;
+    const Real step = std::min({world.stable_step() * safety, settings.step_size.value_or(1), 1.0});
     if (!world.advance(step).ok()) return;
     for (const BodyHandle body : world.bodies())
         for (const Vec3& x : world.positions(body)) expect_valid(x.allFinite(), "a position that is not finite");

@@ -1,6 +1,7 @@
 // Error estimates of a run: balances of energy and momentum, and inverted elements.
 #include <catch2/catch.hpp>
 
+#include "engine/world/tuning.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::balance_test {
@@ -10,9 +11,7 @@ namespace {
 /// A world with every exchange of momentum and energy with the outside: loads, gravity, a moving collider, a held and a
 /// moving face, contact between bodies.
 World busy_world(Real step_safety, Real damping = 0, const MaterialSettings& losses = {}) {
-    Settings settings;
-    settings.step_safety = step_safety;
-    World world(settings);
+    World world = tuned_world({}, {.step_safety = step_safety});
     const auto rubber = world.add_material({.young_modulus = 5e4,
                                             .friction = 0.4,
                                             .damping = damping,

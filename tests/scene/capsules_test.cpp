@@ -385,9 +385,8 @@ TEST_CASE("what a capsule cannot be is refused by name", "[scene]") {
 
 TEST_CASE("a capsule that spins about its axis does not come to rest, one that lies does", "[scene]") {
     Settings settings = steps_of(1e-3, Vec3::Zero());
-    settings.sleep_speed = 0.1;
     settings.sleep_time = 0.01;
-    Capsules c(settings);
+    Capsules c(settings, 0.5, 0, {.sleep_speed = 0.1});
     const BodyHandle spins = c.add({0, 0, 1}, along_x, Vec3::Zero(), {2, 0, 0}),
                      still = c.add({1, 0, 1}, along_y, Vec3::Zero(), {0, 0.2, 0});
     REQUIRE(c.world.advance(0.1).ok());

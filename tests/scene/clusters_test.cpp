@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/world/step/step.h"
+#include "engine/world/tuning.h"
 #include "skerry/world.h"
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "tests/support/jittered_box.h"
@@ -212,9 +213,8 @@ TEST_CASE("a spinning body with clusters keeps energy, momentum and angular mome
 }
 
 TEST_CASE("damping takes out of clusters what is booked", "[scene][clusters]") {
-    Settings settings = weightless(true);
-    settings.step_safety = 0.3;  // error of unresolved velocities: 0.04 of the energy at the full step, 3e-4 here
-    World world(settings);
+    // error of unresolved velocities: 0.04 of the energy at the full step, 3e-4 here
+    World world = tuned_world(weightless(true), {.step_safety = 0.3});
     MaterialSettings rubber = lossless_rubber();
     rubber.damping = 30;
     const auto body = world.add_body(sliver_box(0.2, 8, 0.01, 0.005),
@@ -260,9 +260,7 @@ TEST_CASE("bodies with clusters that meet exchange momentum, and energy adds up 
           "[scene][clusters][long]") {
     std::vector<Real> energy_error;
     for (const Real safety : {1.0, 0.5}) {
-        Settings settings = weightless(true);
-        settings.step_safety = safety;
-        World world(settings);
+        World world = tuned_world(weightless(true), {.step_safety = safety});
         const MaterialHandle rubber = world.add_material(lossless_rubber());
         for (const Real side : {-1.0, 1.0})
             world.add_body(

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "engine/world/tuning.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
@@ -15,19 +16,15 @@ namespace {
 
 constexpr Real radius = 0.05;  // of the balls [m]
 
-Settings edited(bool budgets, int threads = 1, Real sleep_speed = 0.05) {
-    Settings settings;
-    settings.threads = threads;
-    settings.contact_budgets = budgets;
-    settings.sleep_speed = sleep_speed;
-    settings.sleep_time = 0.02;
-    return settings;
+World empty_world(bool budgets, int threads = 1, Real sleep_speed = 0.05) {
+    return tuned_world({.threads = threads, .sleep_time = 0.02},
+                       {.sleep_speed = sleep_speed, .contact_budgets = budgets});
 }
 
 /// A pile in a world with random edits: every possible change of bodies and colliders between steps.
 class EditedPile {
 public:
-    EditedPile(const Settings& settings, std::uint64_t seed) : world(settings), random_(seed) {
+    EditedPile(World empty, std::uint64_t seed) : world(std::move(empty)), random_(seed) {
         soft_ = world.add_material({.young_modulus = 2e4, .friction = 0.5, .damping = 30});
         world.add_collider(Plane{});
         for (int i = 0; i < 6; ++i) add_body({0.12 * (i % 3), 0.03 * i, 0.056 + 0.12 * (i / 3)});
@@ -171,7 +168,7 @@ struct Field {
     ColliderHandle floor;
     std::vector<BodyHandle> balls;
 
-    explicit Field(int side, Real apart = 0.11) : world(edited(true)) {
+    explicit Field(int side, Real apart = 0.11) : world(empty_world(true)) {
         soft = world.add_material({.young_modulus = 2e4, .friction = 0.5, .damping = 30});
         floor = world.add_collider(Plane{});
         for (int i = 0; i < side * side; ++i)
@@ -207,7 +204,7 @@ TEST_CASE("a world that is changed at random goes on as one that searches everyt
     std::uint64_t contacts = 0, asleep = 0;
     for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
         CAPTURE(seed);
-        EditedPile pile(edited(true, 1, 0.2), seed), twin(edited(false, 1, 0.2), seed);
+        EditedPile pile(empty_world(true, 1, 0.2), seed), twin(empty_world(false, 1, 0.2), seed);
         for (int call = 0; call < 100; ++call) {
             CAPTURE(call);
             pile.edit();
@@ -227,7 +224,7 @@ TEST_CASE("a world that is changed at random goes on as one that searches everyt
 }
 
 TEST_CASE("a changed world goes on with the same bits on all threads, cloned, and saved and loaded", "[scene]") {
-    EditedPile one(edited(true, 1, 0.2), 7), four(edited(true, 4, 0.2), 7);
+    EditedPile one(empty_world(true, 1, 0.2), 7), four(empty_world(true, 4, 0.2), 7);
     for (int call = 0; call < 40; ++call) {
         CAPTURE(call);
         one.edit();

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "engine/world/tuning.h"
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
@@ -314,9 +315,8 @@ TEST_CASE("an attachment that turns a bar gives the force that keeps it on its c
 }
 
 TEST_CASE("what holds a body at rest goes on as it was while it was still", "[scene]") {
-    Settings settings;
-    settings.sleep_speed = 1e-3;
-    World world(settings);
+    constexpr Real sleep_speed = 1e-3;  // [m/s]
+    World world = tuned_world({}, {.sleep_speed = sleep_speed});
     const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 20});
     const auto floor = world.add_collider(Plane{});
     const Mesh block = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
@@ -326,7 +326,7 @@ TEST_CASE("what holds a body at rest goes on as it was while it was still", "[sc
     while (!world.asleep(low) && world.time() < 10) REQUIRE(world.advance(0.1).ok());
     REQUIRE(world.asleep(high));
     const Real weight = world.mass(low) * standard_gravity;
-    const Real tolerance = world.mass(low) * settings.sleep_speed / settings.sleep_time;
+    const Real tolerance = world.mass(low) * sleep_speed / world.settings().sleep_time;
     for (int call = 0; call < 3; ++call) {
         REQUIRE(world.advance(0.1).ok());
         REQUIRE(world.asleep(low));

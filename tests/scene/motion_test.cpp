@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "engine/world/tuning.h"
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
 
@@ -146,10 +147,8 @@ TEST_CASE("an attachment follows its keys, and a released body is free again", "
 
 TEST_CASE("an element that one step would throw inside out is stopped by its own stiffness in shorter ones",
           "[scene]") {
-    Settings settings;
-    settings.gravity = Vec3::Zero();
-    settings.max_strain_step = 100;  // otherwise the step would be refused for its speed
-    World world(settings);
+    // the step would otherwise be refused for its speed
+    World world = tuned_world({.gravity = Vec3::Zero()}, {.max_strain_step = 100});
     const auto body =
         world.add_body({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}},
                        {.material = world.add_material({.young_modulus = 1e5}), .contact_distance = {}, .name = "tet"});

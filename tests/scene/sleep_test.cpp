@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "engine/world/tuning.h"
 #include "skerry/joint.h"
 #include "tests/support/worlds.h"
 
@@ -23,20 +24,16 @@ struct Tower {
     MaterialHandle rubber;
 
     explicit Tower(Real speed = sleep_speed, int threads = 1, std::array<int, 3> cells = {3, 3, 2})
-        : world(settings(speed, threads)), block(mesh::box({0.2, 0.2, 0.1}, cells)) {
+        : world(empty(speed, threads)), block(mesh::box({0.2, 0.2, 0.1}, cells)) {
         rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
         floor = world.add_collider(Plane{});
         low = add({0, 0, 0.051});
         high = add({0.01, 0, 0.153});
         beside = add({1, 0, 0.051});
     }
-    static Settings settings(Real speed, int threads) {
-        Settings settings;
-        settings.sleep = speed < 0;
-        settings.sleep_speed = std::max<Real>(speed, 0);
-        settings.sleep_time = sleep_time;
-        settings.threads = threads;
-        return settings;
+    static World empty(Real speed, int threads) {
+        return tuned_world({.threads = threads, .sleep = speed < 0, .sleep_time = sleep_time},
+                           {.sleep_speed = std::max<Real>(speed, 0)});
     }
     BodyHandle add(const Vec3& where, const Vec3& velocity = Vec3::Zero()) {
         return world.add_body(block,
@@ -138,7 +135,7 @@ TEST_CASE("taking the support away, a load, a kick or a hand that asks wakes a b
 }
 
 TEST_CASE("a collider that starts to move wakes what lies on it, and nothing rests on one that moves", "[scene]") {
-    World world(Tower::settings(sleep_speed, 1));
+    World world = Tower::empty(sleep_speed, 1);
     const auto rubber = world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
     // A box that stands for two seconds and then moves on.
     world.add_collider(Box{{1, 1, 0.1}},

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "engine/world/tuning.h"
 #include "engine/world/world_state.h"
 #include "skerry/forces.h"
 #include "skerry/query.h"
@@ -22,8 +23,8 @@ struct Spheres {
     World world;
     MaterialHandle material;
 
-    explicit Spheres(const Settings& settings, Real mu = 0.5, Real restitution = 0)
-        : world(settings),
+    explicit Spheres(const Settings& settings, Real mu = 0.5, Real restitution = 0, const Tuning& tuning = {})
+        : world(tuned_world(settings, tuning)),
           material(world.add_material(
               {.young_modulus = 1e6, .density = density, .friction = mu, .restitution = restitution})) {}
 
@@ -201,9 +202,8 @@ TEST_CASE("loads on any of the nodes that draw a sphere move it", "[scene]") {
 
 TEST_CASE("a sphere that spins in one place moves, and does not come to rest", "[scene]") {
     Settings settings = steps_of(1e-3, Vec3::Zero());
-    settings.sleep_speed = 0.1;
     settings.sleep_time = 0.01;
-    Spheres s(settings);
+    Spheres s(settings, 0.5, 0, {.sleep_speed = 0.1});
     const BodyHandle ball = s.add({0, 0, 1}, Vec3::Zero(), {2, 0, 0}),
                      still = s.add({1, 0, 1}, Vec3::Zero(), {0.5, 0, 0});
     std::vector<Vec3> before;

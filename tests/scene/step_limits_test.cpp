@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/world/tuning.h"
 #include "tests/support/sliver_box.h"
 #include "tests/support/worlds.h"
 
@@ -63,9 +64,8 @@ TEST_CASE("steps that the settings keep short are counted under them", "[scene]"
 TEST_CASE("what deforms evenly is as fast as steps may be, and no try is in vain", "[scene]") {
     World world(Settings{.gravity = Vec3::Zero()});
     const auto body = world.add_body(mesh::ball(0.1, 4), {.material = world.add_material({.young_modulus = 1e4})});
-    const Settings settings;
     const Real rate =
-        4 * settings.max_strain_step / world.stable_step() / std::sqrt(3.0);  // |F'| is four times the allowed one
+        4 * Tuning{}.max_strain_step / world.stable_step() / std::sqrt(3.0);  // |F'| is four times the allowed one
     std::vector<Vec3> velocity;
     for (const Vec3& x : world.positions(body)) velocity.push_back(rate * x);
     world.set_velocities(body, velocity);

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <deque>
 #include <map>
+#include <utility>
 
 #include "engine/world/step/step.h"
+#include "engine/world/tuning.h"
 #include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
 #include "tests/support/worlds.h"
@@ -34,7 +36,7 @@ public:
     }
     void take_steps(int count) {
         for (int i = 0; i < count; ++i) {
-            REQUIRE(world_.advance(0.999 * world_.stable_step() * world_.settings().step_safety).steps == 1);
+            REQUIRE(world_.advance(0.999 * world_.stable_step()).steps == 1);
             look();
         }
     }
@@ -52,7 +54,7 @@ struct Swinging {
     std::vector<BodyHandle> balls;
     ElementKind element;
 
-    explicit Swinging(Settings settings, ElementKind kind = ElementKind::smoothed) : world(settings), element(kind) {
+    explicit Swinging(World empty, ElementKind kind = ElementKind::smoothed) : world(std::move(empty)), element(kind) {
         // no losses, because relaxation would go on while a saved shape is evaluated
         rubber = world.add_material(
             {.young_modulus = 1e5, .loss_factor = 0, .bulk_viscosity = 0, .model = MaterialModel::stable_neo_hookean});
@@ -68,12 +70,8 @@ struct Swinging {
     }
 };
 
-Settings without_clusters() {
-    Settings settings;
-    settings.gravity = Vec3::Zero();
-    settings.clusters = false;
-    settings.max_strain_step = 10;
-    return settings;
+World without_clusters() {
+    return tuned_world({.gravity = Vec3::Zero(), .clusters = false}, {.max_strain_step = 10});
 }
 
 }  // namespace
@@ -100,7 +98,7 @@ TEST_CASE("a look in the frame of a body finds the same in parts, and the body s
     CHECK(model.bodies.stable_step[0] != first);
 
     const auto stands = [&](const Vec3& rotation, const Vec3& velocity, ElementKind element, int steps) {
-        World world(without_clusters());
+        World world = without_clusters();
         const auto rubber = world.add_material({.young_modulus = 1e5, .model = MaterialModel::stable_neo_hookean});
         world.add_body(mesh::ball(0.1, 4),
                        {.material = rubber, .rotation = rotation, .angular_velocity = velocity, .element = element});
@@ -151,7 +149,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
     int rounds = 0;
     for (int i = 0; i < 300; ++i) {
         const std::uint64_t steps = model.watch.steps;
-        REQUIRE(world.advance(0.999 * world.stable_step() * world.settings().step_safety).steps == 1);
+        REQUIRE(world.advance(0.999 * world.stable_step()).steps == 1);
         rounds += model.watch.steps < steps;
         if (model.watch.steps > steps) greatest = std::max(greatest, done() - before);
         before = model.watch.steps > 0 ? done() : 0;
@@ -162,7 +160,7 @@ TEST_CASE("no step takes more than its share of the looks", "[scene]") {
 }
 
 TEST_CASE("bodies at rest are not looked at", "[scene]") {
-    World world({.sleep_speed = 0.01, .sleep_time = 0.02});
+    World world = tuned_world({.sleep_time = 0.02}, {.sleep_speed = 0.01});
     const auto rubber = world.add_material({.young_modulus = 1e5});
     world.add_collider(Plane{});
     world.add_body(mesh::box({0.1, 0.1, 0.1}, {3, 3, 3}), {.material = rubber, .position = {0, 0, 0.0501}});
@@ -170,7 +168,7 @@ TEST_CASE("bodies at rest are not looked at", "[scene]") {
     Model& model = WorldAccess::state_of(world).model;
     REQUIRE(model.bodies.asleep[0]);
     for (int i = 0; i < 200; ++i) {
-        REQUIRE(world.advance(0.999 * world.stable_step() * world.settings().step_safety).steps == 1);
+        REQUIRE(world.advance(0.999 * world.stable_step()).steps == 1);
         if (i > 130) CHECK(model.watch.look.piece == 0);
     }
 }

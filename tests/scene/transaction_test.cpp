@@ -147,9 +147,9 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     CHECK(try_step(state, plan, tries) == StepOutcome::again_shorter);
     const StrainRate fastest = state.scratch.findings.verdict.fastest;
     CHECK(fastest.body == 0);
-    CHECK(fastest.rate * plan.h > state.model.settings.max_strain_step);
+    CHECK(fastest.rate * plan.h > state.model.tuning.max_strain_step);
     // The next try is a tenth shorter than the present strain rate allows, but at least a quarter of the step.
-    CHECK(tries.at_most() == Approx(std::max(0.9 * state.model.settings.max_strain_step / fastest.rate, plan.h / 4)));
+    CHECK(tries.at_most() == Approx(std::max(0.9 * state.model.tuning.max_strain_step / fastest.rate, plan.h / 4)));
     CHECK(tries.fastest == 0);
     CHECK(world.state_hash() == before);
 

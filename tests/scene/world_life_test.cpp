@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/world/tuning.h"
 #include "skerry/problem.h"
 #include "tests/support/worlds.h"
 
@@ -179,9 +180,8 @@ TEST_CASE("many changes in a row give the same bits as the same with a look at t
     const auto built = [](auto look) {
         Settings settings;
         settings.start_overlaps = StartOverlaps::ignore;  // some balls are added overlapping others
-        settings.sleep_speed = 0.05;
         settings.sleep_time = 0.02;
-        World world(settings);
+        World world = tuned_world(settings, {.sleep_speed = 0.05});
         const auto rubber = world.add_material({.young_modulus = 3e4});
         const ColliderHandle floor = world.add_collider(Plane{});
         const Mesh mesh = mesh::ball(0.05, 3);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/world/tuning.h"
 #include "engine/world/world_state.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/worlds.h"
@@ -28,8 +29,8 @@ struct Capsules {
     World world;
     MaterialHandle material;
 
-    explicit Capsules(const Settings& settings, Real mu = 0.5, Real restitution = 0)
-        : world(settings),
+    explicit Capsules(const Settings& settings, Real mu = 0.5, Real restitution = 0, const Tuning& tuning = {})
+        : world(tuned_world(settings, tuning)),
           material(world.add_material(
               {.young_modulus = 1e6, .density = density, .friction = mu, .restitution = restitution})) {}
 

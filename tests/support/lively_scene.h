@@ -1,6 +1,7 @@
 // Worlds with much state that is carried from step to step.
 #pragma once
 
+#include "engine/world/tuning.h"
 #include "jobs/executor.h"
 #include "skerry/world.h"
 #include "tests/support/sliver_box.h"
@@ -12,9 +13,8 @@ namespace skerry::test {
 inline World lively_scene(Settings settings, int threads = 1) {
     settings.backend = available_backends().front();
     settings.threads = threads;
-    settings.sleep_speed = 0.2;
     settings.sleep_time = 0.02;
-    World world(settings);
+    World world = tuned_world(settings, {.sleep_speed = 0.2});
     const auto soft = world.add_material(
         {.young_modulus = 2e4, .friction = 0.5, .damping = 30, .loss_factor = 0.2, .bulk_viscosity = 0.06});
     const auto stiff = world.add_material({.young_modulus = 4e5,

@@ -26,7 +26,7 @@ enum class ContactMotion { open, stick, slide };
 /// - rest: the stable step of a body in its rest shape.
 /// - strain: the stable step of a deformed body. Also an implicit body of large strain for which Newton's method fails
 ///   at longer steps.
-/// - speed: an element would deform by more than max_strain_step in a step.
+/// - speed: the deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm).
 /// - inversion: an element would turn inside out.
 /// - crossing: surfaces would pass through each other.
 enum class StepLimit { setting, rest, strain, speed, inversion, crossing };

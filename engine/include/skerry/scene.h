@@ -22,7 +22,6 @@ struct SceneOverrides {
     std::optional<Real> tolerance{};
     std::optional<int> max_iterations{};
     std::optional<StartOverlaps> start_overlaps{};
-    std::optional<Real> relaxation{};
     std::optional<Real> step_size{};
     std::optional<ElementKind> element{};  // element kind for all bodies
     // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied to the scene file itself, not to

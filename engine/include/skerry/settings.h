@@ -139,60 +139,59 @@ struct ColliderSettings {
 
 /// Settings of the world and its step. The defaults suit most scenes.
 struct Settings {
-    Vec3 gravity = {0, 0, -9.81};  // [m/s^2]
+    // Acceleration of all bodies [m/s^2]. Change it when your vertical axis is not z, or when there is no gravity.
+    Vec3 gravity = {0, 0, -9.81};
     // Upper bound of the step [s]. The stable step of the stiffest body is never exceeded and is the default; with a
-    // rigid or implicit body the default is at most 1/120 s.
+    // rigid or implicit body the default is at most 1/120 s. Change it when you need smaller errors in time, or equal
+    // steps in several runs.
     std::optional<Real> step_size{};
-    Real step_safety = 1.0;  // fraction of the stable step that is used, in (0, 1]
     // Parameter of the theta method for implicit bodies, from 0.5 to 1. 1 (backward Euler) damps vibrations, 0.55 a
-    // tenth as much. Values below 1 require symplectic_euler (docs/methods/implicit_bodies.md 2).
+    // tenth as much. Values below 1 require symplectic_euler (docs/methods/implicit_bodies.md 2). Change it when an
+    // implicit body must go on vibrating.
     Real theta = 1;
     // Upper bound of the step of implicit bodies that nothing holds [s]; 0: they take the steps of the other bodies. If
     // those are shorter, implicit bodies take one step while the others take several (docs/methods/implicit_bodies.md
-    // 9). Requires symplectic_euler.
+    // 9). Requires symplectic_euler. Change it when implicit bodies take most of the time beside explicit ones.
     Real implicit_step = 0;
+    // Time integrator (docs/integration.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;
     // Treat the few elements that would make all steps several times shorter implicitly, by coupling the nodes around
-    // them (docs/methods/clusters.md).
+    // them (docs/methods/clusters.md). Change it when all elements of explicit bodies must be integrated explicitly.
     bool clusters = true;
-    Backend backend = Backend::automatic;  // automatic: the first that this build has, tbb unless it was left out
-    int threads = 0;                       // number of threads; 0: those of the caller's task arena
+    // Thread library; automatic: the first that this build has, tbb unless it was left out. Change it when your program
+    // already uses another one.
+    Backend backend = Backend::automatic;
+    // Number of threads; 0: those of the caller's task arena. Change it when other work shares the processor.
+    int threads = 0;
+    // separate: contacts that do not influence each other are solved apart. Change it to global when you compare
+    // solvers on one large problem.
     ContactRegions contact_regions = ContactRegions::separate;
+    // Contact solver. Change it when you compare solvers, or when contacts stay unconverged (docs/solvers.md).
     SolverMethod method = SolverMethod::automatic;
+    // Friction law. Change it to pyramid when you compare with the paper, which uses that approximation.
     Friction friction = Friction::cone;
-    WarmStart warm_start = WarmStart::on;
-    Real tolerance = 1e-3;          // relative error of a region, docs/architecture.md
-    int max_iterations = 200;       // largest number of sweeps of a region
-    bool fixed_iterations = false;  // do exactly max_iterations sweeps
-    Real relaxation = 1;            // relaxation factor of the sweeps, > 0 and < 2; only for methods that sweep
-    Real restitution_speed = 0.05;  // >= 0 [m/s]: slower impacts do not bounce, whatever the restitution
-    // largest speed at which surfaces that overlap or are closer than the contact distance are pushed apart, > 0 [m/s]
+    // Relative error of the impulses of a region (docs/architecture.md). Change it when contact forces must be more
+    // exact, or when larger errors are fine and speed matters.
+    Real tolerance = 1e-3;
+    // Largest number of sweeps of a region. Change it when a run reports unconverged regions.
+    int max_iterations = 200;
+    // Largest speed at which surfaces that overlap or are closer than the contact distance are pushed apart, > 0 [m/s].
+    // Change it when bodies are so small or so slow that this speed disturbs them.
     Real recovery_speed = 0.5;
     // Treatment of bodies that overlap each other or colliders when they are added. Bodies that are attached or have
-    // made a step are not moved.
+    // made a step are not moved. Change it when no body may be moved at the start.
     StartOverlaps start_overlaps = StartOverlaps::resolve;
-    // Bound on the change of F of an element in a step (Frobenius norm). A step that exceeds it is repeated shorter.
-    Real max_strain_step = 0.2;
     // A body that has been still for sleep_time is put to rest, together with all bodies that it touches. It is left
-    // out of the step, and its contacts stay as they are, until something presses on it or changes it. With `sleep` a
-    // body is still if it hardly moves and its motion neither grows nor goes on steadily. Its distance from
-    // equilibrium is then at most a thousandth of its deflection (docs/methods/skipping.md 3.1). If sleep_speed is
-    // above 0, a body is still if all its nodes are slower than that, whatever `sleep` says.
+    // out of the step, and its contacts stay as they are, until something presses on it or changes it. A body is still
+    // if it hardly moves and its motion neither grows nor goes on steadily. Its distance from equilibrium is then at
+    // most a thousandth of its deflection (docs/methods/skipping.md 3.1). Change it when you study motion below
+    // these limits.
     bool sleep = true;
-    Real sleep_speed = 0;   // >= 0 [m/s]
-    Real sleep_time = 0.5;  // >= 0 [s]
-    // Skip searches of pairs that cannot have come close, and steps in which nothing moves. If off, everything is
-    // searched in every step.
-    bool contact_budgets = true;
+    // See `sleep`; >= 0 [s]. Change it when bodies come to rest too early or too late.
+    Real sleep_time = 0.5;
     // Repeat a step in which surfaces would go through each other, with the crossing features as contacts. Only fast
-    // pairs are tested.
+    // pairs are tested. Change it when surfaces may pass through each other and the tests cost too much time.
     bool continuous_collision = true;
-    // Shortcuts of the solver. Switching one off changes no result beyond the tolerance.
-    bool certify_warm_start = true;  // no sweep if the impulses of the last step still solve a region
-    bool skip_separating = true;     // no impulse in a region if none of its contacts closes
-    bool frictionless_rows = true;   // one row per contact instead of three in a region without friction
-    // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
-    bool small_regions_in_lanes = true;
 };
 
 }  // namespace skerry

@@ -106,8 +106,8 @@ public:
     void watch_steps(std::function<void(const StepReport&)> look);
     Real time() const;
     const Settings& settings() const;
-    /// Stable step of the stiffest body [s]. advance() takes steps of at most step_safety times this value. If all
-    /// bodies are rigid or implicit: the step that advance() takes.
+    /// Stable step of the stiffest body [s]. advance() takes no longer steps. If all bodies are rigid or implicit: the
+    /// step that advance() takes.
     Real stable_step() const;
 
     // State of a body. The spans are valid until bodies are added or removed. advance() changes the positions and
@@ -146,7 +146,7 @@ public:
     Real mass(BodyHandle body) const;              // [kg]
     Vec3 center_of_mass(BodyHandle body) const;    // [m]
     Real contact_distance(BodyHandle body) const;  // [m]
-    bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep_speed
+    bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
     void wake(BodyHandle body);                    // wakes a sleeping body; bodies that touch it wake in later steps
     Real mean_edge(BodyHandle body) const;         // mean edge length of the surface in the rest shape [m]
     std::vector<BodyHandle> bodies() const;        // all bodies, in the order added

@@ -50,10 +50,11 @@ struct ExplicitBody {
 ExplicitBody as_explicit(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;
+    alone.tuning = model.tuning;
     alone.materials = model.materials;
     Column<Real> stiffness_sum;
     append_body(alone, stiffness_sum, body);
-    return {alone.bodies.rest_step[0] * model.settings.step_safety,
+    return {alone.bodies.rest_step[0] * model.tuning.step_safety,
             static_cast<Real>(alone.elements.volume.size() * element_lanes)};
 }
 

@@ -126,8 +126,9 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
 
 }  // namespace
 
-void list_settings(Settings& settings, SavedRows& saved, Archive& archive) {
+void list_settings(Settings& settings, Tuning& tuning, SavedRows& saved, Archive& archive) {
     archive.value("/settings", settings);
+    archive.value("/settings", tuning);
     archive.value("/settings/step_size", saved.step_size);
 }
 

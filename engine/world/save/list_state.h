@@ -5,6 +5,7 @@
 
 #include "components/any_table.h"
 #include "engine/world/save/saved_rows.h"
+#include "engine/world/tuning.h"
 
 namespace skerry {
 
@@ -24,7 +25,7 @@ private:
     virtual void put_value(const std::string& path, void* value, const RowType& type) = 0;
 };
 
-void list_settings(Settings& settings, SavedRows& saved, Archive& archive);
+void list_settings(Settings& settings, Tuning& tuning, SavedRows& saved, Archive& archive);
 /// Lists everything but the settings, which are needed to make a world.
 void list_state(WorldState& world, SavedRows& saved, Archive& archive);
 

@@ -135,13 +135,15 @@ private:
     const Hdf5File& file_;
 };
 
-/// Settings of the saved world, except for the backend and the number of threads.
-Settings settings_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
+/// Makes a world with the settings of the saved one, except for the backend and the number of threads.
+World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
-    list_settings(settings, saved, reader);
+    Tuning tuning;
+    list_settings(settings, tuning, saved, reader);
     if (saved.step_size != 0) settings.step_size = saved.step_size;
     try {
         validate(settings);
+        validate(tuning);
     } catch (const SceneError& error) {
         file.complain("/settings", error.what(), "settings that a world takes");
     }
@@ -149,7 +151,7 @@ Settings settings_of(const Hdf5File& file, const LoadSettings& wanted, Reader& r
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
     settings.backend = wanted.backend.value_or(settings.backend);
     settings.threads = wanted.threads.value_or(settings.threads);
-    return settings;
+    return tuned_world(settings, tuning);
 }
 
 /// Derives all data that are not saved from the saved ones.
@@ -192,7 +194,7 @@ LoadedWorld load_world(const std::filesystem::path& path, const LoadSettings& se
     const Hdf5File file(path, "a world that Skerry saved (HDF5)");
     Reader reader(file);
     SavedRows saved;
-    LoadedWorld loaded{World(settings_of(file, settings, reader, saved)), {file.text_or_nothing("/note")}};
+    LoadedWorld loaded{world_of(file, settings, reader, saved), {file.text_or_nothing("/note")}};
     WorldState& world = WorldAccess::state_of(loaded.world);
     list_state(world, saved, reader);
     derive(file, saved, world);

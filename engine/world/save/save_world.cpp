@@ -51,7 +51,7 @@ void save_world(WorldState& world, const SavedNote& note, const std::filesystem:
     Hdf5Image image(file.string());
     SavedRows saved = rows_to_save(world);
     Writer writer(image);
-    list_settings(world.model.settings, saved, writer);
+    list_settings(world.model.settings, world.model.tuning, saved, writer);
     list_state(world, saved, writer);
     std::uint64_t hash = state_hash(world);
     writer.value("/state_hash", hash);

@@ -7,6 +7,7 @@
 #include "components/step_watch.h"
 #include "engine/world/state/clock.h"
 #include "engine/world/step/balance.h"
+#include "engine/world/tuning.h"
 #include "skerry/report.h"
 #include "skerry/settings.h"
 
@@ -98,7 +99,6 @@ struct MembersOf<Settings> {
     static auto list() {
         using S = Settings;
         return std::array{Member{"gravity", &S::gravity},
-                          Member{"step_safety", &S::step_safety},
                           Member{"integrator", &S::integrator},
                           Member{"clusters", &S::clusters},
                           Member{"backend", &S::backend},
@@ -106,28 +106,36 @@ struct MembersOf<Settings> {
                           Member{"contact_regions", &S::contact_regions},
                           Member{"method", &S::method},
                           Member{"friction", &S::friction},
-                          Member{"warm_start", &S::warm_start},
                           Member{"tolerance", &S::tolerance},
                           Member{"max_iterations", &S::max_iterations},
-                          Member{"fixed_iterations", &S::fixed_iterations},
-                          Member{"relaxation", &S::relaxation},
-                          Member{"restitution_speed", &S::restitution_speed},
                           Member{"recovery_speed", &S::recovery_speed},
-                          Member{"max_strain_step", &S::max_strain_step},
                           Member{"theta", &S::theta},
                           Member{"implicit_step", &S::implicit_step},
                           Member{"start_overlaps", &S::start_overlaps},
                           Member{"sleep", &S::sleep},
-                          Member{"sleep_speed", &S::sleep_speed},
                           Member{"sleep_time", &S::sleep_time},
+                          Member{"continuous_collision", &S::continuous_collision}};
+    }
+    static_assert(sizeof(Settings) == 136, "a setting is not saved");
+};
+template <>
+struct MembersOf<Tuning> {
+    static auto list() {
+        using S = Tuning;
+        return std::array{Member{"step_safety", &S::step_safety},
+                          Member{"max_strain_step", &S::max_strain_step},
+                          Member{"restitution_speed", &S::restitution_speed},
+                          Member{"sleep_speed", &S::sleep_speed},
                           Member{"contact_budgets", &S::contact_budgets},
-                          Member{"continuous_collision", &S::continuous_collision},
+                          Member{"warm_start", &S::warm_start},
+                          Member{"fixed_iterations", &S::fixed_iterations},
+                          Member{"relaxation", &S::relaxation},
                           Member{"certify_warm_start", &S::certify_warm_start},
                           Member{"skip_separating", &S::skip_separating},
                           Member{"frictionless_rows", &S::frictionless_rows},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
-    static_assert(sizeof(Settings) == 184, "a setting is not saved");
+    static_assert(sizeof(Tuning) == 64, "a setting is not saved");
 };
 
 }  // namespace skerry

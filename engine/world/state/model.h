@@ -28,6 +28,7 @@
 #include "components/step_watch.h"
 #include "components/surface_table.h"
 #include "engine/world/state/known_elements.h"
+#include "engine/world/tuning.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
 #include "skerry/world.h"
@@ -62,6 +63,7 @@ struct ColliderRecord {
 
 struct Model {
     Settings settings;
+    Tuning tuning;
 
     NodeTable nodes;
     NodeBlockTable node_blocks;

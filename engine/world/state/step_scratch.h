@@ -6,6 +6,7 @@
 #include "components/implicit_coupling.h"
 #include "components/joint_table.h"
 #include "components/region_table.h"
+#include "engine/world/tuning.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/keep_resting_contacts.h"
@@ -95,11 +96,11 @@ struct ForceScratch {
     Column<Vec3> held_velocity;          // by node: velocity of held nodes after the previous step [m/s]
 };
 
-/// Contact solver settings of a world. Their defaults are those of Settings.
-SolverSettings solver_settings(const Settings& settings);
+/// Contact solver settings of a world. Their defaults are those of Settings and Tuning.
+SolverSettings solver_settings(const Settings& settings, const Tuning& tuning);
 
 /// Parameters that the settings determine for every step.
-StepParameters step_parameters(const Settings& settings);
+StepParameters step_parameters(const Settings& settings, const Tuning& tuning);
 
 struct StepScratch {
     StepParameters parameters;

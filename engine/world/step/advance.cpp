@@ -35,7 +35,7 @@ bool keep_watch(WorldState& world) {
 /// Limits of the first step of a call, from the motion at its start.
 Tries first_tries(WorldState& world) {
     const Model& model = world.model;
-    const Real longest = trusted_step(model), max_strain_step = model.settings.max_strain_step;
+    const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
     if (!std::isfinite(longest)) return {};
     constexpr bool pushed = false;
     CheckInputs state = CheckInputs::bind(Binder(), model.node_blocks, model.bodies, model.nodes, model.tetrahedra,
@@ -131,7 +131,7 @@ void note_limit(WorldState& world, StepReport& report) {
 void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
-    const Real stable = stable_step(model, &body) * model.settings.step_safety;
+    const Real stable = stable_step(model, &body) * model.tuning.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
     char found[64];

@@ -240,14 +240,14 @@ Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
 }
 
-Real longest_step(const Settings& settings) {
-    return settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / settings.step_safety;
+Real longest_step(const Model& model) {
+    return model.settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / model.tuning.step_safety;
 }
 
 /// Gives all bodies the elements of a plan. Their mass forms then determine how long the step may be.
 void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
-    Real step = longest_step(model.settings);
+    Real step = longest_step(model);
     std::vector<Real> stands(twin.size());  // stable steps by body; 0 for those without clusters [s]
     for (const PlannedBody& body : plan.body) {
         if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have the same plan
@@ -281,7 +281,7 @@ Real shortest_step(const Model& model) {
 /// Tries 2, 4, ... times the shortest stable step, then some steps between the best of them and the next. Returns the
 /// plan of least cost; its step is 0 if none is worth its clusters.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
-    const Real shortest = shortest_step(model), longest = longest_step(model.settings);
+    const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};
     if (!(shortest > 0) || !std::isfinite(shortest)) return best;
     best.cost = cost_of(model, 0, std::min(shortest, longest)) / least_gain;

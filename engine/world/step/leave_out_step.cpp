@@ -35,7 +35,7 @@ bool nothing_moves(WorldState& world) {
     Model& model = world.model;
     const StepScratch& scratch = world.scratch;
     const Real time = world.clock.time, h = scratch.parameters.h;
-    if (!model.any_asleep || !model.settings.contact_budgets || !all_bodies_rest(model.bodies)) return false;
+    if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
     if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;

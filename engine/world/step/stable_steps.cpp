@@ -53,7 +53,7 @@ Real told_step(const Model& model, Index* body) {
 }
 
 Real trusted_step(const Model& model, Index* body) {
-    const Real stable = stable_step(model, body) * model.settings.step_safety;
+    const Real stable = stable_step(model, body) * model.tuning.step_safety;
     Real asked = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
     if (model.settings.step_size) asked = *model.settings.step_size;
     if (model.settings.implicit_step > 0 && model.implicit_nodes.size() > 0)
@@ -62,7 +62,7 @@ Real trusted_step(const Model& model, Index* body) {
 }
 
 Real step_with_frame(const Model& model) {
-    return std::min(stable_step(model) * model.settings.step_safety,
+    return std::min(stable_step(model) * model.tuning.step_safety,
                     model.settings.step_size.value_or(step_of_rigid_bodies));
 }
 

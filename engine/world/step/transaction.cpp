@@ -69,7 +69,7 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     // A body with a stable step much below the last step is new or was softer then; that step's kick would throw it.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
-        before = std::min(before, growth * model.settings.step_safety * stable_step(model));
+        before = std::min(before, growth * model.tuning.step_safety * stable_step(model));
     return (before + plan.h) / 2;
 }
 
@@ -181,7 +181,7 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     if (!(tries.at_most() < plan.stable)) {
         const auto b = static_cast<std::size_t>(plan.stiffest);
         const bool set =
-            plan.stiffest == no_index || plan.stable < model.bodies.stable_step[b] * model.settings.step_safety;
+            plan.stiffest == no_index || plan.stable < model.bodies.stable_step[b] * model.tuning.step_safety;
         limit = set ? StepLimit::setting
                     : (model.bodies.stable_step[b] < as_at_rest * model.bodies.rest_step[b] ? StepLimit::strain
                                                                                             : StepLimit::rest);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "engine/world/tuning.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/column.h"
 #include "tests/support/contact_scene.h"
@@ -55,7 +56,6 @@ MaterialSettings bar_material() {
 Settings without_gravity() {
     Settings settings;
     settings.gravity = Vec3::Zero();
-    settings.step_safety = 0.5;
     settings.tolerance = 1e-10;
     settings.max_iterations = 20000;
     return settings;
@@ -114,7 +114,7 @@ struct Impact {
 
 /// A bar of n elements hits the wall z = 0, or an equal bar at rest whose end is at z = 0.
 Impact collide(int n, bool wall) {
-    World world(without_gravity());
+    World world = tuned_world(without_gravity(), {.step_safety = 0.5});
     const auto material = world.add_material(bar_material());
     const Mesh mesh = column(width, length, n);
     constexpr Real shell = 0.02, start = 0.001;

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "engine/world/tuning.h"
 #include "systems/geometry/rotation.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
@@ -22,7 +23,8 @@ struct BallOnBox {
     BodyHandle ball;
     ColliderHandle box;
 
-    explicit BallOnBox(const Settings& settings = {}, bool mesh = false) : world(settings) {
+    explicit BallOnBox(const Settings& settings = {}, bool mesh = false, const Tuning& tuning = {})
+        : world(tuned_world(settings, tuning)) {
         const auto rubber = world.add_material({.young_modulus = 5e4, .friction = 0.5, .damping = 20});
         const Vec3 size(0.3, 0.3, 0.05);
         box = mesh ? world.add_collider(mesh::boundary(mesh::box(size, {2, 2, 1})), {.name = "box"})
@@ -166,9 +168,8 @@ TEST_CASE("a teleport touches nothing on the way, and what it lands in is treate
 TEST_CASE("a setter that gives the value that was there changes no bit", "[scene][determinism]") {
     const auto run = [](bool set) {
         Settings settings;
-        settings.sleep_speed = 1e-3;
         settings.sleep_time = 0.1;
-        BallOnBox scene(settings, true);
+        BallOnBox scene(settings, true, {.sleep_speed = 1e-3});
         World& world = scene.world;
         const auto material = world.add_material({.young_modulus = 2e5});
         const auto bar = world.add_body(mesh::box({0.1, 0.02, 0.02}, {4, 1, 1}),
@@ -237,10 +238,7 @@ TEST_CASE("what is refused is named and changes nothing", "[scene]") {
 TEST_CASE("a body at rest on a collider wakes when that is told to move", "[scene]") {
     for (const bool mesh : {false, true})
         for (const Real speed : {0.1, -0.1}) {
-            Settings settings;
-            settings.sleep_speed = 5e-3;
-            settings.sleep_time = 0.1;
-            World world(settings);
+            World world = tuned_world({.sleep_time = 0.1}, {.sleep_speed = 5e-3});
             const auto rubber =
                 world.add_material({.young_modulus = 5e4, .density = 500, .friction = 0.5, .damping = 20});
             const Vec3 size(0.3, 0.3, 0.05);

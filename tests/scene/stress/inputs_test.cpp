@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 
+#include "engine/world/tuning.h"
 #include "skerry/problem.h"
 #include "skerry/scene.h"
 #include "tests/support/stress.h"
@@ -65,22 +66,26 @@ TEST_CASE("settings and materials that are no numbers or out of range are refuse
         add_bad<Settings>(
             list, "settings", field, {}, [](const Settings& bad) { World world(bad); }, spoil);
     };
+    const auto tuning = [&list](const char* field, const std::vector<std::function<void(Tuning&)>>& spoil) {
+        add_bad<Tuning>(
+            list, "tuning", field, {}, [](const Tuning& bad) { tuned_world({}, bad); }, spoil);
+    };
     for (const Real bad : {no_number, inf, -inf}) {
         settings("gravity", {[bad](Settings& s) { s.gravity.y() = bad; }});
         settings("step_size", {[bad](Settings& s) { s.step_size = bad; }});
-        settings("step_safety", {[bad](Settings& s) { s.step_safety = bad; }});
+        tuning("step_safety", {[bad](Tuning& t) { t.step_safety = bad; }});
         settings("tolerance", {[bad](Settings& s) { s.tolerance = bad; }});
-        settings("relaxation", {[bad](Settings& s) { s.relaxation = bad; }});
-        settings("max_strain_step", {[bad](Settings& s) { s.max_strain_step = bad; }});
-        settings("restitution_speed", {[bad](Settings& s) { s.restitution_speed = bad; }});
+        tuning("relaxation", {[bad](Tuning& t) { t.relaxation = bad; }});
+        tuning("max_strain_step", {[bad](Tuning& t) { t.max_strain_step = bad; }});
+        tuning("restitution_speed", {[bad](Tuning& t) { t.restitution_speed = bad; }});
         settings("recovery_speed", {[bad](Settings& s) { s.recovery_speed = bad; }});
-        settings("sleep_speed", {[bad](Settings& s) { s.sleep_speed = bad; }});
+        tuning("sleep_speed", {[bad](Tuning& t) { t.sleep_speed = bad; }});
         settings("sleep_time", {[bad](Settings& s) { s.sleep_time = bad; }});
     }
     settings("step_size", {[](Settings& s) { s.step_size = 0; }, [](Settings& s) { s.step_size = -1e-3; }});
-    settings("step_safety", {[](Settings& s) { s.step_safety = 0; }, [](Settings& s) { s.step_safety = 1.1; }});
+    tuning("step_safety", {[](Tuning& t) { t.step_safety = 0; }, [](Tuning& t) { t.step_safety = 1.1; }});
     settings("tolerance", {[](Settings& s) { s.tolerance = 0; }, [](Settings& s) { s.tolerance = 1; }});
-    settings("relaxation", {[](Settings& s) { s.relaxation = 0; }, [](Settings& s) { s.relaxation = 2; }});
+    tuning("relaxation", {[](Tuning& t) { t.relaxation = 0; }, [](Tuning& t) { t.relaxation = 2; }});
     settings("max_iterations", {[](Settings& s) { s.max_iterations = 0; }, [](Settings& s) { s.max_iterations = -5; }});
     settings("threads", {[](Settings& s) { s.threads = -1; }});
     judge_refusals("settings", list);

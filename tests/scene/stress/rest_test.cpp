@@ -1,6 +1,7 @@
 // Stress suite: long rest, restitution in stacks, bodies that come and go (items 14, 20 and 28 of docs/stress.md).
 #include <catch2/catch.hpp>
 
+#include "engine/world/tuning.h"
 #include "tests/support/stress.h"
 #include "tests/support/worlds.h"
 
@@ -61,8 +62,7 @@ World small_heap(Real tolerance, Real modulus, Real damping, Real sleep_speed = 
     Settings settings;
     settings.tolerance = tolerance;
     settings.max_iterations = 10000;
-    settings.sleep_speed = sleep_speed;
-    World world(settings);
+    World world = tuned_world(settings, {.sleep_speed = sleep_speed});
     world.add_collider(Plane{});
     const auto material =
         world.add_material({.young_modulus = modulus, .poisson_ratio = 0.3, .friction = 0.6, .damping = damping});

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/world/state/step_scratch.h"
+#include "engine/world/tuning.h"
 #include "skerry/error.h"
 #include "skerry/problem.h"
 #include "skerry/world.h"
@@ -43,7 +44,7 @@ TEST_CASE("over-relaxation outside of its range is refused, inside it changes th
     for (const Real wrong : {0.0, 2.0, -1.0, std::nan("")}) {
         CHECK(complaint_of([&] { solve_problem(pair_problem(0.3), {.relaxation = wrong}); }).find("relaxation") !=
               std::string::npos);
-        CHECK(complaint_of([&] { World world({.relaxation = wrong}); }).find("relaxation") != std::string::npos);
+        CHECK(complaint_of([&] { tuned_world({}, {.relaxation = wrong}); }).find("relaxation") != std::string::npos);
     }
     const ProblemSettings plain{.method = SolverMethod::pgs, .tolerance = 1e-12};
     ProblemSettings relaxed = plain;
@@ -57,24 +58,25 @@ TEST_CASE("over-relaxation outside of its range is refused, inside it changes th
 }
 
 TEST_CASE("the settings of a world reach its contact solver, and have the same defaults", "[unit][solver]") {
-    CHECK(solver_settings(Settings{}) == SolverSettings{});
+    CHECK(solver_settings(Settings{}, Tuning{}) == SolverSettings{});
 
     Settings settings;
+    Tuning tuning;
     SolverSettings expected;
     settings.method = expected.method = SolverMethod::pgs;
     settings.friction = expected.friction = Friction::pyramid;
-    settings.warm_start = expected.warm_start = WarmStart::off;
+    tuning.warm_start = expected.warm_start = WarmStart::off;
     settings.tolerance = expected.tolerance = 1e-7;
     settings.max_iterations = expected.max_iterations = 17;
-    settings.fixed_iterations = expected.fixed_iterations = true;
-    settings.relaxation = expected.relaxation = 1.3;
-    settings.restitution_speed = expected.restitution_speed = 0.7;
+    tuning.fixed_iterations = expected.fixed_iterations = true;
+    tuning.relaxation = expected.relaxation = 1.3;
+    tuning.restitution_speed = expected.restitution_speed = 0.7;
     settings.recovery_speed = expected.recovery_speed = 0.9;
-    settings.certify_warm_start = expected.certify_warm_start = false;
-    settings.skip_separating = expected.skip_separating = false;
-    settings.frictionless_rows = expected.frictionless_rows = false;
-    settings.small_regions_in_lanes = expected.small_regions_in_lanes = false;
-    CHECK(solver_settings(settings) == expected);
+    tuning.certify_warm_start = expected.certify_warm_start = false;
+    tuning.skip_separating = expected.skip_separating = false;
+    tuning.frictionless_rows = expected.frictionless_rows = false;
+    tuning.small_regions_in_lanes = expected.small_regions_in_lanes = false;
+    CHECK(solver_settings(settings, tuning) == expected);
 }
 
 }  // namespace skerry::test::method_settings_test

@@ -1,8 +1,10 @@
 // Reading scene files: accepted keys, and for each kind of mistake a message that names the place.
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <sstream>
+#include <string>
 
 #include "engine/scene/parse_json.h"
 #include "engine/scene/scene_file.h"
@@ -119,6 +121,19 @@ TEST_CASE("a setting that froze contacts is refused with what to do instead", "[
          scene_with(R"("settings": {"freeze_contacts": false})"),
          {"settings.freeze_contacts: found a withdrawn key, expected no such key", "delete the key"}},
     });
+}
+
+TEST_CASE("settings that are internal now are refused with what to use instead", "[unit]") {
+    const std::map<std::string, std::string> instead{
+        {"step_safety", "step_size"},     {"max_strain_step", "step_size"},   {"restitution_speed", "restitution"},
+        {"sleep_speed", "sleep_time"},    {"relaxation", "method"},           {"fixed_iterations", "max_iterations"},
+        {"warm_start", "always on"},      {"contact_budgets", "always on"},   {"certify_warm_start", "always on"},
+        {"skip_separating", "always on"}, {"frictionless_rows", "always on"}, {"small_regions_in_lanes", "always on"}};
+    for (const auto& [key, hint] : instead)
+        check_messages(
+            {{key.c_str(),
+              scene_with("\"settings\": {\"" + key + "\": 1}"),
+              {"settings." + key + ": found a withdrawn key", "delete the key, which is internal now", hint}}});
 }
 
 TEST_CASE("a key that is near none gets no suggestion", "[unit]") {
