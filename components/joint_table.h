@@ -37,7 +37,6 @@ struct JointFrame {
 template <>
 struct NumbersOf<JointFrame> : Reals<12> {};
 
-/// The relative coordinate is the angle of a hinge [rad] or the displacement of a slider [m], zero when the joint was
 /// One row per joint. The coordinate of a joint is the angle of a hinge [rad] or the displacement of a slider [m]. It
 /// is zero when the joint is made.
 struct JointTable {

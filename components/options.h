@@ -24,7 +24,6 @@ enum class ContactRegions { separate, global };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first backend of this build
 enum class WarmStart { off, on };
-/// Treatment of bodies that overlap each other or colliders before the first step after one of them was added. resolve:
 /// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: move the bodies apart
 /// without adding energy if a short displacement suffices, otherwise refuse them. refuse: refuse the bodies. ignore:
 /// report the overlaps and start with them (docs/decisions/0017-start-overlaps.md).
