@@ -34,12 +34,12 @@ template <>
 struct NumbersOf<MovingFrame> : Reals<10> {};
 
 struct BodyTable {
-    Column<std::uint32_t> slot;  // handle slot of the body; for a kinematic body that of its collider
+    Column<std::uint32_t> slot;  // handle slot of the body; for a kinematic body the slot of its collider
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
     Column<Index> material;             // row of MaterialTable; no_index for a kinematic body
-    Column<SurfaceProperties> surface;  // surface properties; a negative one is replaced by that of the material
-    Column<CollisionFilter> filter;     // collision filter; for a kinematic body that of its collider is used instead
+    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the material are used
+    Column<CollisionFilter> filter;     // collision filter; for a kinematic body the filter of its collider is used
     Column<Index> collider;             // row of ColliderTable for a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
@@ -79,8 +79,9 @@ struct BodyTable {
     // its still_position in the current half [m]. Its sign is negative if a later measurement found a smaller distance.
     // `drift_before`: largest such distance in the previous half [m].
     Column<Real> drift, drift_before;
-    // `shape_drift`: largest distance of the shape in the current half from the shape given by still_position [m]
-    // (shape_distance). `creep_before`: that of the previous half if the distance was largest at its end, else 0 [m].
+    // `shape_drift`: largest distance of the shape in the current half from the shape at the start of the half,
+    // still_position [m] (stillness.h: shape_distance). `creep_before`: largest distance in the previous half if it
+    // occurred at the end of the half, else 0 [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;

@@ -71,7 +71,7 @@ struct ColliderTable {
     Column<RigidMotion> initial;  // pose and motion at the start of the script
     Column<MotionScript> script;
     Column<Keyframe> keyframe;          // keyframes of all colliders; each script has a range of them
-    Column<SurfaceProperties> surface;  // surface properties; a negative one is replaced by that of the touching body
+    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the touching body are used
     Column<CollisionFilter> filter;     // groups that the collider belongs to and collides with
     Column<Index> body;                 // row of BodyTable: kinematic body of a mesh collider, else no_index
     // Bound on the motion of the collider's points near a body, similar to BodyTable::travel [m].

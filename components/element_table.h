@@ -59,11 +59,12 @@ struct ElementBlockTable {
     Column<Index> count;             // number of rows
     Column<ElementLane> volume;      // volume at rest; 0 in an unused lane and for an inactive inversion barrier [m^3]
     Column<ElementLane> mass_share;  // weight of the element where elements share the mass of a node (stable_step.h)
-    // Matrix Q of the mass G Q^-1 G^T that the element takes from its nodes, with its gradients G (mass_forms.h)
-    // [1/(kg m^2)]. 0: mass_share is used instead.
+    // Matrix Q that defines the mass G Q^-1 G^T assigned to the element, part of the mass of its nodes, with its
+    // gradients G (mass_forms.h) [1/(kg m^2)]. 0: mass_share is used instead.
     Column<ElementForm> mass_form;
-    // Mass that the element takes from its nodes in a body that rotates as a whole (frame_masses.h), and the bound that
-    // follows for the squared highest frequency omega^2 at rest [1/s^2]. 0: the body has no such masses.
+    // Coefficients of the mass assigned to the element in a body that rotates as a whole (frame_masses.h). The masses
+    // give the bound `frame_bound` of the squared highest frequency omega^2 at rest [1/s^2]. 0: the body has no such
+    // masses.
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound;
     // Assumed stiffness of an implicit element, which belongs to a cluster; 0: explicit element [Pa].
@@ -79,7 +80,7 @@ struct ElementBlockTable {
     Column<ElementStrain> viscous_strain_next;
     Column<ElementLane> relaxation_rate;  // relaxation rate of the relaxing part of the stress [1/s]
     Column<ElementLane> own_frequency;    // upper bound of the highest frequency of the element at rest [1/s]
-    Column<Real> relaxing_share;          // ratio of the stiffness of the relaxing part to that of the law
+    Column<Real> relaxing_share;          // ratio of the stiffness of the relaxing part to the stiffness of the law
     Column<Index> body;                   // row of BodyTable
     Column<Index> material;               // row of MaterialTable
     Column<ElementPart> part;
@@ -150,7 +151,7 @@ struct ElementPatches {
     Column<Real> relaxed;         // by patch: energy that its elements lost by relaxation in this step [J]; scratch
     // Viscous impulse by block, set if the block is viscous in this step. No rows if no block can be viscous. Scratch.
     Column<ElementViscousImpulse> viscous_impulse;
-    Column<std::uint8_t> viscous;  // by block: 1 if it is viscous in this step; rows as above; scratch
+    Column<std::uint8_t> viscous;  // by block: 1 if it is viscous in this step; same rows as viscous_impulse; scratch
     // Flag by block: 1 if the stiffness of an implicit element comes near its implicit_modulus. Rows as in
     // viscous_impulse. Scratch.
     Column<std::uint8_t> stiffening;

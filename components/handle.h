@@ -30,8 +30,8 @@ using AttachmentHandle = Handle<struct AttachmentTag>;
 template <class HandleType>
 class HandleMap {
 public:
-    /// Number of the world that owns the rows. A copied, or saved and loaded, world keeps its number, so that earlier
-    /// handles stay valid. No step depends on the number.
+    /// Number of the world that owns the rows. The number stays the same if a world is copied, or saved and loaded, so
+    /// that earlier handles stay valid. No step depends on it.
     std::uint32_t world() const { return world_; }
     void set_world(std::uint32_t number) { world_ = number; }
 
@@ -59,7 +59,7 @@ public:
     /// Makes a live handle refer to another row.
     void rename(HandleType handle, Index row) { row_[handle.slot] = row; }
 
-    /// Releases a live handle. Its row stays where it is, without a handle.
+    /// Releases a live handle. The row of the handle stays in the table, without a handle.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];

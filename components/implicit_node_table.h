@@ -14,12 +14,12 @@ struct ImplicitNodeTable {
     // Velocity that contacts added to w in the last long step, times the length of that step [m]. It is zero outside a
     // long step. Written by carry_long_steps.
     Column<Vec3> left;
-    // Written in this step by kick_implicit_bodies:
+    // kick_implicit_bodies writes the next columns in this step:
     Column<Vec3> elastic_force;  // elastic force K u, in the order of the factorised matrix [N]
     Column<Vec3> impulse;        // impulse in the same order; the solution overwrites it [N s]
     // Velocity w at the end of the step: first without contacts, until strain_implicit_bodies adds their effect.
     Column<Vec3> velocity_next;
-    // Accumulated from zero by solve_regions:
+    // solve_regions adds to this column, starting from zero:
     Column<Vec3> contact_impulse;  // impulse of contacts, in the world frame [N s]
     // Written by strain_implicit_bodies:
     Column<Vec3> displacement_next;

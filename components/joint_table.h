@@ -106,7 +106,7 @@ struct JointBlockTable {
     // Impulses of the three equations of a block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
     Column<Real> coordinate;       // by row of JointTable: coordinate at the start of the step
-    Column<std::uint8_t> resting;  // by row of JointTable: 1: its bodies are asleep; it keeps its last impulse
+    Column<std::uint8_t> resting;  // by joint: 1 if its bodies are asleep; such a joint keeps its last impulse
 
     std::size_t size() const { return block.size(); }
     void for_each_column(auto&& visit) {

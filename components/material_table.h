@@ -49,8 +49,8 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// Surface properties of a material, body or collider. A negative property of a body is replaced by that of its
-/// material, and a negative property of a collider by that of the touching body.
+/// Surface properties of a material, body or collider. If a property of a body is negative, the property of its
+/// material is used. If a property of a collider is negative, the property of the touching body is used.
 struct SurfaceProperties {
     Real static_friction = -1;
     Real dynamic_friction = -1;

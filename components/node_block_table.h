@@ -12,9 +12,10 @@ namespace skerry {
 
 // Number of nodes of a round body that take part in a step. They are its core, which contacts use, and nodes around it,
 // from which its spin is measured. All other nodes serve only to display the body.
-inline constexpr Index sphere_step_nodes = 13;   // the centre and the corners of an icosahedron
-inline constexpr Index capsule_step_nodes = 12;  // both ends of the axis, with a pole and four rim points at each
-// Core of a cylinder; all of its nodes take part in a step, because its rims show its rotation.
+inline constexpr Index sphere_step_nodes = 13;  // count: the centre and the 12 corners of an icosahedron
+// Count: both ends of the axis, with a pole and four rim points at each end.
+inline constexpr Index capsule_step_nodes = 12;
+// Number of core nodes of a cylinder. All nodes of a cylinder take part in a step, because its rims show its rotation.
 inline constexpr Index cylinder_core_nodes = 3;
 
 /// The nodes of a body that take part in a step. `core_nodes`: see BodyTable.

@@ -76,7 +76,7 @@ struct PairTable {
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this [m]
     // 1: the list was searched for this step, so earlier drift does not shorten its validity.
     Column<std::uint8_t> fresh;
-    // Result of the last search; find_crossings keeps pairs apart that are apart.
+    // Result of the last search. A pair that is apart stays apart, because find_crossings stops crossings.
     Column<PairState> state;
     std::vector<Column<Candidate>> candidates;  // by pair: candidate list, sorted by feature
     // Value of travel_bound below which no contact is possible, by pair and candidate [m].

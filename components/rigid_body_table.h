@@ -19,7 +19,7 @@ namespace skerry {
 struct RigidBodyTable {
     Column<Index> body;  // row of BodyTable
     Column<Real> mass;   // [kg]
-    // Mass distribution; for a body with large deformation that of the current shape:
+    // Mass distribution of the rest shape, or of the current shape if the deformation is large:
     Column<Vec3> moments;           // moments of inertia about the principal axes [kg m^2]
     Column<Mat3> axes;              // axes of the principal frame, in the frame of the mesh
     Column<Vec3> rest_center;       // centre of mass, in the frame of the mesh [m]
@@ -33,7 +33,7 @@ struct RigidBodyTable {
     Column<Index> holder;        // row of AttachmentTable, or no_index
     Column<Vec3> held_position;  // [m]
     Column<Mat3> held_rotation;
-    // Written in this step by kick_rigid_bodies:
+    // kick_rigid_bodies writes the next columns in this step:
     Column<Mat3> inverse_inertia;  // inverse inertia in the world frame [1/(kg m^2)]
     // Impulse of gravity and loads, and its moment about the centre of mass [N s, N m s].
     Column<Vec3> kick, moment_kick;

@@ -152,7 +152,8 @@ private:
         --sleepers_;
     }
 
-    /// Call this after releasing the mutex, so that a woken thread does not block on it.
+    /// Wakes sleeping workers for `useful` new pieces of work. Call it after releasing the mutex, so that a woken
+    /// thread does not block on it.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {

@@ -130,8 +130,8 @@ public:
         left_.reset(edges.predecessor_count);
     }
 
-    /// Calls spawn for every stage without a predecessor except the first, which it returns (no_index for an empty
-    /// graph).
+    /// Returns the first stage without a predecessor, or no_index for an empty graph. Calls spawn for every other stage
+    /// without a predecessor.
     template <class Spawn>
     Index spawn_roots(Spawn&& spawn) {
         Index first = no_index;

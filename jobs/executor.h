@@ -37,9 +37,9 @@ public:
 };
 
 /// Makes an executor of the given backend; `automatic` picks the first backend of this build. If `workers` is 0, the
-/// number of workers is that of the caller's arena (tbb), OMP_NUM_THREADS (openmp), or the number of cores (threads).
-/// With tbb and 0 the work runs in the arena of the caller. Throws std::invalid_argument if this build lacks the
-/// backend or `workers` is negative.
+/// number of workers is the size of the caller's arena (tbb), OMP_NUM_THREADS (openmp), or the number of cores
+/// (threads). With tbb and 0 the work runs in the arena of the caller. Throws std::invalid_argument if this build lacks
+/// the backend or `workers` is negative.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);
 
 /// The backends of this build, the default one first.

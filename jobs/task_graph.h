@@ -91,8 +91,8 @@ public:
 
     TaskGraph();
 
-    /// Stages that are added from now on belong to this phase. Phases group the stages in the drawing and have no
-    /// effect on the order. The name must be a literal.
+    /// Begins a phase: stages that are added from now on belong to it. Phases group the stages in the drawing and have
+    /// no effect on the order. The name must be a literal.
     void begin_phase(const char* name) { phase_ = name; }
     /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A stage function may
     /// return bool: false means that it had nothing to do.

@@ -59,7 +59,8 @@ private:
 
     // The leader writes these members only while no helper is inside.
     Job job_;
-    std::unique_ptr<std::atomic<std::uint64_t>[]> claim_;  // by block: number of the last job in which it was taken
+    // Number of the last job in which each block was claimed.
+    std::unique_ptr<std::atomic<std::uint64_t>[]> claim_;
     Index claim_count_ = 0;
     bool together_ = false, may_spin_ = true;
     PhaseRunner* runner_ = nullptr;  // set during gather() if the executor is a PhaseRunner

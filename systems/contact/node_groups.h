@@ -103,7 +103,7 @@ struct RigidNodes {
 
 /// Angular velocities (spins) of rigid bodies, by row of RigidBodyTable.
 struct RigidSpins {
-    std::span<const Mat3> inverse_inertia{};  // in the world frame [1/(kg m^2)]
+    std::span<const Mat3> inverse_inertia{};  // inverse inertia in the world frame [1/(kg m^2)]
     std::span<const Vec3> angular_momentum{}, moment_kick{};
 
     static RigidSpins bind(const Binder& binder, const RigidBodyTable& rigid) {

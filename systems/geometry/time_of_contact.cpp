@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the provably contact-free motion by which one iteration advances. The rest keeps the features apart in
-// spite of rounding.
+// Fraction of the provably contact-free motion by which one iteration advances. A fraction below 1 keeps the features
+// apart in spite of rounding.
 constexpr Real advance = 0.9;
 
 // Limit of iterations. Features that need more of them roll over each other at a distance too small to be resolved in a

@@ -23,7 +23,7 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
 /// Distance that two features keep, because they are the cores of round bodies.
 struct KeptApart {
-    Real distance = 0;  // sum of the radii [m]
+    Real distance = 0;  // sum of the radii of the round bodies [m]
     // Largest gap beyond `distance` at which the features count as in contact [m].
     Real near = std::numeric_limits<Real>::infinity();
 };

@@ -76,7 +76,7 @@ private:
     template <class T>
     static T missing_of(const T& J) {
         const T missing = intact - J;
-        return missing < 0.0 ? T{} : missing;  // NaN if J is NaN
+        return missing < 0.0 ? T{} : missing;  // the result is NaN if J is NaN
     }
 };
 

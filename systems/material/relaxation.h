@@ -69,8 +69,8 @@ struct ViscousStretch {
     T volume;
 };
 
-/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are those of the law times a share; `bulk`
-/// acts on the change of volume alone.
+/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are the Lame constants of the law times a
+/// share; `bulk` acts on the change of volume alone.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
@@ -79,10 +79,10 @@ struct ViscousModuli {
 /// bodies: a held end makes a beam six times slower.
 inline constexpr Real rates_below = 20;
 
-/// Ratio of the stiffness of the relaxing part to that of the law that gives the loss factor at the lowest frequency of
-/// a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is `span` times the lowest. A
-/// ratio s then adds a loss modulus of (pi / 2) s / log(span) and a storage modulus of s log(rates_below) / log(span),
-/// both relative to the stiffness of the law.
+/// Ratio s of the stiffness of the relaxing part to the stiffness of the law, chosen for a given loss factor at the
+/// lowest frequency of a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is `span`
+/// times the lowest. At the lowest frequency a ratio s adds a loss modulus of (pi / 2) s / log(span) and a storage
+/// modulus of s log(rates_below) / log(span), both relative to the stiffness of the law.
 inline Real relaxing_share(Real loss_factor, Real span) {
     return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
 }

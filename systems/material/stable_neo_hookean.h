@@ -15,9 +15,9 @@ struct StableNeoHookean {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 82;
 
-    /// Parameters mu and lambda of the model for which it has the Lame constants of the material at small strain (Smith
-    /// 2018, section 3.4; docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above -1, la > mu / 8, so that
-    /// alpha lies between 1 and 7.
+    /// Parameters mu and lambda of the model. They are chosen so that at small strain the model has the Lame constants
+    /// of the material (Smith 2018, section 3.4; docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above
+    /// -1, la > mu / 8, so that alpha lies between 1 and 7.
     struct ModelModuli {
         Real mu, la;
     };
