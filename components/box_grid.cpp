@@ -42,8 +42,8 @@ void BoxGrid::build(std::span<const Aabb> box, std::span<const Index> rows) {
     }
     std::sort(levels_.begin(), levels_.end());
     for (std::size_t b = 1; b < bucket_begin_.size(); ++b) bucket_begin_[b] += bucket_begin_[b - 1];
-    // Filling a bucket moves its begin to its end, which was the begin of the next bucket. So afterwards all begins are
-    // shifted back by one bucket.
+    // Filling a bucket advances its begin to the begin of the next bucket. Shifting all begins by one bucket then
+    // restores them.
     for (const Entry& entry : listed_) entries_[bucket_begin_[bucket_of(entry.cell)]++] = entry;
     std::copy_backward(bucket_begin_.begin(), bucket_begin_.end() - 1, bucket_begin_.end());
     bucket_begin_[0] = 0;
