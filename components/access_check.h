@@ -1,5 +1,5 @@
-// Run-time check of column accesses. With SKERRY_CHECK_ACCESS (debug and sanitizer builds) every access to a column is
-// checked against the declarations of the running stage; without it the check costs nothing.
+// Run-time check of column accesses. If SKERRY_CHECK_ACCESS is defined (debug and sanitizer builds), every access to a
+// column is compared with the accesses that the running stage has declared. Otherwise the check compiles to nothing.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ inline constexpr bool access_is_checked = true;
 inline constexpr bool access_is_checked = false;
 #endif
 
-/// Is notified of every access to a column while a thread works under it. Throws if the access is not allowed.
+/// Observer of column accesses. touched() is called for every access by a thread on which an AccessScope has set the
+/// observer. It throws if the access is not allowed.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;
@@ -35,8 +36,8 @@ inline void check_access(const void* column, std::size_t bytes, bool writes) {
     if (const AccessWatch* watch = access_detail::watch_of_thread) watch->touched(column, bytes, writes);
 }
 
-/// Sets the watch of this thread to `watch` until the end of the scope, then restores the previous one. Null allows
-/// every access. Scopes nest, because a thread that waits inside one stage may meanwhile work for another.
+/// Sets the watch of this thread to `watch` until the end of the scope, then restores the previous watch. A null watch
+/// allows every access. Scopes nest, because a thread that waits inside one stage may meanwhile run another stage.
 class AccessScope {
 public:
     explicit AccessScope(const AccessWatch* watch) : before_(access_detail::watch_of_thread) {
@@ -50,8 +51,8 @@ private:
     const AccessWatch* before_;
 };
 
-/// A member that reports copies and moves of its owner as accesses. A forbidden move terminates the program with a
-/// message, because a move must not throw.
+/// Member of a class whose copies and moves count as accesses: it reports them to the watch. A forbidden move
+/// terminates the program with a message, because a move must not throw.
 class CopyCheck {
 public:
     CopyCheck() = default;

@@ -1,5 +1,5 @@
-// Type-erased tables and columns. Rarely run code uses them, so that it is compiled once and not once for every column
-// of every table.
+// Type-erased tables and columns for rarely run code. Such code is then compiled once, not once for every column of
+// every table.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ public:
     std::size_t size() const { return seen().size(); }
     const std::byte* read() const { return static_cast<const std::byte*>(seen().rows()); }
     std::byte* write() const { return static_cast<std::byte*>(changed().rows()); }
-    /// New rows are value-initialised.
+    /// Sets the number of rows. New rows are value-initialised.
     void resize(std::size_t count) const;
     /// Removes ranges of rows. Preconditions: see Column::erase.
     void erase(std::span<const Range> gone) const { changed().erase(gone, type_->bytes); }
@@ -43,16 +43,17 @@ private:
     const RowType* type_;
 };
 
-/// Description of a column of a table.
+/// Name, role, position and row type of a column of a table.
 struct ColumnInfo {
     const char* name;
     ColumnRole role;
-    bool has_row_each;   // false: a list into which rows of the table have ranges
-    std::size_t offset;  // from the start of the table [bytes]
+    bool has_row_each;   // false: the column is a list, and each row of the table has a range in it
+    std::size_t offset;  // offset of the column from the start of the table [bytes]
     const RowType* type;
 };
 
-/// The columns of a table, in the order in which the table lists them. Instantiated for each table in any_table.cpp.
+/// Returns descriptions of the columns of a table, in the order in which the table lists them. any_table.cpp
+/// instantiates it for each table.
 template <class Table>
 std::span<const ColumnInfo> columns_of();
 

@@ -1,4 +1,4 @@
-// Appends copies of the rows of a body, for another body with the same mesh.
+// Appends copies of the rows of a body for another body with the same mesh.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace skerry {
 
-/// Row offsets between a body and an earlier body with the same mesh.
+/// Offsets from the rows of a body to the rows of a later body with the same mesh.
 struct RowsBehind {
-    Index nodes, elements;  // rows of NodeTable; tetrahedra
+    Index nodes, elements;  // offsets in rows of NodeTable and in tetrahedra
     Index triangles = 0, edges = 0, vertices = 0;
 };
 
@@ -25,7 +25,7 @@ void move_on(std::array<Index, count>& rows, Index by) {
     for (Index& row : rows) move_on(row, by);
 }
 
-/// Appends copies of `rows` to the column, each after change(row).
+/// Appends copies of `rows` to the column. change(row) is applied to each copy before it is stored.
 template <class T>
 void append_again(Column<T>& column, Range rows, auto&& change) {
     const std::size_t first = column.size(), count = static_cast<std::size_t>(rows.size());

@@ -1,4 +1,4 @@
-// One row per body: ranges into the other tables, and its state as a whole.
+// One row per body: ranges of rows in the other tables, and the state of the body as a whole.
 #pragma once
 
 #include <cstdint>
@@ -16,81 +16,86 @@ namespace skerry {
 
 enum class BodyKind : std::uint8_t {
     deformable,
-    kinematic,  // a mesh collider: nodes without elements, moved by its collider
+    kinematic,  // body of a mesh collider: its nodes have no elements and move with the collider
 };
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
-/// A frame that translates with a body but does not rotate. Distances between bodies, and within a body, change only by
-/// the motion of nodes in their frames and by the relative motion of the frames. Common motion therefore changes no
-/// distance.
+/// A frame that translates with a body but does not rotate. Distances within a body change only by the motion of its
+/// nodes in the frame. The distance of two bodies changes also by the relative motion of their frames, but not by the
+/// motion that both frames share.
 struct MovingFrame {
-    Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when the displacement was last zero [m/s]
-    Vec3 offset = Vec3::Zero();    // displacement of the frame since then [m]
+    Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when BodyTable::displacement was last zero [m/s]
+    Vec3 offset = Vec3::Zero();    // displacement of the frame since BodyTable::displacement was last zero [m]
     Vec3 position = Vec3::Zero();  // displacement of the frame since the body was added [m]
-    Real path = 0;                 // length of its path since the body was added [m]
+    Real path = 0;                 // length of the path of the frame since the body was added [m]
 };
 template <>
 struct NumbersOf<MovingFrame> : Reals<10> {};
 
 struct BodyTable {
-    Column<std::uint32_t> slot;  // handle slot of the body, or of the collider that a kinematic body belongs to
+    Column<std::uint32_t> slot;  // handle slot of the body; for a kinematic body the slot of its collider
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
     Column<Index> material;             // row of MaterialTable; no_index for a kinematic body
-    Column<SurfaceProperties> surface;  // a negative property is taken from the material
-    Column<CollisionFilter> filter;     // a kinematic body uses the filter of its collider instead
-    Column<Index> collider;             // row of ColliderTable of a kinematic body, else no_index
+    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the material are used
+    Column<CollisionFilter> filter;     // collision filter; for a kinematic body the filter of its collider is used
+    Column<Index> collider;             // row of ColliderTable for a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
-    Column<Range> blocks;         // of ElementBlockTable
-    Column<Range> element_nodes;  // of ElementNodeTable
+    Column<Range> blocks;         // rows of ElementBlockTable
+    Column<Range> element_nodes;  // rows of ElementNodeTable
     Column<Range> tetrahedron_blocks;
-    Column<Range> rigid;     // of RigidBodyTable: one row if the body is rigid or implicit, else empty
-    Column<Range> implicit;  // of ImplicitNodeTable: one row per node if the body is implicit, else empty
+    Column<Range> rigid;     // rows of RigidBodyTable: one row if the body is rigid or implicit, else none
+    Column<Range> implicit;  // rows of ImplicitNodeTable: one row per node if the body is implicit, else none
     Column<Range> triangles;
     Column<Range> edges;
     Column<Range> vertices;
     Column<Range> bvh_nodes;
     Column<Range> bvh_leaves;
     Column<Index> tetrahedron_count;
-    Column<Index> pinned_count;     // nodes without degrees of freedom
-    Column<Real> contact_distance;  // thickness of the contact shell; two bodies use the mean of theirs [m]
-    // Core of a round rigid body: its first nodes. Sphere: 1, its centre. Capsule: 2, the ends of its axis. The surface
-    // of both is at distance round_radius from the core. Cylinder: 3, its centre, the centre of one end and a point of
-    // the rim there, which define its surface; round_radius is then the radius of the bounding ball [m]. 0: the body is
-    // not round and has triangles
+    Column<Index> pinned_count;     // number of nodes without degrees of freedom
+    Column<Real> contact_distance;  // thickness of the contact shell; a pair of bodies uses the mean of both [m]
+    // Number of core nodes of a round rigid body: its first nodes. 0: the body is not round and has triangles. A sphere
+    // has 1 core node, its centre. A capsule has 2, the ends of its axis. The surface of a sphere or capsule has the
+    // distance round_radius from the core. A cylinder has 3, which define its surface: its centre, the centre of one
+    // end, and a point on the rim of that end. For a cylinder round_radius is the radius of the bounding ball [m].
     Column<Index> core_nodes;
     Column<Real> round_radius;
-    Column<Real> mean_edge;     // of the surface at rest [m]
-    Column<Real> min_altitude;  // of the elements at rest [m]
+    Column<Real> mean_edge;     // mean edge length of the surface in the rest shape [m]
+    Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
     Column<Real> rest_step;     // stable step of the rest shape [s]
-    Column<Real> stable_step;   // stable step at the last check [s]
-    Column<Real> cluster_step;  // longest step at which its implicit elements are stable; 0 if it has none [s]
-    // 1: the body is at rest and left out of the step until something touches it
+    Column<Real> stable_step;   // stable step found by the last check [s]
+    // Longest step at which the implicit elements are stable; 0 without implicit elements [s].
+    Column<Real> cluster_step;
+    // 1: the body is asleep; steps leave it out until something touches it.
     Column<std::uint8_t> asleep;
-    // Steps until find_unstrained.h checks the body again; until then it counts as undeformed and unrotated, so that
-    // its elements give no force. 0: the elements are computed
+    // Number of steps until find_unstrained.h checks the body again. Until then the body counts as undeformed and
+    // unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
-    // Time for which the body has been still (update_sleep.h) [s]. With the engine's own limits sleep_time has two
-    // halves. `drift` is the largest distance of a node from its still_position in this half, negative once a later
-    // check found it nearer again; `drift_before` is that of the previous half [m]
+    // Time for which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
+    // With the engine's own limits, the sleep time is divided into two halves. `drift`: largest distance of a node from
+    // its still_position in the current half [m]. Its sign is negative if a later measurement found a smaller distance.
+    // `drift_before`: largest such distance in the previous half [m].
     Column<Real> drift, drift_before;
-    // Largest distance of the shape from that at still_position in this half [m]; and that of the previous half if it
-    // only grew there, else 0 [m]
+    // `shape_drift`: largest distance of the shape in the current half from the shape at the start of the half,
+    // still_position [m] (stillness.h: shape_distance). `creep_before`: largest distance in the previous half if it
+    // occurred at the end of the half, else 0 [m].
     Column<Real> shape_drift, creep_before;
-    Column<Real> max_speed;  // greatest node speed of this step [m/s]
+    Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
-    // Quantities in the frame of the body:
-    Column<Real> frame_speed;   // greatest node speed of this step [m/s]
-    Column<Real> displacement;  // greatest distance of a node from its displacement origin [m]
-    // Travel bound: since any earlier time no node has moved further than the growth of `travel` plus twice the
-    // displacement at that time [m]
+    // Quantities measured in the moving frame of the body:
+    Column<Real> frame_speed;  // greatest speed of a node in this step, relative to the frame [m/s]
+    // Greatest distance of a node from its displacement_origin, which moves with the frame [m].
+    Column<Real> displacement;
+    // Bound on the motion of nodes relative to the frame [m]. Since any earlier time, no node has moved further than
+    // the growth of `travel` since that time plus twice the `displacement` at that time.
     Column<Real> travel;
-    Column<Real> uninverted_until;  // no tetrahedron turns inside out or back while travel is below this [m]
+    Column<Real> uninverted_until;  // no tetrahedron changes the sign of its volume while `travel` is below this [m]
 
-    /// The only list of columns. Derived by Model::rebuild_outlines: triangles to bvh_leaves.
+    /// Visits all columns; the only list of them. Model::rebuild_outlines derives the columns `triangles` to
+    /// `bvh_leaves`.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);

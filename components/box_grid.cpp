@@ -6,18 +6,20 @@
 
 namespace skerry {
 
-/// Exponent of the least power of two above the longest edge. Rounding of the difference never moves it below that
-/// power.
+/// Exponent of the smallest power of two above the longest edge of the box. Rounding of the edge length never makes the
+/// exponent too small.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
-    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;  // [m]; so that cells have a finite edge
+    // Limits of the edge length [m], so that cells have a finite edge.
+    constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;
     int level = 0;
     std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);
     return level;
 }
 
-/// Monotonic in each coordinate despite rounding: the greater of two coordinates never gets the smaller cell number.
+/// Cell that contains the point. Despite rounding, cell numbers are monotonic: the greater of two coordinates never
+/// gets the smaller number.
 BoxGrid::Cell BoxGrid::cell_at(Level level, const Vec3& point, Real edge) {
-    constexpr Real most = 0x1p62;  // points further away all get this number
+    constexpr Real most = 0x1p62;  // greatest cell number; all points further away get this number
     const auto number = [&](Real coordinate) {
         return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -most, most));
     };
@@ -40,8 +42,8 @@ void BoxGrid::build(std::span<const Aabb> box, std::span<const Index> rows) {
     }
     std::sort(levels_.begin(), levels_.end());
     for (std::size_t b = 1; b < bucket_begin_.size(); ++b) bucket_begin_[b] += bucket_begin_[b - 1];
-    // Each bucket is filled from its begin. Afterwards its begin has moved to its end, which was the begin of the next
-    // one.
+    // Filling a bucket advances its begin to the begin of the next bucket. Shifting all begins by one bucket then
+    // restores them.
     for (const Entry& entry : listed_) entries_[bucket_begin_[bucket_of(entry.cell)]++] = entry;
     std::copy_backward(bucket_begin_.begin(), bucket_begin_.end() - 1, bucket_begin_.end());
     bucket_begin_[0] = 0;

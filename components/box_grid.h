@@ -1,4 +1,5 @@
-// A hashed grid over boxes of any sizes. Finds overlapping boxes in a time that grows with their number.
+// A hashed grid of boxes of any size. It finds overlapping boxes in a time that grows linearly with the number of boxes
+// if few boxes overlap.
 #pragma once
 
 #include <array>
@@ -12,18 +13,18 @@
 
 namespace skerry {
 
-/// A hierarchy of grids, each twice as coarse as the one before. A box is stored in the grid whose cells are just wider
-/// than its longest edge, in the cell of its lower corner. Any box that meets it reaches into that cell or comes less
-/// than one cell close to it. Cells are found by hashing their numbers (Teschner, Heidelberger, Müller, Pomeranets,
-/// Gross 2003; grids of several sizes: Mirtich 1996). The memory is reused by the next `build`.
+/// Grids whose cell edges are powers of two. A box is stored in the grid whose cells are just wider than its longest
+/// edge, in the cell of its lower corner. Any box that overlaps the stored box reaches into this cell or comes closer
+/// to it than one cell width. Cells are found by hashing their numbers (Teschner, Heidelberger, Müller, Pomeranets,
+/// Gross 2003; grids of several sizes: Mirtich 1996). The next `build` reuses the memory.
 class BoxGrid {
 public:
-    /// `rows`: the rows of `box` to insert; all of these boxes are bounded. `box` must stay unchanged while the grid is
-    /// queried.
+    /// Builds the grid. `rows`: the rows of `box` to insert; all of these boxes must be finite. `box` must stay
+    /// unchanged while the grid is queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) once for each row whose box may meet that of `row`. If two boxes share a point, exactly one
-    /// of them is visited from the other.
+    /// Calls visit(other) once for each row whose box may overlap the box of `row`. If two boxes share a point, exactly
+    /// one of them is visited from the other.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];
@@ -43,7 +44,7 @@ public:
     }
 
 private:
-    using Level = int;  // cells have edges of 2^level [m]
+    using Level = int;  // exponent: the cells of a level have edges of 2^level [m]
 
     struct Cell {
         Level level;
@@ -79,7 +80,7 @@ private:
     std::size_t bucket_mask_ = 0;
     Column<std::size_t> bucket_begin_;
     Column<Entry> entries_;  // sorted by bucket
-    Column<Entry> listed_;   // in the order of `rows`
+    Column<Entry> listed_;   // entries in the order of `rows`
 };
 
 }  // namespace skerry

@@ -16,29 +16,30 @@ struct Aabb {
     Vec3 upper;  // [m]
 };
 
-/// A node of a tree stored in depth-first order: the left child of row i is i + 1, and `skip` is one past its last
-/// descendant.
+/// A node of a tree that is stored in depth-first order. The left child of row i is row i + 1. `skip` is the row behind
+/// the last descendant.
 struct BvhNode {
     Index skip;
     Index right;  // row of the right child; no_index in a leaf
     Index leaf;   // row of BvhLeafTable; no_index in an inner node
-    Index count;  // triangles of a leaf, the first lanes of its row; 0 in an inner node
+    Index count;  // number of triangles in a leaf, which are the first lanes of its row; 0 in an inner node
 };
 
 inline constexpr int leaf_lanes = 8;
 
-/// The triangles of a leaf, rows of TriangleTable; no_index in lanes without one.
+/// Triangles of a leaf: rows of TriangleTable, no_index in unused lanes.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// The nodes of the triangles of a leaf, stored together: fitting or gathering a leaf does not read TriangleTable.
+/// Nodes of the triangles of a leaf, stored together, so that fitting or gathering a leaf does not read TriangleTable.
 struct LeafNodes {
     static constexpr std::size_t most = 3 * leaf_lanes;
-    std::array<std::array<Index, leaf_lanes>, 3> corner;  // by lane; lanes without a triangle repeat the first
+    // Nodes of corners, by lane; lanes without a triangle repeat the first triangle.
+    std::array<std::array<Index, leaf_lanes>, 3> corner;
     Index count = 0;
     std::array<Index, most> node{};  // without duplicates, ascending
 };
 
-/// The edges and vertices that the triangles of a leaf own, stored together: a search does not read TriangleTable.
+/// Edges and vertices that the triangles of a leaf own, stored together, so that a search does not read TriangleTable.
 struct LeafFeatures {
     static constexpr std::size_t most = 3 * leaf_lanes;
     struct Edge {
@@ -54,10 +55,10 @@ struct LeafFeatures {
     std::array<Point, most> point{};
 };
 
-/// Both tables are derived by Model::rebuild_outlines.
+/// Box and topology of each tree node. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
 struct BvhTable {
-    Column<Aabb> box;      // refitted when a pair of its body is searched again [m]
-    Column<BvhNode> node;  // topology, built once from the rest shape
+    Column<Aabb> box;      // box of the tree node; refitted when a pair of its body is searched again [m]
+    Column<BvhNode> node;  // topology of the tree, built once from the rest shape
 
     void for_each_column(auto&& visit) {
         visit("box", box, ColumnRole::scratch);

@@ -16,12 +16,12 @@ enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder,
 template <>
 inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 
-/// A shape in its own frame, centred at the origin; axes along z.
+/// A collider shape in its own frame: centred at the origin, with its axis along z.
 struct ColliderGeometry {
     ColliderShape shape;
     // Dimensions [m]. plane: unused (normal +z). sphere: (radius, -, -). box: half extents. capsule: (radius, half
     // length of the segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor
-    // at z = 0, open above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider
+    // at z = 0, open above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider.
     Vec3 size;
 };
 template <>
@@ -32,31 +32,32 @@ struct MembersOf<ColliderGeometry> {
 /// Pose of a rigid shape and its motion during this step.
 struct RigidMotion {
     Vec3 position;          // [m]
-    Mat3 rotation;          // from the shape frame to the world
-    Vec3 velocity;          // of the origin, mean over the step [m/s]
-    Vec3 angular_velocity;  // mean over the step [rad/s]
+    Mat3 rotation;          // maps the shape frame to the world
+    Vec3 velocity;          // velocity of the origin, mean over the step [m/s]
+    Vec3 angular_velocity;  // angular velocity, mean over the step [rad/s]
 
     bool stands_still() const { return velocity.isZero(0) && angular_velocity.isZero(0); }
 };
 template <>
 struct NumbersOf<RigidMotion> : Reals<18> {};
 
-/// Keyframe of a script. Between keys the position is linear and the rotation turns about a fixed axis.
+/// Keyframe of a script. Between keyframes the position is interpolated linearly, and the rotation turns about a fixed
+/// axis.
 struct Keyframe {
     Real time;      // [s]
     Vec3 position;  // [m]
-    Vec3 rotation;  // axis times angle [rad]
+    Vec3 rotation;  // rotation vector: axis times angle [rad]
 };
 template <>
 struct NumbersOf<Keyframe> : Reals<7> {};
 
-/// Motion of a collider or an attachment.
+/// Scripted motion of a collider or an attachment.
 struct MotionScript {
-    Vec3 velocity;          // used without keys [m/s]
-    Vec3 angular_velocity;  // used without keys [rad/s]
-    Index key_begin;        // range in ColliderTable::keyframe or AttachmentTable::keyframe
+    Vec3 velocity;          // constant velocity if the script has no keyframes [m/s]
+    Vec3 angular_velocity;  // constant angular velocity if the script has no keyframes [rad/s]
+    Index key_begin;        // range of keyframes in ColliderTable::keyframe or AttachmentTable::keyframe
     Index key_end;
-    Real start = 0;  // time of its initial pose, used without keys [s]
+    Real start = 0;  // time at which the initial pose holds; used without keyframes [s]
 };
 template <>
 struct MembersOf<MotionScript> {
@@ -66,16 +67,17 @@ struct MembersOf<MotionScript> {
 struct ColliderTable {
     Column<std::uint32_t> slot;
     Column<ColliderGeometry> geometry;
-    Column<RigidMotion> motion;   // in this step, written by move_colliders
-    Column<RigidMotion> initial;  // at the start of the script
+    Column<RigidMotion> motion;   // pose and motion in this step, written by move_colliders
+    Column<RigidMotion> initial;  // pose and motion at the start of the script
     Column<MotionScript> script;
-    Column<Keyframe> keyframe;          // for all colliders; each script has a range
-    Column<SurfaceProperties> surface;  // the body's value replaces a negative property
-    Column<CollisionFilter> filter;     // groups it belongs to and collides with
-    Column<Index> body;                 // row of the kinematic body of a mesh collider, else no_index
-    Column<Real> travel;                // bound on the motion of its points near a body, as BodyTable::travel [m]
+    Column<Keyframe> keyframe;          // keyframes of all colliders; each script has a range of them
+    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the touching body are used
+    Column<CollisionFilter> filter;     // groups that the collider belongs to and collides with
+    Column<Index> body;                 // row of BodyTable: kinematic body of a mesh collider, else no_index
+    // Bound on the motion of the collider's points near a body, similar to BodyTable::travel [m].
+    Column<Real> travel;
 
-    /// All columns with one row per collider. `keyframe` has none and is visited by for_each_column only.
+    /// Visits the columns with one row per collider. `keyframe` is not one of them; only for_each_column visits it.
     void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("geometry", geometry, ColumnRole::state);

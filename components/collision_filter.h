@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Two objects collide if each is in a group that the mask of the other contains.
+/// Two objects collide if each of them belongs to a group in the mask of the other.
 struct CollisionFilter {
     std::uint32_t group = 1;           // one bit per group that the object belongs to
     std::uint32_t mask = 0xffffffffu;  // one bit per group that the object collides with
@@ -23,7 +23,7 @@ inline bool may_touch(const CollisionFilter& a, const CollisionFilter& b) {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
 }
 
-/// One row per pair that does not collide, whatever its groups. Rows ascend by key.
+/// One row per pair of objects that never collide, whatever their groups. Rows ascend by key.
 struct DisabledPairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
 

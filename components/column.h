@@ -75,7 +75,7 @@ public:
         }
         memory.set_size(memory.size() + 1);
     }
-    /// Removes `count` rows from `first` on; later rows move down in order.
+    /// Removes `count` rows, beginning with row `first`. Later rows move down in order.
     void erase(std::size_t first, std::size_t count) { changed().erase(first, count, sizeof(T)); }
     /// Removes ranges of rows in ascending order, in one pass. Parts of a range beyond the last row are ignored.
     void erase(std::span<const Range> gone) { changed().erase(gone, sizeof(T)); }
@@ -89,8 +89,8 @@ private:
 
     static T* rows(const RowMemory& memory) { return static_cast<T*>(memory.rows()); }
 
-    // All accesses to the rows go through these two functions, which check them if checks are enabled. Always inlined:
-    // without checks they cost nothing, even in a build without optimisation.
+    // All accesses to the rows go through these two functions, which check the access if checks are enabled. They are
+    // always inlined, so that without checks they cost nothing, even in a build without optimisation.
     [[gnu::always_inline]] const RowMemory& seen() const {
         if constexpr (access_is_checked) check_access(this, sizeof *this, false);
         return memory_;

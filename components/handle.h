@@ -1,4 +1,4 @@
-// Handles with generations, by which a user refers to a body, a collider, a material or an attachment.
+// Handles with generations. A user refers to a body, a collider, a material or an attachment by its handle.
 #pragma once
 
 #include <compare>
@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Refers to one row of a table for as long as that row lives. A handle to a removed row is recognised as stale, even
-/// if its slot has been reused; a handle to a row of another world is recognised too.
+/// Refers to one row of a table as long as the row exists. A handle to a removed row is recognised as stale, even if
+/// its slot has been reused. A handle to a row of another world is recognised, too.
 template <class Tag>
 struct Handle {
     std::uint32_t slot = 0xffffffffu;
@@ -26,12 +26,12 @@ using BodyHandle = Handle<struct BodyTag>;
 using ColliderHandle = Handle<struct ColliderTag>;
 using AttachmentHandle = Handle<struct AttachmentTag>;
 
-/// Maps handles to rows of a table whose rows move down when earlier ones are erased.
+/// Maps handles to rows of a table. Rows may move down when earlier rows are erased.
 template <class HandleType>
 class HandleMap {
 public:
-    /// The number of the world that owns the rows. A world that is copied, or saved and loaded, keeps it, so that
-    /// earlier handles stay valid. No step depends on it.
+    /// Number of the world that owns the rows. The number stays the same if a world is copied, or saved and loaded, so
+    /// that earlier handles stay valid. No step depends on it.
     std::uint32_t world() const { return world_; }
     void set_world(std::uint32_t number) { world_ = number; }
 
@@ -49,7 +49,7 @@ public:
         return handle_of_slot(slot);
     }
 
-    /// The row of a live handle, or no_index for a stale or foreign one.
+    /// The row of a live handle; no_index for a stale handle or one of another world.
     Index row(HandleType handle) const {
         if (handle.world != world_ || handle.slot >= row_.size() || generation_[handle.slot] != handle.generation)
             return no_index;
@@ -59,7 +59,7 @@ public:
     /// Makes a live handle refer to another row.
     void rename(HandleType handle, Index row) { row_[handle.slot] = row; }
 
-    /// Releases a live handle. Its row stays where it is, without a handle.
+    /// Releases a live handle. The row of the handle stays in the table, without a handle.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
@@ -74,7 +74,7 @@ public:
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
-    /// The live handle of a slot, as stored in a table row.
+    /// The live handle of a slot number, which table rows store.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {
@@ -83,10 +83,10 @@ public:
     }
 
 private:
-    Column<Index> row_;  // by slot; no_index: free
+    Column<Index> row_;  // by slot: row of the handle; no_index: the slot is free
     Column<std::uint32_t> generation_;
     std::uint32_t world_ = 0;
-    std::uint32_t lowest_free_ = 0;  // no slot below it is free
+    std::uint32_t lowest_free_ = 0;  // all slots below this one are in use
 };
 
 }  // namespace skerry

@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md): not cryptographic, but any changed bit changes it. The
-/// same bytes give the same value on every machine. The value does not depend on how the bytes are split into calls of
-/// add.
+/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md). It is not a cryptographic hash, but a change of the
+/// data almost surely changes the value. The same bytes give the same value on every machine. The value does not depend
+/// on how the bytes are split into calls of add.
 class Hash {
 public:
     Hash();

@@ -1,4 +1,4 @@
-// Coupling of contacts on implicit bodies in this step through the deformation of these bodies
+// Coupling between the contacts of an implicit body through the deformation of the body
 // (docs/methods/implicit_bodies.md 4).
 #pragma once
 
@@ -12,16 +12,19 @@ namespace skerry {
 
 /// Written by couple_implicit_bodies.
 struct ImplicitCoupling {
-    Ragged<Index> nodes;  // by row of RigidBodyTable: rows of NodeTable that contacts touch, ascending
-    // The columns of the bodies have one row per row of RigidBodyTable. `response`: velocities of the touched nodes per
-    // unit impulse on them, in the frame of the mesh [1/kg]: a symmetric matrix, column by column, three numbers per
-    // node. The bodies own the memory.
+    Ragged<Index> nodes;  // by row of RigidBodyTable: the nodes that contacts touch, as ascending rows of NodeTable
+    // Velocities of the touched nodes per unit impulse on them, in the frame of the mesh [1/kg], by row of
+    // RigidBodyTable. This is a symmetric matrix, stored column by column, with three numbers per node. The implicit
+    // bodies own the memory.
     Column<std::span<const Real>> response;
-    Column<Mat3> turn, impulse_turn;  // velocities from the frame of the mesh to the world; impulses back, times theta
+    // Rotations by row of RigidBodyTable. `turn` maps velocities from the frame of the mesh to the world.
+    // `impulse_turn` maps impulses from the world to the frame of the mesh, and scales them by theta and the weight of
+    // a long step.
+    Column<Mat3> turn, impulse_turn;
     Column<Index> place;  // by row of ImplicitNodeTable: index among the touched nodes of the body, or no_index
 
     std::size_t numbers(std::size_t body) const { return 3 * nodes[body].size(); }
-    /// Three columns of `response`, one after the other.
+    /// The three columns of `response` for the touched node `at`, one after the other.
     std::span<const Real> columns(std::size_t body, Index at) const {
         return response[body].subspan(3 * static_cast<std::size_t>(at) * numbers(body), 3 * numbers(body));
     }

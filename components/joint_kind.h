@@ -1,4 +1,4 @@
-// The kinds of joints, and the handle by which a user refers to one.
+// The kinds of joints, and the handle of a joint.
 #pragma once
 
 #include <cstdint>

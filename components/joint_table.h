@@ -1,4 +1,4 @@
-// Joints of rigid bodies: one row per joint, and in each step blocks of three constraint equations
+// Joints of rigid bodies: one row per joint, and the blocks of three constraint equations that each step computes
 // (docs/methods/joints.md).
 #pragma once
 
@@ -14,13 +14,13 @@
 
 namespace skerry {
 
-/// Drive of the axis of a hinge or a slider: none, towards a speed, or towards a position.
+/// Drive of the axis of a hinge or a slider: no drive, towards a speed, or towards a position.
 enum class JointDrive : std::uint8_t { none, speed, position };
 template <>
 inline constexpr std::uint64_t value_count<JointDrive> = 3;
 
 struct JointMotorRow {
-    Real target = 0;      // speed [rad/s or m/s] or position [rad or m]
+    Real target = 0;      // target speed [rad/s or m/s] or target position [rad or m]
     Real most = 0;        // largest torque or force [N m or N]
     Real most_speed = 0;  // largest speed on the way to a position [rad/s or m/s]
 
@@ -29,34 +29,35 @@ struct JointMotorRow {
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
 
-/// Frame of a joint on a body or in the world: its origin, and its axis as the third axis of the frame.
+/// Frame of a joint on a body or in the world. The third axis of the frame is the axis of the joint.
 struct JointFrame {
-    Vec3 point = Vec3::Zero();  // in the frame of the mesh, or of the world [m]
+    Vec3 point = Vec3::Zero();  // origin, in the frame of the mesh or of the world [m]
     Mat3 axes = Mat3::Identity();
 };
 template <>
 struct NumbersOf<JointFrame> : Reals<12> {};
 
-/// The relative coordinate is the angle of a hinge [rad] or the displacement of a slider [m], zero when the joint was
-/// made.
+/// One row per joint. The coordinate of a joint is the angle of a hinge [rad] or the displacement of a slider [m]. It
+/// is zero when the joint is made.
 struct JointTable {
     Column<std::uint32_t> slot;
     Column<JointKind> kind;
     Column<JointDrive> drive;
-    Column<std::uint8_t> parts;  // 1: the joint has switched off collisions between its bodies
+    Column<std::uint8_t> parts;  // 1: the joint switches off collisions between its two bodies
     Column<Index> first;         // row of BodyTable
-    Column<Index> second;        // row of BodyTable, or no_index: the world
+    Column<Index> second;        // row of BodyTable; no_index for the world
     Column<JointFrame> first_frame, second_frame;
-    Column<Real> lower, upper;  // limits of the coordinate; infinite: no limit
+    Column<Real> lower, upper;  // limits of the joint coordinate; infinite: no limit
     Column<JointMotorRow> motor;
-    // Values of the last step: the coordinate at its start, whole turns included, and the impulses.
+    // Values of the last step: the joint coordinate at its start, which counts whole revolutions, and the impulses.
     Column<Real> coordinate;
-    Column<Vec3> impulse, moment;  // on the first body, in the frame on the second [N s, N m s]
-    Column<Real> step;             // time for which the impulses acted; 0 before the first step [s]
+    // Impulse and moment on the first body, in the joint frame of the second [N s, N m s].
+    Column<Vec3> impulse, moment;
+    Column<Real> step;  // time for which the impulses acted; 0 before the first step [s]
 
     std::size_t size() const { return slot.size(); }
 
-    /// The only list of columns.
+    /// Visits all columns. This is the only list of them.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -76,9 +77,9 @@ struct JointTable {
     }
 };
 
-/// Law of the third row of a block: how its coordinate may move.
+/// Constraint law of the third row of a block: locked, or free along the joint coordinate, with limits and a drive.
 struct AxisLaw {
-    bool locked = true;  // locked like the other two rows
+    bool locked = true;  // the third row is locked like the other two rows
     Real coordinate = 0;
     Real lower = -std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
     JointDrive drive = JointDrive::none;
@@ -86,25 +87,26 @@ struct AxisLaw {
     Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
 };
 
-/// Three constraint rows of one joint in this step, on the velocities at its point or on the angular velocities.
-/// Impulses act on the first body.
+/// Three constraint equations of one joint in this step: for the relative velocity at the joint point, or for the
+/// relative angular velocity. Impulses are those on the first body.
 struct JointBlock {
     Index joint;                    // row of JointTable
-    bool turning;                   // the rows constrain angular velocities
-    Index first, second;            // rows of RigidBodyTable; no_index: the world
-    Index first_node, second_node;  // first node of the body if impulses can move it, else no_index
+    bool turning;                   // true: the equations constrain angular velocities
+    Index first, second;            // rows of RigidBodyTable; no_index for the world
+    Index first_node, second_node;  // first node of each body if impulses can move the body, else no_index
     Vec3 point;                     // [m]
-    Mat3 frame;                     // columns: the directions of the rows
-    Vec3 error;                     // along the locked rows [m or rad]
+    Mat3 frame;                     // columns: directions of the three equations
+    Vec3 error;                     // position error along the locked directions [m or rad]
     AxisLaw axis;
 };
 
-/// In joint order; blocks of one joint are adjacent.
+/// Blocks of all joints, in joint order. Blocks of one joint are adjacent.
 struct JointBlockTable {
     Column<JointBlock> block;
-    Column<Vec3> impulse;          // by row of the block; before the solve: the warm start [N s or N m s]
-    Column<Real> coordinate;       // by row of JointTable
-    Column<std::uint8_t> resting;  // by row of JointTable: its bodies are at rest, and it keeps its last impulse
+    // Impulses of the three equations of a block; before the solve: the warm start [N s or N m s].
+    Column<Vec3> impulse;
+    Column<Real> coordinate;       // by row of JointTable: coordinate at the start of the step
+    Column<std::uint8_t> resting;  // by joint: 1 if its bodies are asleep; such a joint keeps its last impulse
 
     std::size_t size() const { return block.size(); }
     void for_each_column(auto&& visit) {

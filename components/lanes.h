@@ -1,5 +1,5 @@
-// Lanes<T, W>: W rows side by side, so that a kernel loads W values of one field at once. Real8: the register into
-// which they are loaded.
+// Lanes<T, W>: W values side by side, so that a kernel loads W values of one field at once. Real8: the register that
+// holds the loaded values.
 #pragma once
 
 #include <cstddef>
@@ -27,13 +27,13 @@ typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 /// Half of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
-// Unaligned variants that may alias other reals, for loads from the address of any Real. Not memcpy: without 512-bit
-// registers it becomes copies of 16 bytes, and a load of 32 bytes right after has to wait for them.
+// Types for loads from the address of any Real: unaligned, and may alias other reals. memcpy is avoided: without
+// 512-bit registers it becomes copies of 16 bytes, and a load of 32 bytes right after the copies has to wait for them.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 
 /// Vector type of the element force kernel: as many reals as a register holds.
-#ifdef __AVX512VL__  // not __AVX512F__, which cmake/flags.cmake hides from Eigen
+#ifdef __AVX512VL__  // tested instead of __AVX512F__, which cmake/flags.cmake hides from Eigen
 using KernelReal = Real8;
 #else
 using KernelReal = Real4;
@@ -57,7 +57,7 @@ inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>
     *reinterpret_cast<Real8InMemory*>(to.lane) = from;
 }
 
-/// Part `part` of the lanes of a block; all lanes for T = Real8.
+/// Loads part `part` of the lanes of a block; for T = Real8 all lanes.
 template <class T>
 [[gnu::always_inline]] inline T load_part(const Lanes<Real, element_lanes>& from, std::size_t part) {
     if constexpr (lanes_of<T> == element_lanes)

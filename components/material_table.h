@@ -11,14 +11,14 @@
 
 namespace skerry {
 
-/// Material constants used by the kernels, derived once.
+/// Material constants that the kernels use, computed once from the parameters of the user.
 struct MaterialConstants {
     MaterialModel model;
-    Real shear_modulus;       // Lame mu of small strain [Pa]
-    Real lame_lambda;         // Lame lambda of small strain [Pa]
+    Real shear_modulus;       // Lame constant mu at small strain [Pa]
+    Real lame_lambda;         // Lame constant lambda at small strain [Pa]
     Real density;             // [kg/m^3]
     Real loss_factor = 0;     // systems/material/relaxation.h
-    Real bulk_viscosity = 0;  // damping ratio of an element's highest frequency, acting on its change of volume
+    Real bulk_viscosity = 0;  // damping ratio at the highest frequency of an element, for changes of its volume
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
@@ -27,17 +27,17 @@ struct MembersOf<MaterialConstants> {
     static std::span<const Member> list();
 };
 
-/// Part of the stress that an element gives: all of it, the part of one Lame constant alone, or the inversion barrier,
-/// which keeps a tetrahedron from turning over. Only tetrahedra have the barrier.
+/// Part of the stress that an element exerts: the whole stress, the part of one Lame constant alone, or the inversion
+/// barrier, which keeps a tetrahedron from inverting. Only tetrahedra have an inversion barrier.
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 template <>
 inline constexpr std::uint64_t value_count<ElementPart> = 4;
 
-/// Modulus of the inversion barrier over the modulus lambda + 2 mu of the material.
+/// Ratio of the modulus of the inversion barrier to the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// The constants of one part of the stress: for a part of one Lame constant the other is zero. An inversion barrier has
-/// no losses except its viscosity if a cluster carries it.
+/// Material constants for one part of the stress. For the part of one Lame constant, the other constant is zero. An
+/// inversion barrier dissipates nothing, except by its viscosity if it belongs to a cluster.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
@@ -49,8 +49,8 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// Surface properties of a contact. A negative property of a body is taken from its material, one of a collider from
-/// the body.
+/// Surface properties of a material, body or collider. If a property of a body is negative, the property of its
+/// material is used. If a property of a collider is negative, the property of the touching body is used.
 struct SurfaceProperties {
     Real static_friction = -1;
     Real dynamic_friction = -1;
@@ -66,7 +66,7 @@ struct MaterialTable {
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // decay rate of deformation velocities; rigid motion is kept [1/s]
+    Column<Real> damping;        // decay rate of deformation velocities; rigid motion is not damped [1/s]
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {

@@ -9,14 +9,15 @@
 
 namespace skerry {
 
-/// Clusters of all bodies. An impulse on a node moves every node of its cluster, by a row of `inverse`. Made by
-/// build_clusters from the implicit elements and updated by stiffen_clusters.
+/// Clusters of all bodies. An impulse on one node moves every node of its cluster; a row of `inverse` gives the
+/// velocities. build_clusters makes the clusters from the implicit elements, and stiffen_clusters updates them.
 struct NodeClusters {
-    Ragged<Index> nodes;              // by cluster: rows of NodeTable, moving nodes only, ascending
+    Ragged<Index> nodes;              // by cluster: its moving nodes, as ascending rows of NodeTable
     Column<Index> body;               // by cluster: row of BodyTable
     Column<std::size_t> first_entry;  // by cluster: start of its matrix in `inverse`
-    Column<Real> inverse;             // A^-1, row by row [1/kg]
-    Column<Index> cluster_of, place;  // by node: its cluster or no_index, its place in it; empty without clusters
+    Column<Real> inverse;             // inverse A^-1 of the matrix of inertia of each cluster, row by row [1/kg]
+    // Cluster of each node or no_index, and its index in the cluster; empty without clusters.
+    Column<Index> cluster_of, place;
 
     std::size_t size() const { return body.size(); }
     bool empty() const { return body.empty(); }
@@ -30,12 +31,12 @@ struct NodeClusters {
     }
     /// Cluster of a node, or no_index.
     Index cluster(Index node) const { return cluster_of.empty() ? no_index : cluster_of[node]; }
-    /// The first node of the cluster of `node`, or `node` itself.
+    /// The first node of the cluster of `node`; `node` itself if it belongs to no cluster.
     Index leader(Index node) const {
         const Index of = cluster(node);
         return of == no_index ? node : nodes.item[nodes.offset[of]];
     }
-    /// Velocities of the nodes of a cluster per unit impulse on the node at place `at` [1/kg].
+    /// Velocities of the nodes of a cluster per unit impulse on node number `at` of the cluster [1/kg].
     std::span<const Real> row(Index cluster, Index at) const {
         const auto c = static_cast<std::size_t>(cluster);
         const std::size_t count = nodes[c].size();

@@ -9,24 +9,28 @@ namespace skerry {
 
 /// Mesh vertices of all bodies, body after body. Plain data: no behaviour, no pointers.
 struct NodeTable {
-    Column<Vec3> position;       // in the world frame [m]
-    Column<Vec3> velocity;       // [m/s]
-    Column<Vec3> velocity_next;  // written by predict_velocity, corrected by solve_regions [m/s]
-    // Split impulse: moves the position in this step only; zero unless a contact is pressed in [m/s].
+    Column<Vec3> position;  // position in the world frame [m]
+    Column<Vec3> velocity;  // [m/s]
+    // Velocity at the end of the step; predict_velocity writes it, solve_regions corrects it [m/s].
+    Column<Vec3> velocity_next;
+    // Velocity of the split impulse, which moves the position in this step only [m/s]. Zero unless a contact with
+    // overlap pushes the node.
     Column<Vec3> push_out;
-    Column<Vec3> force;  // elastic and external, on nodes without degrees of freedom; written by predict_velocity [N]
-    Column<Vec3> load;   // set by the user, kept until changed [N]
-    Column<Vec3> applied_force;        // sum of all force elements in this step, loads included; unused without any [N]
+    // Elastic and external force, only on nodes without degrees of freedom; written by predict_velocity [N].
+    Column<Vec3> force;
+    Column<Vec3> load;  // external force set by the user, valid until changed [N]
+    // Sum of all force elements in this step, loads included; unused if there are none [N].
+    Column<Vec3> applied_force;
     Column<Vec3> applied_before;       // applied_force of the last committed step, for the balance of energy [N]
-    Column<Vec3> rest_position;        // as added, in the frame of the mesh [m]
-    Column<Vec3> displacement_origin;  // position when the displacement of its body was last zero [m]
-    Column<Vec3> still_position;       // position when the drift of its body was last zero [m]
+    Column<Vec3> rest_position;        // position when the body was added, in the frame of the mesh [m]
+    Column<Vec3> displacement_origin;  // position when BodyTable::displacement was last zero [m]
+    Column<Vec3> still_position;       // position when BodyTable::drift was last zero [m]
     Column<Real> mass;                 // lumped [kg]
-    Column<Real> inverse_mass;         // 0: pinned or kinematic [1/kg]
+    Column<Real> inverse_mass;         // inverse mass; 0 for a pinned or kinematic node [1/kg]
     Column<Index> body;                // row of BodyTable
 
-    /// The only list of columns: resize, erase, hash and save walk it. Derived: velocity_next (zero at rest) and
-    /// push_out by Model::derive_all.
+    /// Visits all columns. This is the only list of them: resize, erase, hash and save use it. Model::derive_all
+    /// derives velocity_next and push_out, which are zero for nodes of sleeping bodies.
     void for_each_column(auto&& visit) {
         visit("position", position, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);

@@ -1,5 +1,5 @@
-// Options that a user selects by name. Each enum has its names in one place (EnumNames), which the scene reader, the
-// program's help and the reports share.
+// Options that a user selects by name. EnumNames lists the names of each enum once, for the scene reader, the help of
+// the program and the reports.
 #pragma once
 
 #include <array>
@@ -9,31 +9,32 @@
 
 namespace skerry {
 
-/// guard: the inversion barrier, which acts on tetrahedra that are about to turn over (docs/methods/elasticity.md 7.7).
-/// No material can select it.
+/// Material laws. guard: the inversion barrier, which acts on tetrahedra that are about to invert
+/// (docs/methods/elasticity.md 7.7). No material can select it.
 enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
-/// Elements that carry the stress of a body. linear: tetrahedra with constant strain; they lock in bending and if the
-/// volume hardly changes. edge_smoothed: edges, with the mean strain of the tetrahedra around each. edge_node_smoothed:
-/// edges for the shear part, nodes for the volumetric part. smoothed: edge_smoothed up to a Poisson ratio of 0.25,
-/// edge_node_smoothed above (docs/methods/elasticity.md 7).
+/// Elements that carry the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
+/// nearly incompressible materials. edge_smoothed: one element per edge, with the mean strain of the tetrahedra around
+/// the edge. edge_node_smoothed: elements at edges for the shear part, elements at nodes for the volumetric part.
+/// smoothed: edge_smoothed up to a Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
-/// cone: Coulomb's law. pyramid: the paper's four-sided approximation of it (docs/methods/friction.md 1.3).
+/// Friction laws. cone: Coulomb's friction cone. pyramid: the four-sided approximation of the cone used in the paper
+/// (docs/methods/friction.md 1.3).
 enum class Friction { cone, pyramid };
 enum class ContactRegions { separate, global };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
-enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first that this build has
+enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first backend of this build
 enum class WarmStart { off, on };
-/// Treatment of bodies that overlap each other or colliders before the first step after one of them was added. resolve:
-/// move them apart without energy if the way out is short, otherwise refuse them. refuse: refuse them. ignore: report
-/// them and start as they are (docs/decisions/0017-start-overlaps.md).
+/// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: move the bodies apart
+/// without adding energy if a short displacement suffices, otherwise refuse them. refuse: refuse the bodies. ignore:
+/// report the overlaps and start with them (docs/decisions/0017-start-overlaps.md).
 enum class StartOverlaps { resolve, refuse, ignore };
 /// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first is inside the second. around:
 /// the second is inside the first. coincident: each is inside the other.
 enum class OverlapKind { crossing, inside, around, coincident };
 /// Time integrators (docs/integration.md). Both alternate a kick, which changes velocities by forces, and a drift,
 /// which moves positions by velocities. symplectic_euler: first order when started from given velocities, with bounded
-/// energy. leapfrog: positions also drift by half a step before the first step of a call and back after the last, which
-/// makes it second order in smooth motion.
+/// energy. leapfrog: positions also drift by half a step before the first step of a call, and back by half a step after
+/// the last one, which makes the method second order in smooth motion.
 enum class Integrator { symplectic_euler, leapfrog };
 
 template <class Enum>
@@ -126,7 +127,7 @@ struct EnumNames<Integrator> {
     }};
 };
 
-/// Names of options in earlier versions, each with the hint that a reader gives to users who still write it.
+/// Names of options in earlier versions, each with a hint for users who still write the old name.
 template <class Enum>
 struct RemovedNames {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 0> table{};
@@ -166,7 +167,7 @@ constexpr std::string_view name_of(Enum value) {
     return "?";
 }
 
-/// The option value with this name, if there is one.
+/// The option value with this name, or nothing if no value has the name.
 template <class Enum>
 constexpr std::optional<Enum> from_name(std::string_view name) {
     for (const auto& [value, candidate] : EnumNames<Enum>::table)

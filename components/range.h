@@ -29,7 +29,7 @@ auto rows_of(auto& column, Range rows) requires requires {
 }
 { return rows_of(column.span(), rows); }
 
-/// New index of a row after ranges of rows, ascending, are removed. For a removed row: the new index of the next kept
+/// New index of a row after the ascending ranges `gone` are removed. For a removed row: new index of the next remaining
 /// row.
 inline Index row_without(Index row, std::span<const Range> gone) {
     Index below = 0;
@@ -40,7 +40,8 @@ inline Index row_without(Index row, std::span<const Range> gone) {
     return row - below;
 }
 
-/// Appends rows that follow the listed ones, and merges adjacent ranges.
+/// Appends `rows` to the ascending list `gone` of removed ranges, and merges them with the last range if the two are
+/// adjacent. `rows` must follow all listed rows.
 void append_gone(Range rows, auto& gone) {
     if (rows.size() == 0) return;
     if (!gone.empty() && gone.back().end == rows.begin)

@@ -1,4 +1,4 @@
-// Nodes of bodies at rest: a step does not change them.
+// Nodes of bodies that are asleep. Steps do not change these nodes.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Empty spans mean that no body rests.
+/// Tells whether a node belongs to a sleeping body. Empty spans mean that no body is asleep.
 struct RestingNodes {
     std::span<const Index> node_body = {};           // NodeTable
     std::span<const std::uint8_t> body_asleep = {};  // BodyTable

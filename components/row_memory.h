@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Alignment of the rows of a column [bytes]: a vector register, and a cache line that no other column shares.
+/// Alignment of the rows of a column [bytes]. It is the size of the widest vector register and of a cache line, so that
+/// no two columns share a line.
 inline constexpr std::size_t row_alignment = 64;
 
 /// Allocates `bytes`, which may be 0, with operator new. A step reads the columns of a large world once; with pages of
@@ -30,16 +31,17 @@ public:
     std::size_t size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Makes room for `count` rows, and no more.
+    /// Reserves memory for exactly `count` rows, if there is less.
     void reserve(std::size_t count, std::size_t row_bytes);
-    /// Makes room for `more` rows behind the last. The memory at least doubles, so that appending rows one by one moves
-    /// each row only a few times.
+    /// Reserves memory for `more` rows behind the last row. The memory at least doubles, so that appending rows one by
+    /// one moves each row only a few times.
     void make_room(std::size_t more, std::size_t row_bytes);
-    /// Sets the number of rows to `count`. The caller must have made room for them and writes the new ones.
+    /// Sets the number of rows to `count`. The caller must have reserved memory for the rows and must write the new
+    /// ones.
     void set_size(std::size_t count) { size_ = count; }
     void copy(const RowMemory& other, std::size_t row_bytes);
     void swap(RowMemory& other) noexcept;
-    /// Removes ranges of rows, ascending. Parts of a range beyond the last row are ignored. Later rows move down in
+    /// Removes ascending ranges of rows. Parts of a range beyond the last row are ignored. Later rows move down in
     /// order, each once.
     void erase(std::span<const Range> gone, std::size_t row_bytes);
     void erase(std::size_t first, std::size_t count, std::size_t row_bytes);

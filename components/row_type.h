@@ -1,5 +1,5 @@
 // Type descriptions of column rows, for code that saves, loads, hashes, resizes or erases rows without knowing their
-// type. A struct stored in tables has its NumbersOf or MembersOf below its definition.
+// type. The NumbersOf or MembersOf of a struct stored in tables follows the definition of the struct.
 #pragma once
 
 #include <array>
@@ -28,18 +28,19 @@ std::int64_t number_at(const std::byte* place, NumberType type);
 struct Member;
 
 struct RowType {
-    std::size_t bytes;                               // size of a row
-    void (*make)(void* rows, std::size_t count);     // value-initialises rows; vectors and matrices are zero
-    std::size_t width = 0;                           // numbers per row, without padding; 0: it has members
-    NumberType number = NumberType::uint8;           // type of these numbers
-    std::uint64_t values = 0;                        // number of values of an enum; 0: not an enum
+    std::size_t bytes;                            // size of a row [bytes]
+    void (*make)(void* rows, std::size_t count);  // value-initialises rows; sets vectors and matrices to zero
+    // Count of numbers per row, without padding; 0: the row has members.
+    std::size_t width = 0;
+    NumberType number = NumberType::uint8;           // type of the numbers in a row
+    std::uint64_t values = 0;                        // number of values if the type is an enum, else 0
     std::span<const Member> (*members)() = nullptr;  // null: no members
 
     /// Whether the description suffices to save the rows.
     bool is_known() const { return width > 0 || members != nullptr; }
 };
 
-/// A row consists of `n` numbers of one type.
+/// Describes a row of `n` numbers of one type.
 template <NumberType type, std::size_t n>
 struct SameNumbers {
     static constexpr NumberType number = type;
@@ -78,7 +79,7 @@ struct NumbersOf<Lanes<T, n>> : SameNumbers<NumbersOf<T>::number, std::size_t{n}
 template <>
 struct NumbersOf<Range> : SameNumbers<NumberType::int32, 2> {};
 
-/// A struct whose numbers have more than one type: `list()` returns an array of its Members.
+/// Describes a struct whose numbers have more than one type: `list()` returns an array of Member.
 template <class S>
 struct MembersOf;
 
@@ -138,7 +139,7 @@ std::size_t member_offset(T S::*member) {
     return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(place) - memory);
 }
 
-/// A member in the list of a MembersOf.
+/// One entry in the list of a MembersOf: a member of a struct.
 struct Member {
     template <class S, class T>
     Member(const char* its_name, T S::*place) : name(its_name), offset(member_offset(place)), type(&row_type<T>) {}

@@ -12,15 +12,15 @@
 namespace skerry {
 
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
-/// root is attached to a smaller one by one compare-and-exchange; if another thread was first, it is retried from the
-/// new root. The root of a set is therefore its smallest index, whatever the number of threads and the order of the
-/// joins. Parent and stamp change together and guard no other data, so that relaxed memory order suffices; threads must
-/// synchronise before they use the result of all joins.
+/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If another thread was first,
+/// the join is retried from the new root. The root of a set is therefore its smallest index, whatever the number of
+/// threads and the order of the joins. Parent and stamp change together and guard no other data, so relaxed memory
+/// order suffices. Threads must synchronise before they use the result of all joins.
 struct SharedUnionFind {
-    /// Both words carry the stamp of a start in their upper half. Words with an earlier stamp count as empty.
+    /// Each word holds the stamp of a call of start() in its upper half. Words with an earlier stamp count as empty.
     struct Node {
         std::uint64_t parent;
-        std::uint64_t first;  // smallest item of the set, at the root; complemented: the largest word wins
+        std::uint64_t first;  // at the root: complement of the smallest item of the set, so that the largest word wins
     };
 
     Column<Node> node;
@@ -36,7 +36,7 @@ struct SharedUnionFind {
         ++now;
     }
 
-    /// Prefetches `index` for a later root().
+    /// Prefetches the node of `index` for a later call of root().
     void fetch(Index index) const { __builtin_prefetch(node.data() + index, 1); }
 
     Index root(Index index) {
@@ -46,7 +46,7 @@ struct SharedUnionFind {
             if (parent == index) return index;
             const Index next = parent_in(load(node[parent].parent), parent);
             if (next == parent) return parent;
-            // path halving; if another thread was first, it has halved the path, too
+            // path halving; if the exchange fails, another thread has halved the path
             exchange(node[index].parent, word, stamped(next));
             index = next;
         }
@@ -64,7 +64,7 @@ struct SharedUnionFind {
         }
     }
 
-    /// Lowers the first item of the set of `root` to `item` if it is smaller. Call it only after all joins.
+    /// Lowers the first item of the set of `root` to `item` if `item` is smaller. Call it only after all joins.
     void begin_with(Index root, Index item) {
         const std::uint64_t mine = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
         std::uint64_t word = load(node[root].first);
@@ -87,7 +87,7 @@ private:
     }
 
     static std::uint64_t load(std::uint64_t& word) { return std::atomic_ref(word).load(std::memory_order_relaxed); }
-    /// On failure `expected` receives the current value.
+    /// Compare-and-exchange. On failure `expected` receives the current value.
     static bool exchange(std::uint64_t& word, std::uint64_t& expected, std::uint64_t next) {
         return std::atomic_ref(word).compare_exchange_strong(expected, next, std::memory_order_relaxed);
     }

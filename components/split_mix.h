@@ -8,8 +8,8 @@
 namespace skerry {
 
 /// splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). Unlike the distributions of
-/// the standard library, these give the same numbers everywhere. Scenes that scatter bodies depend on them, so they
-/// must not change.
+/// the standard library, it gives the same numbers on every machine. Scenes that scatter bodies depend on the numbers,
+/// so they must not change.
 class SplitMix {
 public:
     explicit SplitMix(std::uint64_t seed) : state_(seed) {}

@@ -10,18 +10,20 @@
 
 namespace skerry {
 
-/// Boundary triangles, counter-clockwise seen from outside. Each vertex and each edge of a body is owned by exactly one
-/// of its triangles, the lowest that has it, so that a pair of close triangles yields each pair of features once.
+/// Boundary triangles, counter-clockwise as seen from outside. Each vertex and each edge is owned by exactly one of its
+/// triangles, the one with the lowest row. So a pair of close triangles yields each pair of features once.
 ///
-/// A round body has one degenerate triangle, its core. Sphere or cylinder: three times the centre. Capsule: the two
-/// ends of the axis, the second one twice; its first side is an edge. Other sides have no edge (no_index).
+/// A round body has one degenerate triangle, its core. For a sphere or cylinder all three corners are the centre. For a
+/// capsule the corners are the two ends of the axis, the second end twice, and only the first side is an edge. Sides
+/// without an edge have no_index.
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
     Column<std::array<Index, 3>> vertex;  // rows of VertexTable
     Column<std::uint8_t> owned_vertices;  // bit k: this triangle owns vertex k
     Column<std::uint8_t> owned_edges;     // bit k: this triangle owns edge k
-    Column<Index> element;                // the tetrahedron behind it (index in TetrahedronBlockTable), or no_index
+    // Tetrahedron behind the triangle (index in TetrahedronBlockTable), or no_index.
+    Column<Index> element;
 
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::derived);
@@ -39,7 +41,7 @@ inline bool is_core(const std::array<Index, 3>& node) {
 }
 
 struct EdgeTable {
-    Column<std::array<Index, 2>> node;  // rows of NodeTable, the lower first
+    Column<std::array<Index, 2>> node;  // rows of NodeTable, the lower row first
     Column<std::array<Index, 2>>
         triangle;  // rows of TriangleTable; the second is no_index on an open boundary and for a core
 
@@ -51,7 +53,7 @@ struct EdgeTable {
 
 struct VertexTable {
     Column<Index> node;            // row of NodeTable
-    Column<Index> triangle_begin;  // range in SurfaceTables::vertex_triangle of the triangles around the vertex
+    Column<Index> triangle_begin;  // range in SurfaceTables::vertex_triangle: the triangles around the vertex
     Column<Index> triangle_end;
 
     void for_each_column(auto&& visit) {
@@ -61,12 +63,13 @@ struct VertexTable {
     }
 };
 
-/// The three tables and the list that vertices refer to. All of it is derived by Model::rebuild_outlines.
+/// Triangles, edges and vertices of all bodies, and the list of triangles around each vertex. Model::rebuild_outlines
+/// derives these tables.
 struct SurfaceTables {
     TriangleTable triangles;
     EdgeTable edges;
     VertexTable vertices;
-    Column<Index> vertex_triangle;  // rows of TriangleTable, by vertex range
+    Column<Index> vertex_triangle;  // rows of TriangleTable, listed vertex by vertex
 
     void for_each_column(auto&& visit) {
         triangles.for_each_column(visit);

@@ -12,7 +12,7 @@ using Real = double;
 using Vec3 = Eigen::Matrix<Real, 3, 1>;  // 24 bytes, no padding: a Column<Vec3> is a flat array of reals
 using Mat3 = Eigen::Matrix<Real, 3, 3>;
 
-using Index = std::int32_t;  // a row of a table
+using Index = std::int32_t;  // index of a row of a table
 inline constexpr Index no_index = -1;
 
 }  // namespace skerry

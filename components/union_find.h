@@ -11,13 +11,14 @@
 namespace skerry {
 
 /// Disjoint sets of 0 .. count-1, by union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case analysis of set
-/// union algorithms). The smaller root wins a join, so that the root of a set is its smallest index, whatever the order
-/// of the joins. The memory is reused by the next start.
+/// union algorithms). A join attaches the greater root to the smaller one, so the root of a set is its smallest index,
+/// whatever the order of the joins. The next start() reuses the memory.
 struct UnionFind {
-    /// The fields of an index are stored together, because they are accessed together and at random.
+    /// Parent, stamp and number of an index. They are stored together, because they are accessed together and at
+    /// random.
     struct Node {
         Index parent;
-        std::uint32_t stamp;  // parent and number belong to the start with this stamp
+        std::uint32_t stamp;  // parent and number are valid for the call of start() with this stamp
         Index number;         // number of the set, stored at its root; no_index until it is assigned
     };
 
@@ -25,7 +26,7 @@ struct UnionFind {
     std::uint32_t now = 0;
     Index number_count = 0;
 
-    /// Makes each of `count` indices a set of its own. Clears no memory: nodes with an earlier stamp count as new.
+    /// Makes each of `count` indices a set of its own. It clears no memory: nodes with an earlier stamp count as new.
     void start(std::size_t count) {
         if (node.size() < count) node.resize(count);
         if (now == std::numeric_limits<std::uint32_t>::max()) {
@@ -36,7 +37,7 @@ struct UnionFind {
         number_count = 0;
     }
 
-    /// Prefetches `index` for a later root().
+    /// Prefetches the node of `index` for a later call of root().
     void fetch(Index index) const { __builtin_prefetch(node.data() + index, 1); }
 
     Index root(Index index) {
@@ -53,7 +54,7 @@ struct UnionFind {
         return index;
     }
 
-    /// Joins the sets of two roots. Returns the root of both.
+    /// Joins the sets of two roots. Returns the root of the joined set.
     Index join_roots(Index a, Index b) {
         const Index winner = std::min(a, b);
         node[std::max(a, b)].parent = winner;

@@ -12,11 +12,11 @@
 
 namespace skerry {
 
-/// value: read, and never written by any stage, so that it causes no dependency.
+/// Kinds of access. value: the object is read, and no stage ever writes it, so that the access causes no dependency.
 enum class Use : std::uint8_t { value, read, write };
 
-/// Use of one object: a column, a table, a number. Objects are identified by the memory that they occupy. A table
-/// therefore conflicts with the columns inside it, whichever columns it lists.
+/// Access to one object, such as a column, a table or a number. Objects are identified by the memory that they occupy.
+/// A table therefore conflicts with every column inside it.
 struct Access {
     std::uintptr_t begin;
     std::uintptr_t end;
@@ -24,7 +24,7 @@ struct Access {
 
     bool writes() const { return use == Use::write; }
     bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
-    /// Whether one stage has to wait for the other.
+    /// Whether one of the two stages has to wait for the other.
     bool conflicts_with(const Access& other) const {
         return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
     }
@@ -32,8 +32,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// Type of an object that can be declared and that stays in place. A span or a pointer does not qualify: it would
-/// declare itself instead of the data it refers to.
+/// Type of an object whose accesses can be declared. A span or a pointer does not qualify: the declaration would cover
+/// the span itself instead of the data that it refers to.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -54,9 +54,9 @@ concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>
 ///         }
 ///     };
 ///
-/// bind runs with an access list when a stage is listed, which declares the accesses of the stage, and without one
-/// whenever the stage starts. It must therefore request the same columns whatever they contain: use read_if and
-/// write_if, never if. It must not allocate.
+/// When a stage is added to the graph, bind runs with an access list and so declares the accesses of the stage. When
+/// the stage starts, bind runs without a list. It must therefore request the same columns whatever they contain: use
+/// read_if and write_if, never if. It must not allocate.
 class Binder {
 public:
     Binder() = default;
@@ -77,7 +77,7 @@ public:
         note(object, Use::read);
         return object;
     }
-    /// Declares a table without one of its columns, which another stage may write at the same time.
+    /// Declares a read of a table without one of its columns, which another stage may write at the same time.
     template <Resource T, class Row>
     const T& read_but(const T& table, const Column<Row>& column) const {
         if (!list_) return table;
@@ -92,7 +92,7 @@ public:
         note(column, Use::write);
         return column.span();
     }
-    /// For stages that add rows, or write an object as a whole.
+    /// Declares a write of a whole object, for stages that add rows to it or replace it.
     template <Resource T>
     requires(!std::is_const_v<T>) T& make(T& object) const {
         note(object, Use::write);
@@ -104,7 +104,7 @@ public:
         return object;
     }
 
-    /// Returns an empty span unless `wanted`; the access is declared in both cases.
+    /// Returns an empty span unless `wanted` is true. The access is declared in both cases.
     template <class T>
     std::span<const T> read_if(bool wanted, const Column<T>& column) const {
         const std::span<const T> rows = read(column);
@@ -117,7 +117,7 @@ public:
     }
 
     template <Resource T>
-    void read(const T&&) const = delete;  // a temporary would be gone when the stage runs
+    void read(const T&&) const = delete;  // deleted, because a temporary would no longer exist when the stage runs
     template <Resource T>
     void value(const T&&) const = delete;
 

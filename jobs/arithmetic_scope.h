@@ -1,4 +1,4 @@
-// Floating-point mode for the lifetime of a scope.
+// Sets the floating-point mode for the lifetime of a scope.
 #pragma once
 
 #if defined(__SSE2__)

@@ -1,4 +1,4 @@
-// OpenMP backend: one team for each outermost call, tasks inside it.
+// OpenMP backend: one team for each outermost call; calls from inside the team add tasks to it.
 #include <omp.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 class OpenMpExecutor;
 
-// Executor whose team this thread currently works for. omp_in_parallel() would also be true in a team of the host
+// Executor whose team this thread works for at present. omp_in_parallel() would also be true in a team of the host
 // program.
 thread_local const OpenMpExecutor* team_of_thread = nullptr;
 
@@ -40,7 +40,7 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // Always the whole team, even for fewer blocks: with a smaller team the runtime ends the unused threads.
+            // Uses the whole team even for fewer blocks: with a smaller team the runtime would end the unused threads.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

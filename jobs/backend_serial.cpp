@@ -1,5 +1,5 @@
-// Serial backend: the calling thread alone. It is the reference for the other backends, and runs scenes that are too
-// small for threads.
+// Serial backend: only the calling thread works. It is the reference for the other backends, and runs scenes that are
+// too small for threads.
 #include "jobs/backends.h"
 
 namespace skerry {

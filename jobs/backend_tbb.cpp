@@ -33,8 +33,9 @@ public:
         if (workers <= 1) {
             job.drain(0);
         } else {
-            // Isolated, because a worker that waits for the last block must not start a long stage meanwhile. That
-            // would delay everything that waits for these blocks, and would count as time of this stage.
+            // The loop is isolated: a worker that waits for the last block must not start a long stage meanwhile. The
+            // long stage would delay everything that waits for these blocks, and its time would count as time of this
+            // stage.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();
@@ -59,7 +60,7 @@ private:
         }
     }
 
-    // The contexts are isolated: when a host cancels its own tasks, no blocks or stages may be left out here.
+    // The task contexts are isolated: if a host program cancels its own tasks, the blocks and stages here still run.
     static void drain_together(BlockJob& job, int workers) {
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
@@ -87,10 +88,10 @@ private:
         }
     };
 
-    // oneTBB runs more workers than cores only with a raised limit. It applies the smallest requested limit, so this
-    // never raises a limit that the host has set.
+    // oneTBB runs more workers than cores only if the limit is raised. It applies the smallest requested limit, so this
+    // request never raises a limit that the host program has set.
     std::optional<tbb::global_control> more_threads_;
-    std::optional<tbb::task_arena> arena_;  // none: the arena of the caller
+    std::optional<tbb::task_arena> arena_;  // empty: the arena of the caller is used
     PredecessorCounts left_;
 };
 

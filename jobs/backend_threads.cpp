@@ -1,4 +1,4 @@
-// Thread backend without a library: the thread sanitizer can see all of its code.
+// Thread backend without a library, so that the thread sanitizer can see all of its code.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,13 +15,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A step has a dozen stages in 100 us: a worker that slept between two stages would wake too late for the second.
+// Time for which an idle worker spins before it sleeps. A step has a dozen stages in 100 us: a worker that slept
+// between two stages would wake too late for the second.
 constexpr std::chrono::microseconds spin_time{50};
 
-// Number of this thread among the workers of its executor; all callers have number 0.
+// Number of this thread among the workers of its executor. All calling threads have number 0.
 thread_local int own_number = 0;
 
-/// Spins for at most spin_time until ready() is true. Returns whether it is.
+/// Spins for at most spin_time until ready() is true. Returns the last value of ready().
 bool spin_until(bool may_spin, auto&& ready) {
     if (!may_spin) return ready();
     const Clock::time_point end = Clock::now() + spin_time;
@@ -34,8 +35,8 @@ bool spin_until(bool may_spin, auto&& ready) {
     return false;
 }
 
-/// An executor of workers - 1 threads and the caller. One mutex guards the open work: the unfinished run_blocks calls
-/// and the stages that are ready. Blocks are taken from the counter of their job, without the mutex.
+/// An executor of workers - 1 threads and the calling thread. One mutex guards the open work: the unfinished run_blocks
+/// calls and the stages that are ready. Blocks are taken from the atomic counter of their call, without the mutex.
 class ThreadsExecutor final : public Executor {
 public:
     explicit ThreadsExecutor(int workers)
@@ -102,11 +103,12 @@ private:
     struct OpenJob {
         BlockJob& job;
         OpenJob* next = nullptr;
-        std::atomic<int> helpers{0};  // changed under mutex_; atomic so that the owner can wait for zero without it
+        // Changed under mutex_; atomic, so that the owner can wait for zero without the mutex.
+        std::atomic<int> helpers{0};
         bool owner_sleeps = false;
     };
 
-    /// Takes open work until finished() is true; finished() is called with the mutex held.
+    /// Does open work until finished() is true. finished() is called with the mutex held.
     void work_until(auto&& finished) {
         std::unique_lock lock(mutex_);
         while (true) {
@@ -131,7 +133,7 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // Unless it sleeps, the owner may return and destroy its job as soon as the count is zero.
+            // Unless the owner sleeps, it may return and destroy its job as soon as `helpers` is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;
@@ -150,7 +152,8 @@ private:
         --sleepers_;
     }
 
-    /// Call this after releasing the mutex, so that a woken thread does not block on it.
+    /// Wakes sleeping workers for `useful` new pieces of work. Call it after releasing the mutex, so that a woken
+    /// thread does not block on it.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {
@@ -177,7 +180,7 @@ private:
     void spawn(Index stage) {
         {
             std::lock_guard lock(mutex_);
-            ready_.push_back(stage);  // within the capacity that run_graph reserved
+            ready_.push_back(stage);  // fits into the capacity that run_graph reserved
             ++announced_;
         }
         wake(1);
@@ -205,12 +208,12 @@ private:
     }
 
     const int workers_;
-    const bool may_spin_;  // false with more workers than cores: a spinning worker would hold up a working one
+    const bool may_spin_;  // false if there are more workers than cores: a spinning worker would hold up a working one
     PredecessorCounts left_;
 
     std::mutex mutex_;
     std::condition_variable work_announced_, helpers_left_;
-    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_; spinning threads read it without
+    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_; spinning threads read it without the mutex
     std::atomic<int> sleepers_{0};             // likewise
     OpenJob* open_ = nullptr;
     GraphJob* graph_ = nullptr;

@@ -1,4 +1,4 @@
-// Shared parts of the backends: the work of one call, done by any number of workers together.
+// Shared parts of the backends: the work of one call, which any number of workers do together.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@ std::unique_ptr<Executor> make_openmp_executor(int workers);
 std::unique_ptr<Executor> make_threads_executor(int workers);
 std::unique_ptr<Executor> make_serial_executor();
 
-/// Keeps the exception of the lowest block or stage that threw.
+/// Keeps the exception of the block or stage with the lowest number.
 class FirstError {
 public:
-    /// Call it inside a catch block.
+    /// Stores the current exception of block or stage `number`. Call it inside a catch block.
     void keep(Index number) noexcept {
         std::lock_guard lock(mutex_);
         if (any() && number_ <= number) return;
@@ -31,7 +31,7 @@ public:
         any_.store(true, std::memory_order_relaxed);
     }
     bool any() const noexcept { return any_.load(std::memory_order_relaxed); }
-    /// Call it after all workers have returned.
+    /// Rethrows the stored exception, if there is one. Call it after all workers have returned.
     void rethrow() {
         if (any()) std::rethrow_exception(std::move(error_));
     }
@@ -43,10 +43,11 @@ private:
     std::exception_ptr error_;
 };
 
-/// The blocks of one run_blocks call, as a contiguous share for each worker. A worker begins with its own share, whose
-/// data it wrote in the previous loop and may still have in its caches, and then helps with the next ones. A share is a
-/// counter: this costs one task per worker instead of one per block, and a slow block delays no other. After an
-/// exception the other blocks still run, so that the lowest failing block does not depend on timing.
+/// The blocks of one run_blocks call, divided into one contiguous share per worker. A worker begins with its own share,
+/// whose data it wrote in the previous loop and may still have in its caches. Then it helps with the following shares.
+/// A share is a counter of blocks, so a call costs one task per worker instead of one per block, and a slow block
+/// delays no other block. After an exception the other blocks still run, so that the lowest failing block does not
+/// depend on timing.
 class BlockJob {
 public:
     BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
@@ -57,7 +58,7 @@ public:
         for (int share = 0; share < shares_; ++share) share_[share].next = begin_of(share);
     }
 
-    /// `worker`: number of the calling thread among the workers of the executor.
+    /// Runs blocks until none is left. `worker`: number of the calling thread among the workers of the executor.
     void drain(int worker) noexcept {
         const ArithmeticScope arithmetic;
         const AccessScope access(watch_);  // a block may access the columns declared by its stage, on any thread
@@ -76,13 +77,13 @@ public:
         }
         exhausted_.store(true, std::memory_order_relaxed);
     }
-    /// Whether no block is left to take. The answer may lag behind.
+    /// Whether all blocks have been taken. The answer may lag behind.
     bool exhausted() const noexcept { return exhausted_.load(std::memory_order_relaxed); }
     void rethrow() { error_.rethrow(); }
 
 private:
     static constexpr int most_shares = 64;
-    struct alignas(64) Share {  // on a cache line of its own, because it is written for each block
+    struct alignas(64) Share {  // on a cache line of its own, because the counter is written for each block
         Index next;
     };
 
@@ -98,8 +99,8 @@ private:
     Share share_[most_shares];
 };
 
-/// Number of unfinished predecessors of each stage. An executor keeps it, so that a graph no larger than an earlier one
-/// allocates nothing.
+/// Number of unfinished predecessors of each stage. The executor keeps the array, so that a graph no larger than an
+/// earlier one allocates nothing.
 class PredecessorCounts {
 public:
     void reset(std::span<const Index> counts) {
@@ -110,8 +111,8 @@ public:
         for (std::size_t stage = 0; stage < counts.size(); ++stage)
             left_[stage].store(counts[stage], std::memory_order_relaxed);
     }
-    /// Reports one finished predecessor of the stage. Returns true for the last one, which then sees the writes of all
-    /// others.
+    /// Reports that one predecessor of the stage has finished. Returns true for the last predecessor, whose thread then
+    /// sees the writes of all others.
     bool arrive(Index stage) {
         return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1;
     }
@@ -129,8 +130,8 @@ public:
         left_.reset(edges.predecessor_count);
     }
 
-    /// Calls spawn for every stage without a predecessor except the first, which it returns (no_index for an empty
-    /// graph).
+    /// Returns the first stage without a predecessor, or no_index for an empty graph. Calls spawn for every other stage
+    /// without a predecessor.
     template <class Spawn>
     Index spawn_roots(Spawn&& spawn) {
         Index first = no_index;
@@ -145,9 +146,9 @@ public:
         return first;
     }
 
-    /// Runs the stage, then a stage that became ready through it, and so on until there is none. All other stages that
-    /// became ready are passed to spawn. Returns the number of finished stages. After an exception the rest of the
-    /// graph is walked without running it.
+    /// Runs the stage, then a stage that became ready by it, and so on until there is none. All other stages that
+    /// became ready are passed to spawn. Returns the number of finished stages. After an exception the remaining stages
+    /// count as finished without being run.
     template <class Spawn>
     Index run_from(Index stage, Spawn&& spawn) noexcept {
         Index done = 0;
@@ -169,7 +170,7 @@ public:
         return done;
     }
 
-    /// Runs every stage on the calling thread, in order.
+    /// Runs every stage on the calling thread, in order of stage numbers.
     void run_all() noexcept {
         for (Index stage = 0; stage < static_cast<Index>(edges_.predecessor_count.size()); ++stage) run(stage);
     }

@@ -8,13 +8,13 @@
 
 namespace skerry {
 
-/// Additional base class of an executor that runs the phases of a Team itself; profiling uses it to record their blocks
-/// one by one. A Team gathered on it calls no other worker.
+/// Additional base class of an executor that runs the phases of a Team itself. Profiling uses it to record the blocks
+/// one by one. A Team gathered on such an executor calls no other worker.
 class PhaseRunner {
 public:
     virtual ~PhaseRunner() = default;
 
-    /// Same contract as Team::run_phases.
+    /// Runs the phases under the same contract as Team::run_phases.
     virtual void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body) = 0;
 };
 

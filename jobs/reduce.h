@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Returns combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is
-/// block_result(begin, end) of at most `block` rows. Blocks run concurrently. Their results are combined in block
+/// Returns combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is the result of
+/// block_result(begin, end) for at most `block` rows. Blocks run concurrently. Their results are combined in block
 /// order, because floating-point addition depends on the order. `partial` holds the results of the blocks and keeps its
 /// memory between calls.
 template <class T, class BlockResult, class Combine>

@@ -29,7 +29,8 @@ struct Bind {
     X operator()(const Binder& binder, auto&... objects) const { return X::bind(binder, objects...); }
 };
 
-// Argument made by `Take` from objects: declared when the stage is listed, made anew whenever the stage starts.
+// Stage argument that the functor `Take` makes from objects. Its accesses are declared when the stage is added to the
+// graph. Its value is made anew whenever the stage starts.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;
@@ -81,7 +82,7 @@ auto read(const T& object) {
     return access_detail::Argument<access_detail::Read, const T>{{&object}};
 }
 template <Resource T>
-void read(const T&&) = delete;  // a temporary would be gone when the stage runs
+void read(const T&&) = delete;  // deleted, because a temporary would no longer exist when the stage runs
 
 /// Passes a span<T> for a column.
 template <class T>
@@ -89,13 +90,13 @@ auto write(Column<T>& column) {
     return access_detail::Argument<access_detail::Write, Column<T>>{{&column}};
 }
 
-/// Passes a T&, for stages that add rows, or write an object as a whole.
+/// Passes a T&, for stages that add rows to an object or write it as a whole.
 template <Resource T>
 requires(!std::is_const_v<T>) auto make(T& object) {
     return access_detail::Argument<access_detail::Make, T>{{&object}};
 }
 
-/// Passes a const T& to an object that no stage writes; otherwise compile() of the graph throws.
+/// Passes a const T& to an object that no stage writes. If a stage writes the object, compile() of the graph throws.
 template <Resource T>
 auto value(const T& object) {
     return access_detail::Argument<access_detail::Value, const T>{{&object}};
@@ -103,19 +104,19 @@ auto value(const T& object) {
 template <Resource T>
 void value(const T&&) = delete;
 
-/// Passes X::bind(binder, objects...), which declares the parts of the objects (mostly tables) that X uses.
+/// Passes X::bind(binder, objects...), which declares the parts of the objects (mostly tables) that X reads.
 template <class X, Resource... T>
 auto inputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, const T...>{{&objects...}};
 }
 
-/// Passes X::bind(binder, objects...) for an X that is written to.
+/// Passes X::bind(binder, objects...) for a struct X through which the stage writes.
 template <class X, Resource... T>
 auto outputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, T...>{{&objects...}};
 }
 
-/// Skips the stage if predicate(values passed by args) is false when its turn comes. The predicate must be stateless:
+/// Skips the stage if predicate(values passed by args) is false when the stage is due. The predicate must be stateless:
 /// one with captures could read data that the stage has not declared.
 template <class Predicate, class... Args>
 auto only_if(Predicate predicate, Args... args) {

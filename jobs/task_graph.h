@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace access_detail {
 
-// Calls a function with the values passed by its arguments, and with the executor in front if it takes one.
+// Calls a function with the values that its arguments pass, preceded by the executor if the function takes one.
 template <class F, class Passed>
 struct StageCall;
 
@@ -52,34 +52,35 @@ using ResultOf =
 
 }  // namespace access_detail
 
-/// Whether the arguments fit the function; a read() does not fit a mutable span.
+/// Whether the arguments fit the parameters of the function. For example, read() does not fit a mutable span.
 template <class F, class... Args>
 concept StageFits = access_detail::CallOf<F, Args...>::possible;
 
 /// Statistics of a stage since the graph was made, or since reset_stats().
 struct StageStats {
     const char* name;
-    double seconds = 0;  // on the thread of the stage, from start to end [s]
+    double seconds = 0;  // time on the thread of the stage, from start to end, summed over runs [s]
     std::uint64_t runs = 0;
-    std::uint64_t skipped = 0;  // guard was false, or the stage returned false
+    std::uint64_t skipped = 0;  // number of times that the guard was false or the stage returned false
 };
 
 /// Declaration of a stage.
 struct StageDeclaration {
     const char* name;
     AccessList accesses;
-    bool guarded;            // has an only_if: the stage may be skipped
+    bool guarded;            // true: the stage has an only_if and may be skipped
     const char* phase = "";  // set by TaskGraph
 };
 
-/// Stages and the order between them. Building may allocate; running does not, after the first run on an executor.
+/// Stages and the order between them. Building a graph may allocate memory. Running it does not, after the first run on
+/// an executor.
 ///
 ///     g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(attachments), value(s.h),
 ///             read(n.position), write(n.velocity));
 ///
-/// Arguments are made by the functions of stage_arguments.h, in the order of the function's parameters; a leading
-/// Executor& is passed by the graph. Spans are taken when the stage starts. Two stages that touch the same object, one
-/// of them writing, run in the order of the list.
+/// The functions of stage_arguments.h make the arguments, in the order of the parameters of the stage function. If the
+/// first parameter is an Executor&, the graph passes it. Spans are taken when the stage starts. Two stages that access
+/// the same object run in the order of the list if one of them writes the object.
 class TaskGraph {
 public:
     struct Edge {
@@ -90,11 +91,11 @@ public:
 
     TaskGraph();
 
-    /// Stages that are added from now on belong to this phase. Phases group the stages in the drawing and have no
-    /// effect on the order. The name must be a literal.
+    /// Begins a phase: stages that are added from now on belong to it. Phases group the stages in the drawing and have
+    /// no effect on the order. The name must be a literal.
     void begin_phase(const char* name) { phase_ = name; }
-    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A function that
-    /// returns bool returns false if there was nothing to do.
+    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A stage function may
+    /// return bool: false means that it had nothing to do.
     template <class F, class... Args>
     requires StageFits<F, Args...>
     void stage(const char* name, F function, Args... args) {
@@ -114,7 +115,7 @@ public:
         add({name, access_detail::joined(args...), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Adds a stage whose return value is written to `result`, which counts as written by it.
+    /// Adds a stage whose return value is written to `result`. The write is declared as an access of the stage.
     template <class Result, class F, class... Args>
     requires StageFits<F, Args...>
     void stage_with_result(const char* name, Result& result, F function, Args... args) {
@@ -127,26 +128,27 @@ public:
         add({name, access_detail::joined(args..., make(result)), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Finds the edges. Call it once, after the last stage was added. Throws CheckFailed if a stage takes as a value an
-    /// object that a stage writes.
+    /// Finds the edges. Call it once, after the last stage was added. Throws CheckFailed if a stage declares as a value
+    /// an object that some stage writes.
     void compile();
 
-    /// With SKERRY_CHECK_ACCESS a stage throws CheckFailed if it accesses an undeclared column within this memory.
-    /// `name_of` returns the name of the object at an address, for the message.
+    /// Sets the memory in which accesses are checked. With SKERRY_CHECK_ACCESS a stage throws CheckFailed if it
+    /// accesses a column within this memory that it has not declared. `name_of` returns the name of the object at an
+    /// address, for the message.
     using NameOf = std::string (*)(void* memory, const void* place);
     void track(void* memory, std::size_t bytes, NameOf name_of) { tracked_ = {memory, bytes, name_of}; }
 
-    /// Runs every stage once. Rethrows an exception of a stage; stages that had not started are left out.
+    /// Runs every stage once. Rethrows an exception of a stage; stages that had not started then are left out.
     void run(Executor& executor, Trace* trace = nullptr);
-    /// Runs every stage once on the calling thread, in list order: for scenes too small to pay for threads.
+    /// Runs every stage once on the calling thread, in list order. Use it for scenes too small to pay for threads.
     void run_inline(Trace* trace = nullptr);
 
     std::span<const StageDeclaration> stages() const { return stages_; }
     std::span<const StageStats> stats() const { return stats_; }
     void reset_stats();
 
-    /// The edges without those that follow from others, ordered by their first, then their second stage. Stages are
-    /// numbered in list order.
+    /// The smallest set of edges that implies all dependencies, ordered by first stage, then by second stage. Stages
+    /// are numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
     /// The graph as Graphviz dot text, with a box around the stages of each phase.
     std::string to_dot() const;
@@ -162,7 +164,7 @@ private:
     class StageWatch;
 
     void add(StageDeclaration stage, Run run);
-    /// Returns the end time of the stage, or `begin` if its guard was false.
+    /// Runs a stage. Returns the end time of the stage, or `begin` if its guard was false.
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
@@ -171,7 +173,8 @@ private:
     std::vector<Run> run_;           // by stage
     std::vector<StageStats> stats_;  // by stage
     std::vector<Edge> edges_;
-    std::vector<Index> successor_offset_, successor_, predecessor_count_;  // edges_ in the form that an executor needs
+    // edges_ in the form in which an executor needs them.
+    std::vector<Index> successor_offset_, successor_, predecessor_count_;
     std::unique_ptr<Executor> inline_executor_;
     Tracked tracked_;
     bool compiled_ = false;

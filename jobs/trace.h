@@ -13,7 +13,7 @@
 namespace skerry {
 
 /// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own, which grows up to
-/// the given bound. Zones beyond it are only counted, and the file reports their number.
+/// the given bound. Zones beyond the bound are only counted, and the file reports their number.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -29,7 +29,7 @@ public:
 
     static Time now() { return Clock::now(); }
 
-    /// Adds a zone of the calling thread. The name must outlive the trace, like a literal. Can be called from any
+    /// Adds a zone of the calling thread. The name must outlive the trace, as a literal does. It can be called from any
     /// thread at any time except during clear and write_json.
     void add(const char* name, Time begin, Time end);
 
@@ -38,7 +38,7 @@ public:
 
     std::size_t zone_count() const;
     std::uint64_t dropped_count() const;
-    int worker_count() const;  // threads that recorded something, plus the one that made the trace
+    int worker_count() const;  // number of threads that recorded a zone, and the thread that made the trace
 
     /// Writes the Trace Event Format: one complete event ("X") for each zone, times in microseconds.
     void write_json(std::ostream& out) const;
@@ -57,14 +57,15 @@ private:
 
     Worker& worker_of_this_thread();
 
-    std::uint64_t id_;  // never reused: a thread caches its list under this number
+    std::uint64_t id_;  // number of this trace, never reused: a thread caches its list under the number
     std::size_t max_zones_per_worker_;
     Time start_;
-    mutable std::mutex mutex_;  // guards the list, not its elements
+    mutable std::mutex mutex_;  // guards the list of workers, not its elements
     std::vector<std::unique_ptr<Worker>> workers_;
 };
 
-/// Records the time between its construction and its destruction as a zone. Without a trace it costs one pointer test.
+/// Records the time between its construction and its destruction as a zone. If `trace` is null, it costs one pointer
+/// test.
 class TraceZone {
 public:
     TraceZone(Trace* trace, const char* name) : trace_(trace), name_(name) {

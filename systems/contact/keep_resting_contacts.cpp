@@ -15,14 +15,14 @@ public:
 
     bool any_body() const { return std::ranges::find(inputs_.asleep, 1) != inputs_.asleep.end(); }
 
-    /// Whether neither side of a contact moves after this step.
+    /// Whether neither partner of a contact moves after this step.
     bool rests(const ContactTable& contacts, std::size_t c) const {
         return body_rests(contacts.first_body[c]) && body_rests(contacts.second_body[c]) &&
                stands_still(contacts.collider[c]);
     }
 
-    /// Calls `take` with the range of kept rows of each pair, and whether this step left the pair out as idle. Both
-    /// lists are in key order.
+    /// Calls take(begin, end, idle) for the kept rows begin .. end - 1 of each pair. `idle`: this step left the pair
+    /// out. Kept rows and pairs are both in key order.
     void for_each_kept(const RestingContactTable& kept, auto&& take) const {
         const std::span<const ContactKey> key = kept.contact.key.span();
         std::size_t p = 0;
@@ -52,14 +52,14 @@ private:
     const RestingInputs& inputs_;
 };
 
-/// Calls `visit` with the matching columns of three tables; those of the first may be written.
+/// Calls `visit` with the corresponding columns of three tables. Only columns of the first table may be written.
 void for_each_column_of(ContactTable& a, const ContactTable& b, const ContactTable& c, auto&& visit) {
     constexpr std::size_t most = 32;
     using Places = std::array<const void*, most>;
     const auto places_of = [](const ContactTable& table) {
         Places places{};
         std::size_t count = 0;
-        // for_each_column needs a mutable table; here only the addresses of the columns are taken
+        // for_each_column needs a mutable table; only the addresses of the columns are taken here
         const_cast<ContactTable&>(table).for_each_column(
             [&](const char*, auto& column, ColumnRole) { places.at(count++) = &column; });
         return places;
@@ -73,7 +73,7 @@ void for_each_column_of(ContactTable& a, const ContactTable& b, const ContactTab
     });
 }
 
-/// Lists the source of each row of the new table.
+/// Lists for each row of the new table the row from which it is copied (RestingMemory::source).
 void list_sources(const ContactTable& contacts, const RestingPairs& pairs, const RestingContactTable& kept,
                   Column<Index>& source) {
     source.clear();

@@ -1,4 +1,4 @@
-// Keeps the contacts between bodies that have come to rest for as long as they rest (docs/methods/skipping.md 3.2).
+// Keeps the contacts between bodies that have fallen asleep, as long as they sleep (docs/methods/skipping.md 3.2).
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 namespace skerry {
 
 struct RestingInputs {
-    // PairTable: the keys, ascending, and which pairs were left out of this step because neither partner moves
+    // Columns of PairTable: ascending keys, and 1 for each pair that this step left out because neither partner moves.
     std::span<const std::uint64_t> pair;
     std::span<const std::uint8_t> idle;
-    std::span<const std::uint8_t> asleep;  // by body, after the step
+    std::span<const std::uint8_t> asleep;  // by body: 1 if it is asleep after the step
     std::span<const BodyKind> kind;
     std::span<const Index> collider_of_body;
     std::span<const RigidMotion> motion;  // by collider
@@ -33,18 +33,20 @@ struct RestingInputs {
 
 /// Working memory.
 struct RestingMemory {
-    Column<Index> source;  // by row of `next`: a kept row, or the complement of a row of this step's contacts
+    // Source of each row of `next`: a kept row, or the complement of a row of this step's contacts.
+    Column<Index> source;
     RestingContactTable next;
 };
 
-/// Updates the resting contacts after a step in which forces acted for `kick` [s]. Keeps the contacts of this step
-/// whose sides both rest or stand still, and the previously kept contacts of pairs that this step left out. Returns
-/// false if nothing changes; this costs one pass over the contacts and one over the pairs.
+/// Updates the contacts between sleeping bodies after a step in which forces acted for the time `kick` [s]. Keeps the
+/// contacts of this step whose partners both are asleep or stand still, and the previously kept contacts of pairs that
+/// this step left out. Returns false if nothing changes; this costs one pass over the contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 
-/// Lists the rows to display of both tables, in key order: a row of the step's contacts, or the complement of a row of
-/// the resting ones. A contact in both, whose bodies have just come to rest, is listed as the step's.
+/// Lists the rows of both tables to display, in key order. An entry is a row of `contacts`, or the complement of a row
+/// of `kept`. If a contact is in both tables, because its bodies have just fallen asleep, the row of `contacts` is
+/// listed.
 void merge_contacts(const ContactTable& contacts, const RestingContactTable& kept, Column<Index>& rows);
 
 }  // namespace skerry

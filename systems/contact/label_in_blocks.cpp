@@ -8,8 +8,9 @@
 namespace skerry {
 namespace {
 
-// A block of 2^least_shift contacts takes some microseconds, about as long as a worker needs to join. Every block
-// counts its contacts for each other block, which limits their number to most_blocks.
+// Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes some microseconds, about as
+// long as a worker needs to join. Every block counts its contacts for each other block, so the number of blocks must
+// stay small.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
@@ -31,18 +32,19 @@ struct Blocks {
     }
 };
 
-/// For each pair of blocks: the number of contacts of the first whose regions begin in the second, later their
-/// positions.
+/// Table over pairs of blocks (a, b): the number of contacts of block a whose region begins in block b, later their
+/// position. A region begins at its first contact.
 class Places {
 public:
     Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
         place_.assign(blocks * blocks, 0);
     }
-    /// Entries of `block`, by the block in which the regions begin: unused beyond `block` itself.
+    /// Entries for the contacts of `block`, by the block in which their region begins. Entries beyond `block` itself
+    /// are unused, because no region begins after its contacts.
     Index* of(std::size_t block) { return place_.data() + block * blocks_; }
 
-    /// Converts the counts to positions, sorted by the block in which regions begin and then by contact. Returns the
-    /// begin of each block, and the end.
+    /// Converts the counts to positions in a list that is sorted by the block in which the region begins, then by
+    /// contact. Returns the first position for each block, and the end of the list.
     std::array<Index, most_blocks + 1> cut() {
         std::array<Index, most_blocks + 1> begin;
         Index sum = 0;
@@ -70,8 +72,8 @@ void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnio
     });
 }
 
-/// Joins the groups of the moving nodes of a contact; `leader(node)` represents the group of a node. Returns one of the
-/// leaders, or no_index.
+/// Joins the groups of all moving nodes of a contact. `leader(node)`: the node that represents the group of `node`.
+/// Returns a node of the joined set, or no_index if no node can move.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets) {
     Index one = no_index;
@@ -88,7 +90,7 @@ template <class Leader>
 void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
                std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
                std::span<Index> contact_node) {
-    constexpr std::size_t ahead = 12;  // prefetch distance in contacts
+    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         const auto fetch = [&](const Stencil& next) {
             for (const Index node : next.node) {
@@ -104,8 +106,9 @@ void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil
     });
 }
 
-/// Numbers the regions first .. last - 1 and sorts their contacts by region. `contact`: their contacts in order, which
-/// so far name the first contact of their region. `begin`: first position in the list of all contacts.
+/// Numbers the regions first .. last - 1 and sorts their contacts by region. `contact`: the contacts of these regions,
+/// in order; contact_region still holds the first contact of the region of each. `begin`: position of `contact` in the
+/// list of all contacts.
 void collect(std::span<const Index> contact, Index begin, Index first, Index last, std::span<Index> contact_region,
              Ragged<Index>& list) {
     Index* const offset = list.offset.data();
@@ -114,13 +117,13 @@ void collect(std::span<const Index> contact, Index begin, Index first, Index las
     Index next = first;
     for (const Index c : contact) {
         Index& region = contact_region[static_cast<std::size_t>(c)];
-        // the first contact of a region precedes its others, so that it already has its number
+        // the first contact of a region comes before its other contacts, so the region already has its number
         region = region == c ? next++ : contact_region[static_cast<std::size_t>(region)];
         ++offset[region];
     }
     for (Index r = first; r < last; ++r) offset[r] = std::exchange(begin, begin + offset[r]);
     for (const Index c : contact) list.item[offset[contact_region[static_cast<std::size_t>(c)]]++] = c;
-    // filling has moved each offset to the start of the next region: move them back
+    // filling has moved each offset to the start of the next region; move the offsets back
     for (Index r = last - 1; r > first; --r) offset[r] = offset[r - 1];
     if (first < last) offset[first] = start;
 }
@@ -148,9 +151,9 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
             sets.begin_with(contact_region[i], static_cast<Index>(i));
         }
     });
-    // From here on contact_region holds the first contact of the region.
+    // From here on contact_region holds the first contact of the region of each contact.
     Places places(blocks.count(), memory.place);
-    std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in it
+    std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in the block
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {
         Index* const count = places.of(block);
         Index beginning = 0;

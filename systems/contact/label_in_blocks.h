@@ -1,4 +1,4 @@
-// Finds the regions of many contacts with all workers (docs/methods/regions.md 3.1).
+// Finds the contact regions of many contacts, with all workers in parallel (docs/methods/regions.md 3.1).
 #pragma once
 
 #include <array>
@@ -16,11 +16,13 @@ namespace skerry {
 struct BlockLabels {
     SharedUnionFind sets;
     Column<Index> by_block;  // contacts, sorted by the block in which their region begins
-    Column<Index> place;     // by pair of blocks: next position of a contact of one whose region begins in the other
+    // Entry for each pair of blocks (a, b): next position of a contact of block a whose region begins in block b.
+    Column<Index> place;
 };
 
 /// Writes the region of each contact and the contacts of each region, and returns the number of regions. Regions are
-/// numbered by their first contact. Afterwards the sets cover all moving nodes and hold their first contacts.
+/// numbered in the order of their first contacts. Afterwards memory.sets holds the sets of connected moving nodes, and
+/// the first contact of each set.
 Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, BlockLabels& memory, Ragged<Index>& contacts,
                       std::span<Index> contact_region);

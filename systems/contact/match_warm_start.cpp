@@ -9,26 +9,28 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t contact_block = 512;  // ~5 us of merging
-constexpr std::size_t stored_block = 512;   // ~5 us of copying data that other cores wrote
+constexpr std::size_t contact_block = 512;  // number of contacts that are merged in about 5 us
+// Number of contacts that are copied in about 5 us if other cores wrote them.
+constexpr std::size_t stored_block = 512;
 
-/// Rotates an impulse by the smallest rotation that takes one unit normal to the other, so that it stays in the
-/// friction cone. A flipped normal belongs to another contact: the result is then zero.
+/// Rotates an impulse by the smallest rotation that takes the unit normal `from` to the unit normal `to`, so that the
+/// impulse stays in the friction cone. If the normal has flipped, the impulse belonged to another contact, and the
+/// result is zero.
 Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     const Real cosine = from.dot(to);
-    constexpr Real flipped = -0.999;  // cosine; below it the axis of the rotation is noise
+    constexpr Real flipped = -0.999;  // cosine of the rotation angle; below it rounding decides the axis
     if (!(cosine > flipped)) return Vec3::Zero();
     const Vec3 axis = from.cross(to);  // length sin(angle)
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
 }
 
-/// Cursor over the keys of a table. All keys to find must ascend.
+/// Cursor over the ascending keys of a table. The keys passed to find() must ascend, too.
 class SearchPlace {
 public:
     SearchPlace(std::span<const ContactKey> keys, const ContactKey& first)
         : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
 
-    /// Whether a row with this key exists; row() then returns it.
+    /// Whether the table has a row with this key. If so, row() returns the row.
     bool find(const ContactKey& key) {
         while (row_ < keys_.size() && keys_[row_] < key) ++row_;
         return row_ < keys_.size() && keys_[row_] == key;
@@ -40,12 +42,12 @@ private:
     std::size_t row_;
 };
 
-/// Contacts of one pair, [begin, end).
+/// Contacts of one pair: rows begin .. end - 1.
 struct Rows {
     std::size_t begin, end;
 };
 
-/// The first row, from `row` on, at which a pair begins.
+/// The first row, from `row` on, at which the contacts of a pair begin.
 std::size_t start_of_pair(std::span<const ContactKey> key, std::size_t row) {
     while (row > 0 && row < key.size() && key[row].pair == key[row - 1].pair) ++row;
     return row;
@@ -83,7 +85,7 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
     const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // each block finds its start in both tables; then all three are merged
+        // each block finds its start in the two tables of old impulses, then merges the three tables
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
@@ -118,7 +120,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
         if (nearest != rows.end)
             impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
     };
-    // blocks consist of whole pairs, because impulses stay within their pair
+    // each block consists of whole pairs, because impulses stay within their pair
     parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         end = start_of_pair(last.key, end);
         for (std::size_t row = start_of_pair(last.key, begin); row < end;) {

@@ -1,4 +1,4 @@
-// Warm start: carries impulses over from the last step to this one (docs/methods/region_solver.md 7).
+// Warm start: the impulses of the last step are the initial guess for this step (docs/methods/region_solver.md 7).
 #pragma once
 
 #include <span>
@@ -13,10 +13,10 @@
 
 namespace skerry {
 
-/// Sets each impulse to the last impulse of the same key, from the last step or from the step in which the contact came
-/// to rest. It is rotated with the contact normal and scaled by `kick`, the time for which forces act in this step [s],
-/// over that of the old step. New contacts get zero. All tables are in key order, so that this is a merge. Parallel
-/// over blocks of contacts. Returns false if there is nothing to do (skipped).
+/// Sets each impulse to the last impulse of the same key, from the last step or from the step in which its bodies fell
+/// asleep. The impulse is rotated with the contact normal. It is also scaled by the ratio of `kick`, the time for which
+/// forces act in this step [s], to that of the old step. New contacts get zero. All tables are in key order, so they
+/// are merged. Parallel over blocks of contacts. Returns false if there is nothing to do (skipped).
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
                       const WarmStartTable& last, const RestingContactTable& resting, Real kick,
                       std::span<Vec3> impulse);
@@ -26,7 +26,7 @@ struct ContactsNow {
     std::span<const ContactKey> key;
     std::span<const Vec3> normal, point;  // unit; m
     std::span<const Index> first_body, second_body;
-    std::span<const Range> body_rigid;  // of RigidBodyTable: empty for a body that is neither rigid nor implicit
+    std::span<const Range> body_rigid;  // rows of RigidBodyTable; empty for a body that is neither rigid nor implicit
     std::span<const Real> body_contact_distance;  // [m]
 
     static ContactsNow bind(const Binder& binder, const ContactTable& contact, const BodyTable& body) {
@@ -40,19 +40,20 @@ struct ContactsNow {
     }
 };
 
-/// Adds the impulse of each vanished contact to the nearest contact of its pair within twice the contact distance whose
-/// normal is similar. Only for pairs with a rigid or implicit body: resting faces have more contacts than degrees of
-/// freedom, contacts come and go with rounding, and each takes its part of the weight along. Call it after
-/// match_warm_start. Parallel over blocks of pairs. Returns false if there is nothing to do (skipped).
+/// Adds the impulse of each vanished contact to a contact of the same pair: to the nearest one within twice the contact
+/// distance whose normal is similar. Pairs without a rigid or implicit body are left out. Two flat faces in contact
+/// have more contacts than degrees of freedom; rounding makes contacts come and go, and a vanished contact would lose
+/// its part of the weight. Call it after match_warm_start. Parallel over blocks of pairs. Returns false if there is
+/// nothing to do (skipped).
 bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 
-/// Contact data of a step that the next warm start needs.
+/// Data of this step's contacts that the next warm start needs.
 struct ContactsDone {
     std::span<const ContactKey> key;
     std::span<const Vec3> normal;
     std::span<const Vec3> impulse;     // [N s]
-    std::span<const Vec3> point = {};  // empty if no body is rigid or implicit [m]
+    std::span<const Vec3> point = {};  // contact points; empty if no body is rigid or implicit [m]
 
     static ContactsDone bind(const Binder& binder, const ContactTable& contact, const RigidBodyTable& rigid) {
         return {.key = binder.read(contact.key),
@@ -62,7 +63,7 @@ struct ContactsDone {
     }
 };
 
-/// Stores this step's impulses for the next step. Parallel over contacts.
+/// Stores the impulses of this step for the next step. Parallel over contacts.
 void store_warm_start(Executor& executor, const ContactsDone& done, Real kick, WarmStartTable& last);
 
 }  // namespace skerry

@@ -18,7 +18,8 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// Tangential load, which friction limits: the length for the cone, the larger of two components for the pyramid.
+/// Size of the tangential impulse, which friction limits. For the friction cone it is the length, for the pyramid the
+/// larger of the two components.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
     if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);
@@ -29,8 +30,8 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
                       Friction friction) {
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The solver puts a sliding impulse onto the dynamic limit up to rounding. Rotation by the warm start keeps the
-    // ratio.
+    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. Rotation by the
+    // warm start keeps the ratio of tangential to normal impulse.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, friction);
     const Real limit = dynamic_friction * along;
@@ -39,11 +40,12 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
-/// Adds the external impulse and work: from the collider's surface, and from nodes that no impulse moves.
+/// Adds the impulse and work that the moving nodes of a contact receive from outside: from the surface of a collider,
+/// and from nodes that no impulse can move.
 void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse,
                std::span<const Real> inverse_mass, std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                ContactMeasures& sum) {
-    Real moving = 0;  // sum of the weights
+    Real moving = 0;  // sum of the weights of the moving nodes
     Vec3 outer_velocity = surface_velocity;
     for (std::size_t a = 0; a < 4; ++a) {
         const Index node = stencil.node[a];
@@ -76,8 +78,8 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
     const std::size_t count = contacts.size();
     const TouchPlaces places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
-    // The number of parts is fixed, so that their sums need no allocation; their borders depend only on the contact
-    // count.
+    // The number of parts is bounded, so that their sums need no allocation. The borders of the parts depend only on
+    // the number of contacts.
     constexpr std::size_t part_limit = 64, smallest_part = 128;
     const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
     std::array<ContactMeasures, part_limit> parts{};

@@ -1,4 +1,4 @@
-// Measures each contact after the solve: slip, and whether it sticks or slides.
+// Measures each contact after the solve: its slip velocity, and whether it sticks or slides.
 #pragma once
 
 #include "components/contact_table.h"
@@ -9,19 +9,20 @@
 namespace skerry {
 
 struct ContactMeasures {
-    Real max_penetration = 0;    // largest -distance: overlap of the surfaces themselves [m]
-    Real max_gap_violation = 0;  // largest -gap: depth in the contact shell [m]
-    Real dissipated = 0;         // -sum of impulse . (velocity before + velocity after) / 2 [J]
-    // From colliders and held nodes to the moving nodes: their momentum gains outer_impulse, their energy outer_work -
-    // dissipated.
+    Real max_penetration = 0;    // greatest penetration: overlap of the surfaces, -distance [m]
+    Real max_gap_violation = 0;  // greatest depth in the contact shell, -gap [m]
+    // Dissipated energy: -sum of impulse . (relative velocity before + relative velocity after the solve) / 2 [J].
+    Real dissipated = 0;
+    // Exchange of the moving nodes with colliders and held nodes: their momentum grows by outer_impulse, their energy
+    // by outer_work - dissipated.
     Vec3 outer_impulse = Vec3::Zero();  // [N s]
     Real outer_work = 0;                // [J]
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// Spins of round bodies before and after the solve. At a contact their surface has a velocity that their core does not
-/// have.
+/// Spins of round bodies before and after the solve. The spin adds a velocity to the surface of a round body at a
+/// contact that its core does not have.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};
@@ -40,8 +41,9 @@ struct RoundSpins {
     }
 };
 
-/// Writes slip (tangential relative velocity after the solve) and state (open: no impulse; slide: impulse on the limit
-/// of `friction`). Parallel over blocks of contacts; sums in block order.
+/// Writes `slip`, the tangential relative velocity after the solve, and `state` (open: no impulse; slide: impulse on
+/// the limit of `friction`; stick: impulse below the limit). Parallel over blocks of contacts; sums are added in block
+/// order.
 ContactMeasures measure_contacts(Executor& executor, const ContactTable& contacts, std::span<const Real> inverse_mass,
                                  std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                                  const RoundSpins& spins, std::span<Vec3> slip, std::span<ContactState> state,

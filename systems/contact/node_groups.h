@@ -1,4 +1,4 @@
-// Groups of nodes that move together: the nodes of a rigid body, and those of a cluster.
+// Groups of nodes that move together: the nodes of a rigid body, and the nodes of a cluster.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,7 +16,8 @@
 
 namespace skerry {
 
-/// Contact points of ContactTable. Only read for cylinders, whose surface does not follow from the normal alone.
+/// Contact points and distances of ContactTable. They are read only for cylinders, whose surface points do not follow
+/// from the normal alone.
 struct TouchPlaces {
     std::span<const Vec3> point{};
     std::span<const Real> distance{};
@@ -34,10 +35,10 @@ struct TouchPlaces {
 struct RigidNodes {
     std::span<const Index> node_body;      // NodeTable
     std::span<const Range> body_nodes;     // BodyTable
-    std::span<const Range> body_rigid;     // BodyTable; empty: no body is rigid
-    std::span<const Real> round_radius{};  // BodyTable; empty: no body is round
-    std::span<const Index> core_nodes{};   // BodyTable; empty: no body is round
-    std::span<const Vec3> center{};        // RigidBodyTable; empty: no body is round
+    std::span<const Range> body_rigid;     // column of BodyTable; empty if no body is rigid
+    std::span<const Real> round_radius{};  // column of BodyTable; empty if no body is round
+    std::span<const Index> core_nodes{};   // column of BodyTable; empty if no body is round
+    std::span<const Vec3> center{};        // column of RigidBodyTable; empty if no body is round
 
     static RigidNodes bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
                            const RigidBodyTable& rigid) {
@@ -57,7 +58,7 @@ struct RigidNodes {
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
         return rows.size() > 0 ? rows.begin : no_index;
     }
-    /// Radius of the round body whose core contains the node; 0 for a plain node [m].
+    /// Radius of the round body to which the node belongs; 0 if the body is not round [m].
     Real radius(Index node) const {
         return round_radius.empty() ? 0
                                     : round_radius[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
@@ -66,15 +67,16 @@ struct RigidNodes {
         return !core_nodes.empty() &&
                core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
     }
-    /// Vector from the point in the core of a round body to the contact point, times the sum of its nodes' weights,
-    /// which is 1 or -1: -radius normal. For a cylinder the vector starts at its centre [m].
+    /// Vector from a point on the core of a round body to the contact point [m], times the sum of the weights of its
+    /// nodes, which is 1 or -1. For a sphere or capsule this is -radius normal. For a cylinder the vector starts at the
+    /// centre.
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
                      const TouchPlaces& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
         return weight * (places.on(weight, contact, normal) - center[static_cast<std::size_t>(row(node))]);
     }
-    /// Relative velocity of the surfaces of the round bodies in a contact due to their spins, at the contact point
-    /// [m/s]. `spin(r)`: by row of RigidBodyTable [rad/s].
+    /// Part of the relative velocity at a contact that stems from the spins of round bodies [m/s]. `spin(r)`: spin of
+    /// row r of RigidBodyTable [rad/s].
     Vec3 rolling(const Stencil& stencil, std::size_t contact, const Vec3& normal, const TouchPlaces& places,
                  auto&& spin) const {
         Vec3 sum = Vec3::Zero();
@@ -91,7 +93,7 @@ struct RigidNodes {
         }
         return sum;
     }
-    /// The first node of the rigid body that contains `node`, or `node` itself.
+    /// The first node of the rigid body that contains `node`; `node` itself if it belongs to no rigid body.
     Index leader(Index node) const {
         return row(node) == no_index
                    ? node
@@ -99,9 +101,9 @@ struct RigidNodes {
     }
 };
 
-/// Spins of rigid bodies, by row of RigidBodyTable.
+/// Angular velocities (spins) of rigid bodies, by row of RigidBodyTable.
 struct RigidSpins {
-    std::span<const Mat3> inverse_inertia{};  // in the world frame [1/(kg m^2)]
+    std::span<const Mat3> inverse_inertia{};  // inverse inertia in the world frame [1/(kg m^2)]
     std::span<const Vec3> angular_momentum{}, moment_kick{};
 
     static RigidSpins bind(const Binder& binder, const RigidBodyTable& rigid) {
@@ -112,11 +114,11 @@ struct RigidSpins {
 
     /// Spin at the start of the step [rad/s].
     Vec3 before(std::size_t r) const { return inverse_inertia[r] * angular_momentum[r]; }
-    /// Spin including the moment of forces [rad/s].
+    /// Spin after the moments of forces have acted in this step [rad/s].
     Vec3 kicked(std::size_t r) const { return inverse_inertia[r] * (angular_momentum[r] + moment_kick[r]); }
 };
 
-/// All groups of nodes, and the joints. No node is both in a rigid body and in a cluster.
+/// All groups of nodes, and the joints. No node is in a rigid body and in a cluster at the same time.
 struct NodeGroups {
     const NodeClusters* clusters = nullptr;  // null: none
     RigidNodes rigid{};
@@ -124,7 +126,7 @@ struct NodeGroups {
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
-        // all but the matrices, which may still change in a step
+        // the matrices of clusters are not declared, because they may still change in a step
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);
@@ -134,7 +136,7 @@ struct NodeGroups {
     }
 
     bool empty() const { return (clusters == nullptr || clusters->empty()) && !rigid.any() && joints.empty(); }
-    /// The first node of the group that contains `node`, or `node` itself.
+    /// The first node of the group that contains `node`; `node` itself if it belongs to no group.
     Index leader(Index node) const { return rigid.leader(clusters == nullptr ? node : clusters->leader(node)); }
 };
 

@@ -7,15 +7,15 @@
 namespace skerry {
 namespace {
 
-/// Whether an impulse of this contact can move any node.
+/// Whether an impulse at this contact can move any node.
 bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) return true;
     return false;
 }
 
-/// Joins the groups of the moving nodes of a contact; `leader(node)` represents the group of a node. Returns their
-/// root, or no_index.
+/// Joins the groups of all moving nodes of a contact. `leader(node)`: the node that represents the group of `node`.
+/// Returns the root of the joined set, or no_index if no node can move.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, UnionFind& sets) {
     Index root = no_index;
@@ -29,7 +29,8 @@ Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Le
     return root;
 }
 
-/// Numbers the regions by their first contact.
+/// Writes the region of each contact and returns the number of regions. Regions are numbered in the order of their
+/// first contacts.
 template <class Leader>
 Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const Leader& leader,
                           std::span<const JointBlock> joints, UnionFind& sets, std::span<Index> contact_region) {
@@ -37,7 +38,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     for (const JointBlock& joint : joints)
         if (joint.first_node != no_index && joint.second_node != no_index)
             sets.join(joint.first_node, joint.second_node);
-    constexpr std::size_t ahead = 12;  // prefetch distance in contacts
+    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
             sets.fetch(node);
@@ -67,7 +68,7 @@ Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> i
     return any ? 1 : 0;
 }
 
-/// Counting sort of `count` contacts or joints by region: stable, so a region holds its contacts in contact order.
+/// Counting sort of `count` contacts or joints by region. The sort is stable, so each region lists them in their order.
 template <class RegionOf>
 void collect(std::size_t count, const RegionOf& region_of, Index region_count, Ragged<Index>& list) {
     Column<Index>& offset = list.offset;
@@ -78,7 +79,7 @@ void collect(std::size_t count, const RegionOf& region_of, Index region_count, R
     list.item.resize(static_cast<std::size_t>(offset[region_count]));
     for (std::size_t i = 0; i < count; ++i)
         if (region_of(i) != no_index) list.item[offset[region_of(i)]++] = static_cast<Index>(i);
-    // filling has moved each offset to the start of the next region: move them back
+    // filling has moved each offset to the start of the next region; move the offsets back
     for (Index r = region_count; r > 0; --r) offset[r] = offset[r - 1];
     offset[0] = 0;
 }
@@ -88,8 +89,8 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
         contact_region.size(), [&](std::size_t i) { return contact_region[i]; }, region_count, regions.contacts);
 }
 
-/// Sorts the joints by region. `number(node)`: region of a joint with this node. Returns the number of regions,
-/// including those of joints whose bodies no contact touches.
+/// Sorts the joints by region. `number(node)`: the region of a joint that acts on `node`. Returns the number of
+/// regions, including regions of joints whose bodies no contact touches.
 template <class Number>
 Index collect_joints(std::span<const JointBlock> joints, const Number& number, Index region_count,
                      Ragged<Index>& list) {
@@ -104,7 +105,7 @@ Index collect_joints(std::span<const JointBlock> joints, const Number& number, I
     return region_count;
 }
 
-/// Sequential version for few contacts or few workers. The reference for separate_in_blocks.
+/// Separates regions sequentially, for few contacts or few workers. It is the reference for separate_in_blocks.
 Index separate_in_order(std::span<const Stencil> stencil, std::span<const Real> inverse_mass, const NodeGroups& groups,
                         UnionFind& sets, RegionTable& regions, std::span<Index> contact_region) {
     const Index count = groups.empty()
@@ -124,7 +125,7 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set without contacts gets an item beyond the contacts, which gives its region a number.
+    // A set without contacts gets an item number beyond the contacts, which determines the number of its region.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

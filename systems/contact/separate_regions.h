@@ -13,21 +13,22 @@ namespace skerry {
 
 /// Working memory, kept between steps.
 struct SeparationMemory {
-    UnionFind sets;  // for few contacts or few workers; otherwise `labels`
+    UnionFind sets;  // used for few contacts or few workers; otherwise `labels` is used
     BlockLabels labels;
 };
 
-/// Minimum number of contacts and of workers for separation in blocks. Blocks need 1.3 to 1.5 times the work and five
-/// parallel phases: 1,024 contacts take 50 us in order, and 65 shared by all in blocks.
+/// Minimum number of contacts and of workers for separation in blocks. Separation in blocks needs 1.3 to 1.5 times the
+/// work, and five parallel phases. For 1,024 contacts it takes 65 us of work, shared by all workers; sequential
+/// separation takes 50 us.
 inline constexpr std::size_t least_contacts_in_blocks = 1024;
 inline constexpr int least_workers_for_blocks = 4;
 
 /// Fills `regions.contacts`, `regions.joints` and `contact_region`. Two contacts are in one region if a chain of shared
-/// moving nodes (inverse mass > 0) connects them; nodes of one of the `groups` count as shared, and so do bodies
-/// connected by a joint of the groups. Regions are numbered by their first contact. Regions of joints alone follow,
-/// numbered by their first joint. Regions hold contacts and joints in order; contacts without a moving node belong to
-/// none. `mode` global puts all into one region. Returns false if there are no contacts and no joints (skipped). The
-/// result does not depend on the number of workers.
+/// moving nodes (inverse mass > 0) connects them. Nodes of the same group in `groups` count as shared, and so do bodies
+/// connected by a joint. Regions are numbered in the order of their first contacts, followed by regions that have only
+/// joints, in the order of their first joints. Each region lists its contacts and joints in order. Contacts without a
+/// moving node belong to no region. With `mode` global, all contacts and joints are in one region. Returns false if
+/// there are no contacts and no joints (skipped). The result does not depend on the number of workers.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);

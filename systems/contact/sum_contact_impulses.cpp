@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// The partners of one contact, and whether its first body is their second.
+/// The partners of a contact, and whether they are swapped: the first body of the contact is then the second partner.
 std::pair<ContactPartners, bool> partners_of(const ContactSumInputs& contacts, std::size_t c) {
     const Index first = contacts.first_body[c], second = contacts.second_body[c];
     const auto deforms = [&](Index body) {
@@ -20,8 +20,8 @@ std::pair<ContactPartners, bool> partners_of(const ContactSumInputs& contacts, s
     return {turned ? ContactPartners{second, first, no_index} : ContactPartners{first, second, no_index}, turned};
 }
 
-/// Point at which the impulse acts on the side whose weights have this sign, relative to `from`. The weights of a side
-/// sum to one.
+/// Point at which the impulse acts on one side of a contact, relative to `from` [m]: the mean of the nodes whose
+/// weights have the sign `sign`, weighted with |weight|. The absolute weights of a side sum to one.
 Vec3 arm(const Stencil& stencil, Real sign, std::span<const Vec3> position, const Vec3& from) {
     Vec3 sum = Vec3::Zero();
     for (std::size_t a = 0; a < 4; ++a)
@@ -43,7 +43,7 @@ void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_p
         const Vec3& impulse = contacts.impulse[c];
         const Vec3& normal = contacts.normal[c];
         const auto [partners, turned] = partners_of(contacts, c);
-        // contacts of a pair are adjacent
+        // contacts of the same pair are adjacent
         if (pairs.empty() || pairs.back().partners != partners) pairs.push_back({.partners = partners});
         const bool analytic = contacts.second_body[c] == no_index;
         const auto arm_of = [&](Index body, Real sign) -> Vec3 {

@@ -14,25 +14,25 @@
 
 namespace skerry {
 
-/// Partners of a contact: a body and a collider (`collider` is a row, for mesh colliders, too), two bodies, the one of
-/// the lower slot first, or a body and itself.
+/// Partners of a contact: a body and a collider, two bodies, or a body and itself. Of two bodies, the one with the
+/// lower handle slot comes first. `collider` is a row of ColliderTable, also for a mesh collider.
 struct ContactPartners {
-    Index first = no_index;     // row of BodyTable, of a deformable body
-    Index second = no_index;    // row of BodyTable, of a deformable body, or no_index
+    Index first = no_index;     // row of BodyTable; a deformable body
+    Index second = no_index;    // row of BodyTable; a deformable body, or no_index
     Index collider = no_index;  // row of ColliderTable, or no_index
 
     bool operator==(const ContactPartners&) const = default;
 };
 
-/// Sums over contacts. The moments on the two partners differ, because friction acts across the distance of their
-/// surfaces. Each moment is taken at the nodes, or at the point of the collider, so that it equals the change of
-/// angular momentum of the partner.
+/// Sums of impulses and moments over contacts. The moments on the two partners differ, because friction acts across the
+/// distance of their surfaces. Each moment is computed at the nodes of a body, or at the contact point on a collider,
+/// so that it equals the change of angular momentum of that partner.
 struct ContactSums {
-    Vec3 impulse = Vec3::Zero();        // on the first [N s]
-    Vec3 first_moment = Vec3::Zero();   // on the first [N m s]
-    Vec3 second_moment = Vec3::Zero();  // on the second [N m s]
-    Vec3 friction = Vec3::Zero();       // the tangential parts of `impulse` [N s]
-    Real pressing = 0;                  // sum of the magnitudes of the normal parts [N s]
+    Vec3 impulse = Vec3::Zero();        // impulse on the first partner [N s]
+    Vec3 first_moment = Vec3::Zero();   // moment on the first partner [N m s]
+    Vec3 second_moment = Vec3::Zero();  // moment on the second partner [N m s]
+    Vec3 friction = Vec3::Zero();       // sum of the tangential parts of the impulses on the first partner [N s]
+    Real pressing = 0;                  // sum of the magnitudes of the normal parts of the impulses [N s]
 
     ContactSums& operator+=(const ContactSums& more) {
         impulse += more.impulse;
@@ -51,7 +51,7 @@ struct ContactSums {
 struct PairSums {
     ContactPartners partners;
     ContactSums sums{};
-    Index contacts = 0;  // number of contacts with an impulse
+    Index contacts = 0;  // number of contacts with a nonzero impulse
 };
 
 struct ContactSumInputs {
@@ -61,9 +61,9 @@ struct ContactSumInputs {
     std::span<const BodyKind> body_kind;
     std::span<const std::uint32_t> body_slot;
     std::span<const Real> round_radius;
-    std::span<const Vec3> position;      // by node: points at which the impulses act [m]
+    std::span<const Vec3> position;      // by node: position at which impulses act [m]
     std::span<const Real> inverse_mass;  // by node [1/kg]
-    std::span<const Index> held;         // nodes held by attachments
+    std::span<const Index> held;         // rows of nodes that attachments hold
     std::span<const Index> core_nodes;   // BodyTable
     TouchPlaces touch;
 
@@ -87,9 +87,9 @@ struct ContactSumInputs {
     }
 };
 
-/// Sums the contacts with an impulse, one row per pair, in contact order; moments are about `moment_point`.
-/// `held_impulse`: by node, impulse of the contacts on nodes that no impulse moves [N s]; only the rows of held nodes
-/// are valid. Sequential.
+/// Sums the contacts with a nonzero impulse: one row per pair, in contact order. Moments are about `moment_point`.
+/// `held_impulse`: by node, sum of the contact impulses on a node that no impulse can move [N s]; valid only for nodes
+/// that attachments hold. Runs sequentially.
 void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_point, Column<PairSums>& pairs,
                           Column<Vec3>& held_impulse);
 

@@ -1,4 +1,4 @@
-// Force element: loads on nodes, set by the user.
+// Force element: the loads on nodes that the user has set.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Sets the applied force of every node to its load; other force elements add theirs to it. `load` and `applied_force`:
-/// by node [N]. Parallel over nodes.
+/// Sets the applied force of every node to the load on the node. Other force elements then add their forces. `load` and
+/// `applied_force`: by node [N]. Parallel over nodes.
 void add_nodal_loads(Executor& executor, std::span<const Vec3> load, std::span<Vec3> applied_force);
 
 /// After a step: copies the applied forces, by node, for the balance of the next step [N]. Parallel over nodes.

@@ -1,5 +1,5 @@
-// Distances of eight pairs of features at a time. They are twins of the functions in closest_points.h that return the
-// distance but not the nearest points.
+// Distances of eight pairs of features at a time. closest_points.h has the versions for one pair, which also return the
+// nearest points.
 #pragma once
 
 #include "systems/geometry/lane_vec3.h"
@@ -14,15 +14,16 @@ namespace skerry {
 }
 
 /// Squared distances of the segments a0 a1 and b0 b1 [m^2] (Ericson, Real-Time Collision Detection, 5.1.9). The result
-/// is not a number where a position is not a number.
+/// is not a number in lanes where a position is not a number.
 [[gnu::always_inline]] inline Real8 segment_distance_squared(const LaneVec3<Real8>& a0, const LaneVec3<Real8>& a1,
                                                              const LaneVec3<Real8>& b0, const LaneVec3<Real8>& b1) {
-    constexpr Real noise_sine_squared = 1e-14;  // below it rounding decides where the lines cross
+    // Squared sine of the angle between the lines; below it rounding decides where they cross.
+    constexpr Real noise_sine_squared = 1e-14;
     const Real8 zero{}, one = zero + 1.0;
     const LaneVec3<Real8> ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
     const Real8 a = dot(ea, ea), e = dot(eb, eb), b = dot(ea, eb), c = dot(ea, r), f = dot(eb, r);
     const Real8 denominator = a * e - b * b;  // |ea x eb|^2
-    // The crossing of the lines is clamped to the first segment, then to the second, and back.
+    // The crossing of the lines is clamped to the first segment, then to the second, then again to the first.
     const Real8 crossing = clamped_to_unit((b * f - c * e) / denominator);
     const Real8 free_s = denominator > noise_sine_squared * a * e ? crossing : zero;
     const Real8 along = (b * free_s + f) / e, free_t = e > zero ? along : zero;
@@ -34,7 +35,8 @@ namespace skerry {
     return dot(apart, apart);
 }
 
-/// Squared distances of the points p from the segments that begin at p - from and run along `edge` [m^2].
+/// Squared distances of points from segments [m^2]. The segment of a point p begins at p - `from` and runs along
+/// `edge`.
 [[gnu::always_inline]] inline Real8 point_segment_distance_squared(const LaneVec3<Real8>& from,
                                                                    const LaneVec3<Real8>& edge) {
     const Real8 zero{}, squared = dot(edge, edge);
@@ -43,19 +45,20 @@ namespace skerry {
     return dot(apart, apart);
 }
 
-/// Distances of points from triangles, and the side of the triangle's plane.
+/// Distances of points from triangles, and the side of the triangle's plane on which each point lies.
 struct PointTriangleLanes {
-    Real8 distance_squared;  // not a number where a position is not a number [m^2]
+    Real8 distance_squared;  // squared distance; not a number where a position is not a number [m^2]
     Real8 height;            // height above the plane times twice the area; positive on the side of the normal [m^3]
 };
 
-/// Distances of the points p from the triangles abc. A triangle lower than 1e-6 of its longest edge counts as its three
-/// edges.
+/// Distances of the points p from the triangles abc. A triangle whose height is below 1e-6 of its longest edge counts
+/// as its three edges.
 [[gnu::always_inline]] inline PointTriangleLanes point_triangle_distance(const LaneVec3<Real8>& p,
                                                                          const LaneVec3<Real8>& a,
                                                                          const LaneVec3<Real8>& b,
                                                                          const LaneVec3<Real8>& c) {
-    constexpr Real min_height_squared = 1e-12;  // relative to the square of the longest edge
+    // Square of the least height, relative to the square of the longest edge.
+    constexpr Real min_height_squared = 1e-12;
     const Real8 zero{};
     const LaneVec3<Real8> ab = b - a, bc = c - b, ca = a - c, ap = p - a, bp = p - b, cp = p - c;
     const LaneVec3<Real8> normal = cross(ab, bc);
@@ -65,12 +68,12 @@ struct PointTriangleLanes {
     const Real8 to_ab = point_segment_distance_squared(ap, ab), to_bc = point_segment_distance_squared(bp, bc),
                 to_ca = point_segment_distance_squared(cp, ca);
     const Real8 nearer = to_ab < to_bc ? to_ab : to_bc, to_edges = nearer < to_ca ? nearer : to_ca;
-    // The point is above the face if it is on the inner side of all three edges.
+    // The foot of the perpendicular lies in the triangle if the point is on the inner side of all three edges.
     const auto above = (dot(cross(normal, ab), ap) > zero) & (dot(cross(normal, bc), bp) > zero) &
                        (dot(cross(normal, ca), cp) > zero) &
                        (area_squared > min_height_squared * longest_squared * longest_squared);
     const Real8 to_plane = height * height / area_squared;
-    // Comparisons ignore values that are not numbers; the added sum passes them on.
+    // The comparisons above ignore NaN. The last term is NaN if a position is NaN, and 0 otherwise.
     return {(above ? to_plane : to_edges) + 0.0 * (ab2 + bc2 + ca2), height};
 }
 

@@ -1,4 +1,4 @@
-// Free rotation of a rigid body (docs/methods/rigid_bodies.md 2).
+// Torque-free rotation of a rigid body (docs/methods/rigid_bodies.md 2).
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Turns the body about one of its principal axes at the rate given by its angular momentum about that axis. The turn
-/// conserves this component and, in the world frame, the whole angular momentum.
+/// Rotates the body about one of its principal axes, at the rate given by the angular momentum about that axis. The
+/// rotation conserves this component and, in the world frame, the whole angular momentum.
 inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat3& rotation, Vec3& own_momentum) {
     const Real angle = seconds * own_momentum[axis] / moments[axis];
     if (angle == 0) return;
@@ -23,9 +23,9 @@ inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat
 }
 
 /// Rotation (principal frame to world) after `seconds` without torque. `moments`: moments of inertia about the
-/// principal axes [kg m^2]. The motion is composed symmetrically of five turns about these axes, each the exact motion
-/// of a part of the kinetic energy (Dullweber, Leimkuhler, McLachlan 1997). The method is symplectic, reversible and of
-/// order 2, and it conserves the angular momentum.
+/// principal axes [kg m^2]. The motion is a symmetric composition of five rotations about these axes. Each is the exact
+/// motion of one part of the kinetic energy (Dullweber, Leimkuhler, McLachlan 1997). The method is symplectic,
+/// reversible and of order 2, and it conserves the angular momentum.
 inline Mat3 turned_freely(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, Real seconds) {
     Mat3 turned = rotation;
     Vec3 own = rotation.transpose() * angular_momentum;

@@ -9,17 +9,17 @@
 
 namespace skerry {
 
-/// Result of comparing two Real8: all bits of a lane are set where the comparison holds, else none.
+/// Result of comparing two Real8. All bits of a lane are set where the comparison holds, and no bit elsewhere.
 typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 
-/// All lanes or-ed together. It works by halves, because a loop over the lanes would go through memory.
+/// Bitwise or of all lanes. It combines halves of the register, because a loop over the lanes would go through memory.
 [[gnu::always_inline]] inline std::int64_t any_bits(const LaneBits& mask) {
     const LaneBits four = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3),
                    two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5);
     return two[0] | two[1];
 }
 
-/// Mask with bit l set for lane l. It takes one instruction where AVX-512DQ is available.
+/// Integer whose bit l is set if lane l of the mask is set. It takes one instruction where AVX-512DQ is available.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
 #if defined(__AVX512DQ__)
     typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));

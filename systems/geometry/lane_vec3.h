@@ -1,4 +1,4 @@
-// Vectors whose components are registers: the same source works on one row (T = Real) and on several side by side.
+// Vectors whose components are registers. The same source works on one row (T = Real) and on several rows side by side.
 #pragma once
 
 #include <cmath>

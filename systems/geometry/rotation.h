@@ -1,4 +1,4 @@
-// Rotations as vectors: axis times angle.
+// Rotation vectors: axis times angle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Matrix of the rotation about the axis `rotation` by its length [rad].
+/// Matrix of the rotation about the axis `rotation` by the angle |rotation| [rad].
 inline Mat3 rotation_matrix(const Vec3& rotation) {
     const Real angle = rotation.norm();
     if (angle == 0) return Mat3::Identity();
@@ -22,12 +22,13 @@ inline Vec3 rotation_vector(const Mat3& rotation) {
     return turn.axis() * turn.angle();
 }
 
-/// Among the vectors of one rotation, which differ by whole turns, the one nearest to `to`.
+/// The rotation vector nearest to `to` among all vectors of the same rotation as `rotation`. These vectors differ by
+/// whole revolutions.
 inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        const Real length = to.norm();  // no rotation, or whole turns about the axis of `to`
+        const Real length = to.norm();  // identity, or whole revolutions about the axis of `to`
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }
     const Vec3 axis = rotation / angle;

@@ -9,21 +9,23 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the provably free motion that one round takes. The rest keeps the features apart in spite of rounding.
+// Fraction of the provably contact-free motion by which one iteration advances. A fraction below 1 keeps the features
+// apart in spite of rounding.
 constexpr Real advance = 0.9;
 
-// Features that need more rounds roll over each other at a distance too small to be resolved in a step.
+// Limit of iterations. Features that need more of them roll over each other at a distance too small to be resolved in a
+// step.
 constexpr int most_rounds = 4096;
 
-/// Vector from the second feature to the first between their nearest points [m].
+/// Vector between the nearest points of two features, from the second feature to the first [m].
 Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
     if (kind == FeaturePair::point_triangle) return x[0] - closest_point_on_triangle(x[0], x[1], x[2], x[3]).nearest;
     const SegmentSegment nearest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
     return nearest.on_first - nearest.on_second;
 }
 
-/// Fraction of `displacement` after which the points of the two features leave less than `kept` between two planes
-/// across `normal`. Until then no points of the features are nearer than that, for any unit normal.
+/// Fraction of `displacement` until which a slab of thickness `kept`, perpendicular to `normal`, separates the two
+/// features. Until then no two points of the features are nearer than `kept`. This holds for any unit normal.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real kept) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;

@@ -1,5 +1,5 @@
-// Kernels: the functions that take nearly all of a step's time, compiled once for each instruction set of a build
-// (docs/decisions/0018-instruction-sets.md). The engine calls them through one table, which it chooses once.
+// Kernels: the functions that take nearly all of the time of a step, compiled once for each instruction set of a build
+// (docs/decisions/0018-instruction-sets.md). The engine chooses one table of kernels and calls them through it.
 #pragma once
 
 #include <span>
@@ -27,10 +27,10 @@
 
 namespace skerry {
 
-/// Kernels compiled for one instruction set. Each function is documented in the header that declares it. All sets give
-/// the same bits.
+/// Table of kernels compiled for one instruction set. Each function is documented in the header that declares it. The
+/// results are bitwise equal for all instruction sets.
 struct Kernels {
-    const char* instruction_set;  // the compiler's name, such as x86-64-v3
+    const char* instruction_set;  // name of the instruction set in the compiler, such as x86-64-v3
     decltype(&skerry::find_candidates) find_candidates;
     decltype(&skerry::find_contacts) find_contacts;
     decltype(&skerry::find_crossings) find_crossings;
@@ -63,13 +63,14 @@ struct Kernels {
     decltype(&skerry::solve_regions) solve_regions;
 };
 
-/// A compiled set, and whether this processor and its operating system can run it.
+/// The kernels of an instruction set, and whether this processor and its operating system can run them.
 struct KernelSet {
     const Kernels* kernels;
     bool runs;
 };
 
-/// All compiled sets, the most demanding last. The first always runs: it uses the instruction set of all other code.
+/// All compiled sets of kernels; the set that demands the newest processor is last. The first set always runs, because
+/// it uses the instruction set of all other code.
 std::span<const KernelSet> kernel_sets();
 
 }  // namespace skerry

@@ -1,8 +1,8 @@
-// Compiled once for each instruction set. SKERRY_KERNELS is the name of its table, SKERRY_KERNELS_FOR the name of the
-// set.
+// Table of kernels, compiled once for each instruction set. SKERRY_KERNELS is the name of the table, SKERRY_KERNELS_FOR
+// the name of the instruction set.
 #include "systems/kernels/kernels.h"
 
-// An unmangled name: the only symbol that the objects of a set export (cmake/close.cmake).
+// Name without C++ mangling. It is the only symbol that the objects of an instruction set export (cmake/close.cmake).
 extern "C" {
 extern const skerry::Kernels SKERRY_KERNELS;
 

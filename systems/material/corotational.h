@@ -1,4 +1,4 @@
-// Corotational elasticity: linear in the frame that turns with the element.
+// Corotational elasticity: linear elasticity in a frame that rotates with the element.
 #pragma once
 
 #include "components/material_table.h"
@@ -13,23 +13,25 @@ struct Corotational {
     static constexpr bool stiffness_varies = false;
     static constexpr int stress_flops = 47;
 
-    /// Elastic energy per rest volume: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, with R the rotation nearest to F
-    /// [J/m^3].
+    /// Elastic energy per rest volume: mu |F - R|^2 + lambda/2 (tr(R^T F) - 3)^2, with R the rotation nearest to the
+    /// deformation gradient F [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress: 2 mu (F - R) + lambda (tr(R^T F) - 3) R (docs/methods/elasticity.md 2.2) [Pa].
+    /// First Piola-Kirchhoff stress, with R the rotation nearest to F: 2 mu (F - R) + lambda (tr(R^T F) - 3) R
+    /// (docs/methods/elasticity.md 2.2) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with s the
-    /// singular values of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2) [Pa]. Infinite if
-    /// the nearest rotation is not unique.
+    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with S = R^T
+    /// F and the singular values s of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2) [Pa].
+    /// Infinite if the nearest rotation R is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF [Pa]: 2 mu 1 + lambda 1 1^T on the stretches, 2 mu on a flip. On a twist the rotation of R is added: 2 mu
-    /// + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j).
+    /// dP/dF in the form of Tangent [Pa]: `normal` is 2 mu I + lambda 1 1^T and `flip` is 2 mu. `twist` is 2 mu +
+    /// (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j), with S = R^T F and the stretches s; the second term comes from the
+    /// rotation of R.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// Elastic energy per rest volume by lanes, for the given rotation R nearest to F [J/m^3].
+    /// Elastic energy per rest volume in each lane, for the given rotation R nearest to F [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         const LaneMat3<T> strain = F - R;
@@ -42,17 +44,18 @@ struct Corotational {
                                                         const LaneMat3<T>& R) {
         return stress(material, R, inner_product(R, F));
     }
-    /// Stress by lanes, for a given trace of R^T F [Pa].
+    /// First Piola-Kirchhoff stress in each lane, for a given trace of R^T F [Pa].
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // the terms that cancel near rest are as large as the rounding of F and R
+        // near rest, 2 mu F and 2 mu R cancel; only the rounding errors of F and R are left
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};
     }
 
-    /// Upper bound of dP/dF: 2 mu X + lambda (R : X) R, plus kappa (X - R X^T R) for the rotation of the frame.
+    /// Adds an upper bound of dP/dF to H. A change X of F is mapped to 2 mu X + lambda (R : X) R + kappa (X - R X^T R);
+    /// the term with kappa bounds the effect of the rotation of R.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
         const T kappa = frame_stiffness(material, F, R);
@@ -62,10 +65,11 @@ struct Corotational {
     }
 
 private:
-    /// Returns kappa such that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 on the modes that
-    /// turn R, with G = tr(S) I - S. Under compression these modes soften, but their stiffness stays non-negative: a
-    /// negative eigenvalue bends the path and does not limit the step. The eigenvalues of G lie within mean -+ 2
-    /// spread. s_i + s_j is bounded below by 1e-3, where the frame is about to jump.
+    /// Returns kappa such that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes X of F
+    /// that rotate R, with S = R^T F and G = tr(S) I - S. Under compression the stiffness for these changes decreases,
+    /// but it is kept non-negative: a negative eigenvalue deflects the motion and does not limit the step. The
+    /// eigenvalues of G lie between mean - 2 spread and mean + 2 spread. They are sums s_i + s_j of stretches, bounded
+    /// below by 1e-3, where the rotation R is about to jump.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

@@ -9,22 +9,22 @@ namespace {
 
 using Vector4 = std::array<Real, 4>;
 
-/// Eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5). Plain
-/// loops, so that the bits do not depend on how a library vectorises them.
+/// Eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5). It uses
+/// plain loops, so that the result does not depend on how a library vectorises them.
 struct Eigen4 {
     Vector4 value;
-    std::array<Vector4, 4> vector;  // vector[i] belongs to value[i]
+    std::array<Vector4, 4> vector;  // vector[i] is the eigenvector of value[i]
 };
 
 Eigen4 eigen_of(std::array<Vector4, 4> a) {
     std::array<Vector4, 4> v{};
     for (std::size_t i = 0; i < 4; ++i) v[i][i] = 1;
-    constexpr int max_sweeps = 12;  // converges quadratically: 5 to 6 are enough for doubles
+    constexpr int max_sweeps = 12;  // convergence is quadratic: 5 to 6 sweeps are enough for doubles
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         Real off = 0;
         for (std::size_t p = 0; p < 4; ++p)
             for (std::size_t q = p + 1; q < 4; ++q) off += a[p][q] * a[p][q];
-        if (!(off > 1e-36)) break;  // entries are of order one
+        if (!(off > 1e-36)) break;  // the entries of the matrix are of order one
         for (std::size_t p = 0; p < 4; ++p) {
             for (std::size_t q = p + 1; q < 4; ++q) {
                 if (a[p][q] == 0) continue;
@@ -36,7 +36,7 @@ Eigen4 eigen_of(std::array<Vector4, 4> a) {
                     a[k][p] = c * kp - s * kq;
                     a[k][q] = s * kp + c * kq;
                 }
-                for (std::size_t k = 0; k < 4; ++k) {  // rows, and the eigenvectors
+                for (std::size_t k = 0; k < 4; ++k) {  // rows of the matrix, and the eigenvectors
                     const Real pk = a[p][k], qk = a[q][k], vp = v[p][k], vq = v[q][k];
                     a[p][k] = c * pk - s * qk;
                     a[q][k] = s * pk + c * qk;
@@ -58,7 +58,8 @@ Real dot4(const Vector4& a, const Vector4& b) {
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start) {
     const Real scale = F.cwiseAbs().maxCoeff();
     if (!F.allFinite() || scale == 0) return start;
-    // tr(R(q)^T F) = q^T K q (Horn 1987).
+    // A unit quaternion q and its rotation R(q) satisfy tr(R(q)^T F) = q^T K q, with a symmetric 4x4 matrix K (Horn
+    // 1987).
     const Mat3 A = F / scale;
     const Real wx = A(2, 1) - A(1, 2), wy = A(0, 2) - A(2, 0), wz = A(1, 0) - A(0, 1);
     const Real xy = A(0, 1) + A(1, 0), yz = A(1, 2) + A(2, 1), zx = A(2, 0) + A(0, 2);
@@ -69,16 +70,17 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
                                     {wz, zx, yz, zz - xx - yy}}});
     const auto top =
         static_cast<std::size_t>(std::max_element(eigen.value.begin(), eigen.value.end()) - eigen.value.begin());
-    // Takes the eigenvector of (nearly) the largest eigenvalue that is nearest to the start, so that a degenerate
-    // element does not spin.
-    constexpr Real tie = 1e-6;  // relative to the largest entry of F
+    // Projects `start` onto the eigenvectors of (nearly) the largest eigenvalue, so that a degenerate element does not
+    // spin.
+    constexpr Real tie = 1e-6;  // tolerance for equal eigenvalues, relative to the largest entry of F
     Vector4 q{};
     for (std::size_t i = 0; i < 4; ++i) {
         if (eigen.value[i] < eigen.value[top] - tie) continue;
         const Real share = dot4(eigen.vector[i], start);
         for (std::size_t k = 0; k < 4; ++k) q[k] += share * eigen.vector[i][k];
     }
-    if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];  // the start is orthogonal to all of them: take any
+    // `start` is orthogonal to all these eigenvectors: take any of them.
+    if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];
     const Real length = std::sqrt(dot4(q, q));
     return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }

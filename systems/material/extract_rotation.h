@@ -1,5 +1,5 @@
-// Extraction of the rotation nearest to a deformation gradient, started from that of the last step (the idea of Mueller
-// 2016, with Newton's step).
+// Extraction of the rotation nearest to a deformation gradient. The iteration starts from the rotation of the last step
+// (the idea of Mueller 2016) and takes Newton steps.
 #pragma once
 
 #include "components/element_table.h"
@@ -23,14 +23,16 @@ template <class T>
         {1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
 }
 
-/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and a the
-/// axial vector of R^T F, it turns by G^-1 a. Mueller's step a / tr(S) leaves a third of the error in every pass; this
-/// step leaves its cube. Returns (by lane) whether no further pass is needed: the step started safely inside the basin
-/// of the maximum and turned by less than 2e-5 rad. `trace`: tr(R^T F) of the new R, to fourth order of the turn.
+/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and the axial
+/// vector a of R^T F, it rotates R by the rotation vector G^-1 a. Mueller's step a / tr(S) leaves a third of the error
+/// in every pass; this step leaves the cube of the error. Returns for each lane whether no further pass is needed: the
+/// step started safely inside the basin of the maximum and rotated R by less than 2e-5 rad. `trace`: tr(R^T F) for the
+/// new R, correct to fourth order in the rotation angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
-    constexpr Real settled_turn_squared = 4e-10;  // its cube is below the rounding of F [rad^2]
-    constexpr Real least_curvature = 1e-3;        // of det G over (tr S / 3)^3, which is 8 at rest
+    // Square of a rotation angle whose cube is below the rounding error of F [rad^2].
+    constexpr Real settled_turn_squared = 4e-10;
+    constexpr Real least_curvature = 1e-3;  // lower bound of det G / (tr S / 3)^3, which is 8 at rest
     const LaneMat3<T> R = rotation_of(q);
     const T a00 = dot(R.c0, F.c0), a11 = dot(R.c1, F.c1), a22 = dot(R.c2, F.c2);
     const T a01 = dot(R.c0, F.c1), a10 = dot(R.c1, F.c0);
@@ -39,7 +41,7 @@ template <class T>
     const LaneVec3<T> axial{a21 - a12, a02 - a20, a10 - a01};
     const T g00 = a11 + a22, g11 = a00 + a22, g22 = a00 + a11;
     const T g01 = -0.5 * (a01 + a10), g12 = -0.5 * (a12 + a21), g20 = -0.5 * (a20 + a02);
-    // Adjugate of the symmetric G.
+    // Adjugate h of the symmetric matrix G.
     const T h00 = g11 * g22 - g12 * g12, h11 = g00 * g22 - g20 * g20, h22 = g00 * g11 - g01 * g01;
     const T h01 = g20 * g12 - g01 * g22, h12 = g01 * g20 - g00 * g12, h20 = g01 * g12 - g20 * g11;
     const T det = g00 * h00 + g01 * h01 + g20 * h20;
@@ -49,10 +51,12 @@ template <class T>
     const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
                         half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
                         half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
-    trace = before + dot(o, axial);  // half the slope along the turn, as for every quadratic
-    // q <- q (1, o) with o half the turn. The new length |q| sqrt(1 + |o|^2) is known before the product, which keeps
-    // the root and the division off the critical path. The first factor corrects the length that |q| has lost to
-    // rounding.
+    // A Newton step of a quadratic function changes its value by half of slope times step. Here the slope is `axial`
+    // and the step is 2 o.
+    trace = before + dot(o, axial);
+    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. The new length |q| sqrt(1 +
+    // |o|^2) is known before the product, so root and division are off the critical path. The first factor corrects the
+    // length that |q| has lost to rounding.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;
@@ -61,25 +65,26 @@ template <class T>
     return inside & (4.0 * o_squared <= settled_turn_squared);
 }
 
-/// The rotation (w, x, y, z) that maximises tr(R^T F), for any F: the top eigenvector of Horn's 4x4 matrix. If several
-/// do equally well (F of rank one or zero, a mirrored F), the one nearest to `start`. Returns `start` if F is not
-/// finite.
+/// The unit quaternion (w, x, y, z) of the rotation R that maximises tr(R^T F), for any F. It is the eigenvector of the
+/// largest eigenvalue of Horn's 4x4 matrix. If several rotations are equally good (F of rank one or zero, a mirrored
+/// F), the one nearest to `start` is taken. Returns `start` if F is not finite.
 std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& start);
 
-/// Applies nearest_rotation to all lanes, from `start`; a lane without volume keeps its own. Out of line and slow:
+/// Replaces `start` by nearest_rotation in all lanes with volume. The function is slow and not inlined, because it is
 /// rarely needed.
 template <class T>
 void solve_rotations(const LaneMat3<T>& F, const T& volume, LaneQuaternion<T>& start);
 extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volume, LaneQuaternion<Real4>& start);
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
-/// Finds the rotations R nearest to F in all lanes of all parts, started from q. Lanes without volume keep theirs. All
-/// lanes take as many passes as the slowest one. Returns tr(R^T F).
+/// Finds the rotations R nearest to F in all lanes of all parts, starting from q. Lanes without volume keep their
+/// rotation. All lanes take as many passes as the slowest lane. Returns tr(R^T F).
 template <class T, std::size_t N>
 [[gnu::always_inline]] inline std::array<T, N> extract_rotations(const std::array<LaneMat3<T>, N>& F,
                                                                  const std::array<T, N>& volume,
                                                                  std::array<LaneQuaternion<T>, N>& q) {
-    constexpr int max_passes = 4;  // two are enough from a warm start; slower lanes are solved one by one
+    // Two passes are enough from a warm start; after four, all lanes are solved one by one.
+    constexpr int max_passes = 4;
     const std::array<LaneQuaternion<T>, N> start = q;
     std::array<T, N> trace;
     for (int pass = 0; pass < max_passes; ++pass) {

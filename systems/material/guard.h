@@ -1,5 +1,5 @@
-// Inversion barrier: keeps a tetrahedron from turning over. Psi = k/2 (J0 - J)^2 if J = det F is below J0, else zero
-// (docs/methods/elasticity.md 7.7).
+// Inversion barrier: an energy that keeps a tetrahedron from inverting. Psi = k/2 (J0 - J)^2 if J = det F is below J0,
+// else zero, with the stiffness k (docs/methods/elasticity.md 7.7).
 #pragma once
 
 #include "components/material_table.h"
@@ -8,29 +8,30 @@
 
 namespace skerry {
 
-/// The members of a law are described in systems/material/with_law.h. k is the constant lambda.
+/// The members of a law are described in systems/material/with_law.h. The stiffness k of the barrier is stored as the
+/// Lame constant lambda.
 struct Guard {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 36;
 
-    static constexpr Real intact = 0.5;  // J0, as a fraction of the volume at rest
+    static constexpr Real intact = 0.5;  // J0: ratio of volume to rest volume below which the barrier acts
 
-    /// Elastic energy per rest volume [J/m^3].
+    /// Elastic energy per rest volume: k/2 (J0 - J)^2 if J = det F is below J0, else zero [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress: -k (J0 - J) cof F [Pa].
+    /// First Piola-Kirchhoff stress while J = det F is below J0: -k (J0 - J) cof F [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Upper bound of the largest eigenvalue of dP/dF: k |cof F|^2 + 2/sqrt(3) k (J0 - J) |F|
-    /// (docs/methods/stable_step.md 4.3) [Pa].
+    /// Upper bound of the largest eigenvalue of dP/dF while J = det F is below J0: k |cof F|^2 + 2/sqrt(3) k (J0 - J)
+    /// |F| (docs/methods/stable_step.md 4.3) [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF [Pa]. With p = -k (J0 - J) and c the stretches of cof F: k c c^T + p s_k on the stretches i, j, -p s_k on
-    /// a flip, p s_k on a twist.
+    /// dP/dF in the form of Tangent [Pa]. With p = -k (J0 - J), the stretches s of F and c of cof F: `normal` is k c
+    /// c^T, plus p s_k in the entries of the two axes i, j other than k. `flip` is -p s_k and `twist` is p s_k.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The law by lanes.
+    /// Elastic energy per rest volume in each lane [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const T missing = missing_of(determinant(F));
@@ -52,7 +53,8 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Upper bound of stiffness_bound from |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1.
+    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone by |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <=
+    /// |F|^2/3 + 1.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const T missing = missing_of(J);
@@ -60,7 +62,8 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Adds the exact dP/dF: k (cof F : X) cof F - k (J0 - J) d(cof F).
+    /// Adds dP/dF to H. A change X of F is mapped to k (cof F : X) cof F - k (J0 - J) d(cof F), with the change d(cof
+    /// F) of cof F.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const LaneMat3<T> cof = cofactor(F);
@@ -73,7 +76,7 @@ private:
     template <class T>
     static T missing_of(const T& J) {
         const T missing = intact - J;
-        return missing < 0.0 ? T{} : missing;  // NaN if J is NaN
+        return missing < 0.0 ? T{} : missing;  // the result is NaN if J is NaN
     }
 };
 

@@ -1,5 +1,5 @@
-// Arithmetic of the element kernels. One source works on one element (T = Real) and on element_lanes of them side by
-// side (T = Real8).
+// Arithmetic of the element kernels. The same source works on one element (T = Real) and on element_lanes elements side
+// by side (T = Real8).
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// log(1 + x). Lane by lane, so that a lane gets the bits of its element alone. Speed does not matter: energies are
-/// reported, not used in the step.
+/// log(1 + x), computed lane by lane, so that each lane gets the same bits as a single element. Speed does not matter:
+/// energies are reported, but a step does not use them.
 inline Real log_of_one_plus(Real x) {
     return std::log1p(x);
 }
@@ -37,8 +37,8 @@ bool all(const Mask& mask) {
     return both != 0;
 }
 
-/// A 3x3 matrix of T by columns. Functions used by the force kernel are forced inline: gcc does not inline them by
-/// itself, and nine registers would go through memory.
+/// A 3x3 matrix of T, stored by columns. Functions used by the force kernel are forced inline: gcc does not inline them
+/// by itself, and nine registers would go through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
@@ -72,14 +72,14 @@ template <class T>
 [[gnu::always_inline]] inline T determinant(const LaneMat3<T>& a) {
     return dot(a.c0, cross(a.c1, a.c2));
 }
-/// det(a) a^-T, defined for every a.
+/// Cofactor matrix det(a) a^-T, defined for every matrix a.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> cofactor(const LaneMat3<T>& a) {
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress of_F F + of_other other [Pa]. The split form lets callers add multiples of F, or scale all of it, cheaply.
-/// Laws without such parts return a matrix.
+/// A stress of the form of_F F + of_other other [Pa]. With this form a caller can add multiples of F, or scale the
+/// stress, cheaply. Laws whose stress has another form return a matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;
@@ -101,7 +101,7 @@ template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> scaled(const T& scale, const LaneMat3<T>& P) {
     return scale * P;
 }
-/// The part of the stress beside of_F F.
+/// The part of a stress that remains without the multiple of F: of_other other.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> rest_of(const SplitStress<T>& P) {
     return P.of_other * P.other;
@@ -120,14 +120,14 @@ template <class T>
     P = rest;
 }
 
-/// The identity matrix as a compile-time constant: it needs no arithmetic.
+/// The identity matrix as a compile-time constant, so that a product with it needs no arithmetic.
 struct IdentityMatrix {};
 template <class T>
 [[gnu::always_inline]] inline const LaneMat3<T>& multiply(IdentityMatrix, const LaneMat3<T>& b) {
     return b;
 }
 
-/// Converts one lane to a plain matrix, and back.
+/// Converts lane l of a matrix to a plain matrix.
 template <class T>
 Mat3 lane_of(const LaneMat3<T>& a, int l) {
     Mat3 m;

@@ -16,7 +16,8 @@ Mat3 Linear::stress(const MaterialConstants& material, const Mat3& F) {
 }
 
 Real Linear::stiffness_bound(const MaterialConstants& material, const Mat3&) {
-    return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);  // lambda < 0: auxetic
+    // Lambda is negative for auxetic materials.
+    return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);
 }
 
 Tangent Linear::tangent(const MaterialConstants& material, const Mat3&) {

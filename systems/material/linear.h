@@ -13,19 +13,19 @@ struct Linear {
     static constexpr bool stiffness_varies = false;
     static constexpr int stress_flops = 18;
 
-    /// Elastic energy per rest volume: mu |e|^2 + lambda/2 (tr e)^2 with e = (F + F^T)/2 - I [J/m^3].
+    /// Elastic energy Psi per rest volume: mu |e|^2 + lambda/2 (tr e)^2 with the strain e = (F + F^T)/2 - I [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
     /// First Piola-Kirchhoff stress dPsi/dF (docs/methods/elasticity.md 2.1) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF: that of the rest shape for every deformation [Pa].
+    /// Largest eigenvalue of dP/dF. It is the same for every deformation [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
     /// dP/dF, which does not depend on F [Pa].
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The law by lanes.
+    /// Elastic energy per rest volume in each lane [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
@@ -47,7 +47,7 @@ struct Linear {
                 {szx, syz, (2 * mu) * ezz + pressure}};
     }
 
-    /// dP/dF: mu (X + X^T) + lambda tr(X) I.
+    /// Adds dP/dF to H. A change X of F is mapped to mu (X + X^T) + lambda tr(X) I.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>&, Terms& H) {
         H.add_identity(T{} + material.shear_modulus);

@@ -1,4 +1,4 @@
-// Material laws: the constants of a material of any law, and the laws for one element at a time.
+// Material laws for one element at a time, and the material constants of every law.
 #pragma once
 
 #include "components/material_table.h"
@@ -7,16 +7,17 @@
 
 namespace skerry {
 
-/// Energy density [J/m^3], first Piola-Kirchhoff stress [Pa] and a bound on the largest eigenvalue of dP/dF [Pa] of a
-/// material at F. For one element at a time: the simple reference for the kernels, for tests and implicit bodies of
-/// large strain.
+/// Energy density [J/m^3], first Piola-Kirchhoff stress [Pa], and upper bound of the largest eigenvalue of dP/dF [Pa]
+/// of a material at the deformation gradient F. These functions treat one element at a time. They are the simple
+/// reference for the kernels, used in tests and for implicit bodies of large strain.
 Real energy_density(const MaterialConstants& material, const Mat3& F);
 Mat3 stress(const MaterialConstants& material, const Mat3& F);
 Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
-/// dP/dF for Newton steps [Pa].
+/// Derivative dP/dF of the stress by the deformation gradient, for Newton steps [Pa].
 Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-/// Converts user parameters to constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0 [kg/m^3].
+/// Converts user parameters to material constants: Young's modulus > 0 [Pa], -1 < Poisson ratio < 0.5, density > 0
+/// [kg/m^3].
 MaterialConstants material_constants(MaterialModel model, Real young_modulus, Real poisson_ratio, Real density);
 
 }  // namespace skerry

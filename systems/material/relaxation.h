@@ -1,5 +1,5 @@
-// Relaxing part of the stress: losses that hardly depend on frequency, and bulk viscosity (docs/methods/elasticity.md
-// 6).
+// Relaxing part of the stress, given by Maxwell elements: losses that hardly depend on frequency, and bulk viscosity
+// (docs/methods/elasticity.md 6).
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ template <class T>
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
 }
 
-/// Twice Green's strain, F^T F - I, which rotations do not change. All viscous strains are stored doubled, which saves
+/// Twice Green's strain: F^T F - I. Rotations do not change it. All viscous strains are stored doubled, which saves
 /// halving them.
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> twice_green_strain(const LaneMat3<T>& F) {
@@ -46,7 +46,7 @@ template <class T>
             S.zx * F.c0 + S.yz * F.c1 + S.zz * F.c2};
 }
 
-/// F S + P, with P the stress of a law.
+/// First Piola-Kirchhoff stress F S + P, where S is a second Piola-Kirchhoff stress and P the stress of a law.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> multiply_and_add(const LaneMat3<T>& F, const LaneSymmetric<T>& S,
                                                            const LaneMat3<T>& P) {
@@ -61,31 +61,33 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// Twice the strain of the springs of the two Maxwell elements: the total strain less that of the dashpots.
+/// Twice the strain of the springs of the two Maxwell elements. The strain of a spring is the total strain minus the
+/// strain of its dashpot.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
     T volume;
 };
 
-/// Spring stiffness of the two viscous parts: those of the law times a share, and one on the change of volume alone
-/// [Pa].
+/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are the Lame constants of the law times a
+/// share; `bulk` acts on the change of volume alone.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// The lowest relaxation rate is the lowest frequency of the body, taken as free, over this number: a held end makes a
-/// beam six times slower.
+/// Ratio of the lowest frequency of a body, if it were free, to its lowest relaxation rate. The ratio allows for held
+/// bodies: a held end makes a beam six times slower.
 inline constexpr Real rates_below = 20;
 
-/// Stiffness of the relaxing part over that of the law, for a loss factor at the lowest frequency of a body. Relaxation
-/// rates are spread evenly on a logarithmic scale, the highest `span` times the lowest. A share s then lags by (pi / 2)
-/// s / log(span) and adds s log(rates_below) / log(span) to the stiffness there.
+/// Ratio s of the stiffness of the relaxing part to the stiffness of the law, chosen for a given loss factor at the
+/// lowest frequency of a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is `span`
+/// times the lowest. At the lowest frequency a ratio s adds a loss modulus of (pi / 2) s / log(span) and a storage
+/// modulus of s log(rates_below) / log(span), both relative to the stiffness of the law.
 inline Real relaxing_share(Real loss_factor, Real span) {
     return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
 }
 
-/// Relaxation time of the spring and dashpot of the bulk viscosity, times the element's own frequency.
+/// Relaxation time of the bulk viscosity times the own frequency of the element.
 inline constexpr Real bulk_time = 0.5;
 
 inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {
@@ -93,7 +95,7 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
             2 * material.bulk_viscosity / bulk_time * (material.lame_lambda + 2 * material.shear_modulus)};
 }
 
-/// Elastic energy density of all springs [J/m^3].
+/// Elastic energy density of the springs of all Maxwell elements [J/m^3].
 template <class T>
 [[gnu::always_inline]] inline T energy_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
     const T trace = stretch.strain.trace();
@@ -101,7 +103,7 @@ template <class T>
                     moduli.bulk * (stretch.volume * stretch.volume));
 }
 
-/// Second Piola-Kirchhoff stress of the springs, times a scale [Pa].
+/// Second Piola-Kirchhoff stress of the springs, times `scale` [Pa].
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
                                                       const T& scale) {

@@ -20,7 +20,7 @@ Mat3 cofactor_of(const Mat3& F) {
 
 Real StableNeoHookean::energy_density(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
-    const Mat3 e = F - Mat3::Identity();  // as in the version by lanes
+    const Mat3 e = F - Mat3::Identity();  // e = F - I, as in the version for lanes
     const Real trace = e.trace(), bulk = (trace * trace - e.cwiseProduct(e.transpose()).sum()) / 2 + e.determinant();
     const Real growth = trace + bulk, quarter = (2 * trace + e.squaredNorm()) / 4;
     return mu * (0.375 * e.squaredNorm() - 0.75 * bulk - 0.5 * (std::log1p(quarter) - quarter)) +
@@ -34,7 +34,7 @@ Mat3 StableNeoHookean::stress(const MaterialConstants& material, const Mat3& F) 
 
 Real StableNeoHookean::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
-    // The largest root of e^3 - |F|^2 e - 2 J = 0 is at most 2/sqrt(3) |F|.
+    // The largest root e of e^3 - |F|^2 e - 2 J = 0, with J = det F, is at most 2/sqrt(3) |F|.
     return 1.125 * mu + la * cofactor_of(F).squaredNorm() +
            2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - 0.75 * mu) * F.norm();
 }

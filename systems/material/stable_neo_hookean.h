@@ -1,5 +1,6 @@
-// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018): finite for every F, inverted or flat. Psi = mu/2 (Ic - 3) +
-// la/2 (J - alpha)^2 - mu/2 log(Ic + 1) with Ic = |F|^2 and alpha = 1 + 3 mu / (4 la), less its value at rest.
+// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018): finite for every F, even inverted or flat. Psi = mu/2 (Ic -
+// 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value at rest, with Ic = |F|^2, J = det F and alpha = 1 + 3 mu
+// / (4 la).
 #pragma once
 
 #include "components/material_table.h"
@@ -14,9 +15,9 @@ struct StableNeoHookean {
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 82;
 
-    /// Parameters mu and lambda of the model that give the small-strain moduli (Smith 2018, section 3.4;
-    /// docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above -1 la > mu / 8, so that alpha lies between 1
-    /// and 7.
+    /// Parameters mu and lambda of the model. They are chosen so that at small strain the model has the Lame constants
+    /// of the material (Smith 2018, section 3.4; docs/methods/elasticity.md 2.3) [Pa]. For every Poisson ratio above
+    /// -1, la > mu / 8, so that alpha lies between 1 and 7.
     struct ModelModuli {
         Real mu, la;
     };
@@ -24,34 +25,37 @@ struct StableNeoHookean {
         return {4.0 / 3 * material.shear_modulus, material.lame_lambda + 5.0 / 6 * material.shear_modulus};
     }
 
-    /// Elastic energy per rest volume: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J - 1) + la/2 (J - 1)^2; 0 at rest
-    /// [J/m^3].
+    /// Elastic energy per rest volume, with Ic = |F|^2 and J = det F: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J -
+    /// 1) + la/2 (J - 1)^2. It is 0 at rest [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
-    /// First Piola-Kirchhoff stress: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof F [Pa].
+    /// First Piola-Kirchhoff stress, with Ic = |F|^2 and J = det F: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof
+    /// F [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Upper bound of the largest eigenvalue of dP/dF: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|
-    /// (docs/methods/stable_step.md 4.3) [Pa]. The first term is the maximum of mu (1 - 1 / (Ic + 1)) + 2 mu Ic / (Ic +
-    /// 1)^2, at Ic = 3.
+    /// Upper bound of the largest eigenvalue of dP/dF: 9/8 mu + la |cof F|^2 + 2/sqrt(3) |la (J - 1) - 3/4 mu| |F|,
+    /// with J = det F (docs/methods/stable_step.md 4.3) [Pa]. The first term is the maximum of mu (1 - 1 / (Ic + 1)) +
+    /// 2 mu Ic / (Ic + 1)^2 over Ic = |F|^2, reached at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF [Pa]. With a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu and c the stretches of cof F: a 1 + 2 mu/(Ic +
-    /// 1)^2 s s^T + la c c^T + p s_k on the stretches i, j, a - p s_k on a flip, a + p s_k on a twist.
+    /// dP/dF in the form of Tangent [Pa]. With a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu, and the stretches s of
+    /// F and c of cof F: `normal` is a I + 2 mu/(Ic + 1)^2 s s^T + la c c^T, plus p s_k in the entries of the two axes
+    /// i, j other than k. `flip` is a - p s_k and `twist` is a + p s_k.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
-    /// The law by lanes.
+    /// Elastic energy per rest volume in each lane [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const auto [mu, la] = model_moduli(material);
-        // Computed from e = F - 1 without the first-order terms, which cancel: otherwise a body at rest would have the
-        // energy of their rounding.
+        // Computed from e = F - I without the first-order terms, which cancel. With these terms a body at rest would
+        // have the energy of their rounding errors.
         const T xx = F.c0.x - 1.0, yy = F.c1.y - 1.0, zz = F.c2.z - 1.0;
         const T trace = xx + yy + zz;
         const LaneMat3<T> e{{xx, F.c0.y, F.c0.z}, {F.c1.x, yy, F.c1.z}, {F.c2.x, F.c2.y, zz}};
         const T minors = (xx * yy - e.c0.y * e.c1.x) + (xx * zz - e.c0.z * e.c2.x) + (yy * zz - e.c1.z * e.c2.y);
         const T bulk = minors + dot(e.c0, cross(e.c1, e.c2)), square = inner_product(e, e);
-        const T growth = trace + bulk, quarter = 0.25 * (2.0 * trace + square);  // J - 1, (Ic - 3) / 4
+        // Growth is J - 1, quarter is (Ic - 3) / 4.
+        const T growth = trace + bulk, quarter = 0.25 * (2.0 * trace + square);
         return mu * (0.375 * square - 0.75 * bulk - 0.5 * (log_of_one_plus(quarter) - quarter)) +
                (0.5 * la) * (growth * growth);
     }
@@ -75,8 +79,8 @@ struct StableNeoHookean {
                two_over_root_three * square_root(slope * slope * inner_product(F, F));
     }
 
-    /// Upper bound of stiffness_bound from |F|^2 and det F: |cof F|^2 <= |F|^4/3, 2/sqrt(3) |F| <= |F|^2/3 + 1. Equal
-    /// at rest.
+    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone by |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <=
+    /// |F|^2/3 + 1. At rest the two bounds are equal.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const auto [mu, la] = model_moduli(material);
@@ -84,9 +88,10 @@ struct StableNeoHookean {
         return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
     }
 
-    /// Upper bound of dP/dF: mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1)
-    /// - 3/4 mu) d(cof F). A compressed element resists shear less than at rest, and not at all at F = 0. A step
-    /// without a bound would be wrong as soon as the element opens, so the shear stiffness is at least that at rest.
+    /// Adds an upper bound of dP/dF to H. dP/dF maps a change X of F to mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F
+    /// : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F), with the change d(cof F) of cof F. The first
+    /// coefficient decreases under compression and is zero at F = 0. A step length from so small a stiffness would be
+    /// too long as soon as the element expands again, so the coefficient is kept at least as large as at rest.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

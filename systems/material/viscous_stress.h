@@ -10,9 +10,9 @@ template <class T>
     return {{a.c0.x, a.c1.x, a.c2.x}, {a.c0.y, a.c1.y, a.c2.y}, {a.c0.z, a.c1.z, a.c2.z}};
 }
 
-/// Stress of the strain rate in implicit elements: F E' viscosity/|F|^2 with E' = (F^T F' + F'^T F) / 2. It is at most
-/// viscosity |F'| for any deformation, as the inertia of these elements assumes. Zero in rigid motion, and without
-/// torque, since F E' F^T is symmetric.
+/// Viscous stress of implicit elements: F E' viscosity/|F|^2 with the rate of Green's strain E' = (F^T F' + F'^T F) /
+/// 2, where F' is the rate of F. For any deformation its norm is at most viscosity |F'|, as the inertia of these
+/// elements assumes. It is zero in rigid motion, and it exerts no torque, because F E' F^T is symmetric.
 template <class T>
 LaneMat3<T> viscous_stress(const T& viscosity, const LaneMat3<T>& F, const LaneMat3<T>& F_rate) {
     constexpr Real tiny = 1e-6;  // keeps the division finite for |F| = 0 and for unused lanes

@@ -1,4 +1,4 @@
-// List of all constitutive laws.
+// List of all material laws.
 #pragma once
 
 #include "components/options.h"
@@ -9,14 +9,14 @@
 
 namespace skerry {
 
-/// Calls visit(law) with the law of a model, an empty object; visit is compiled once for each law. A law is a struct in
-/// a file of its own, with
+/// Calls visit(law), where `law` is an empty object of the struct that implements the model. visit is compiled once for
+/// each law. Each law is a struct in a file of its own, with these members:
 ///
-///     has_frame           whether it turns with the element: then all functions by lanes take R, the rotation nearest
-///                         to F
-///     stiffness_varies    whether nodes share the step of an element by the stiffness_bound of its present shape, by
-///                         lanes; otherwise by that of its rest shape
-///     stress_flops        operations of stress by lanes per tetrahedron; profile_elements relates times to it
+///     has_frame           whether the law uses a frame that rotates with the element: then all functions by lanes take
+///                         R, the rotation nearest to F
+///     stiffness_varies    whether elements share the mass of a node by the stiffness_bound of their present shape, by
+///                         lanes; otherwise by the stiffness_bound of their rest shape
+///     stress_flops        number of operations of stress by lanes per tetrahedron, for profile_elements
 ///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
 ///     tangent (material, F)                                     for one element, for Newton steps
 ///     energy_density, stress (material, F[, R])                 by lanes; the stress may be a SplitStress
@@ -24,7 +24,7 @@ namespace skerry {
 ///     add_stiffness (material, F[, R], H)                       by lanes: H += dP/dF or an upper bound, as terms
 ///                                                               (dynamics/stability/element_stiffness.cpp)
 ///
-/// and an entry here and, if materials can use it, in EnumNames<MaterialModel>.
+/// A law also needs an entry in with_law and, if materials can use it, in EnumNames<MaterialModel>.
 template <class Visit>
 [[gnu::always_inline]] inline decltype(auto) with_law(MaterialModel model, Visit&& visit) {
     switch (model) {
