@@ -1,0 +1,211 @@
+"""`skerry inspect`: contents of a scene or mesh, bounds of its step, repairs. Called as: TEST PROGRAM SOURCE_FOLDER"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from program_case import PROGRAM, ROOT, SCENE, ProgramCase
+
+
+class ProgramInspectTest(ProgramCase):
+    def test_inspect_says_what_is_there(self):
+        mesh = json.loads(self.skerry("inspect", ROOT / "scenes/meshes/torus.msh", "--json").stdout)
+        self.assertEqual(mesh["tetrahedra"], 972)
+        self.assertEqual(mesh["components"], 1)
+        self.assertEqual(mesh["problems"], [])
+        self.assertIn("972 tetrahedra", self.skerry("inspect", ROOT / "scenes/meshes/torus.msh").stdout)
+        scene = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        self.assertEqual(scene["bodies"], 1)
+        self.assertGreater(scene["stable_dt"], 0)
+        self.assertAlmostEqual(scene["body_kinds"][0]["stable_dt"], scene["stable_dt"], delta=1e-9 * scene["stable_dt"])
+        self.assertIn("stable step", self.skerry("inspect", self.scene).stdout)
+
+    def test_inspect_knows_rigid_bodies(self):
+        rigid = {**SCENE["bodies"][0], "name": "stone", "dynamics": "rigid", "position": [0, 0, 3]}
+        mixed = self.write("both.json", {**SCENE, "bodies": SCENE["bodies"] + [rigid]})
+        both = json.loads(self.skerry("inspect", mixed, "--json").stdout)
+        self.assertEqual([kind["dynamics"] for kind in both["body_kinds"]], ["explicit", "rigid"])
+        self.assertEqual(both["stable_dt"], both["body_kinds"][0]["stable_dt"])
+        self.assertNotIn("stable_dt", both["body_kinds"][1])
+        alone = self.write("rigid.json", {**SCENE, "probes": [], "bodies": [rigid]})
+        found = json.loads(self.skerry("inspect", alone, "--json").stdout)
+        self.assertAlmostEqual(found["stable_dt"], 1 / 120)
+        self.assertGreaterEqual(found["steps"], 120 * SCENE["seconds"])
+        said = self.skerry("inspect", alone).stdout
+        self.assertIn("8.33 ms (no body sets one)", said)
+        self.assertNotIn("inf", said.lower().replace("info", ""))
+        self.assertNotIn("stable up to", self.skerry("run", alone).stdout)
+
+    def test_implicit_bodies_run_and_set_no_step(self):
+        beam = {**SCENE["bodies"][0], "name": "beam", "dynamics": "implicit", "position": [0, 0, 0.5]}
+        scene = self.write("implicit.json", {**SCENE, "probes": [], "bodies": [beam]})
+        found = json.loads(self.skerry("inspect", scene, "--json").stdout)
+        self.assertEqual(found["body_kinds"][0]["dynamics"], "implicit")
+        self.assertAlmostEqual(found["stable_dt"], 1 / 120)
+        self.assertIn("tetrahedra (implicit)", self.skerry("inspect", scene).stdout)
+        self.assertIn("steps", self.skerry("run", scene).stdout)
+
+    def test_inspect_says_what_another_value_would_do(self):
+        written = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
+        place = f"materials.{SCENE['bodies'][0]['material']}.E"
+        stiff = json.loads(self.skerry("inspect", self.scene, "--json", "--set", f"{place}=1e9").stdout)
+        self.assertLess(stiff["stable_dt"], written["stable_dt"])
+        self.assert_refused("inspect", self.scene, "--set", "materials.rubber.weight=1", said=["weight"])
+        mesh = ROOT / "scenes/meshes/torus.msh"
+        self.assert_refused("inspect", mesh, "--set", f"{place}=1e9", said=["torus.msh", "--set", "a mesh", "a scene"])
+
+    def test_inspect_says_which_tetrahedra_bound_the_step(self):
+        mesh = self.bad_box("bad.msh", cells=6)
+        found = json.loads(self.skerry("inspect", mesh, "--json").stdout)["step_bound"]
+        worst = found["worst"][0]
+        self.assertLess(worst["altitude"], 0.1 * worst["mean_edge"])
+        self.assertLess(max(abs(x) for x in worst["place"]), 0.5)
+        self.assertAlmostEqual(worst["dt"], found["stable_dt"], delta=0.1 * found["stable_dt"])
+        self.assertGreater(found["without"][-1]["stable_dt"], 1.5 * found["stable_dt"])
+        said = self.skerry("inspect", mesh).stdout
+        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", said)
+        self.assertIn("without the worst", said)
+        scene = self.write("bad.json", {**SCENE, "probes": [], "bodies": [
+            {"name": "bad", "mesh": {"file": "bad.msh", "scale": 0.2}, "material": "rubber", "position": [0, 0, 1]}]})
+        of_body = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["step_bound"]
+        self.assertAlmostEqual(of_body["worst"][0]["altitude"], 0.2 * worst["altitude"], places=9)
+        self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", self.skerry("inspect", scene).stdout)
+
+    def bad_box(self, name, cells=4, flat=1e-3, needle=False, kept=None):
+        """A unit box with an inner node close to another one; with `needle` the same on its surface. `kept`: cells."""
+        side = cells + 1
+        nodes = [[x / cells - 0.5, y / cells - 0.5, z / cells - 0.5]
+                 for z in range(side) for y in range(side) for x in range(side)]
+        number = lambda p: (p[2] * side + p[1]) * side + p[0]
+        tetrahedra = []
+        for cell in range(cells ** 3):
+            at = [cell % cells, cell // cells % cells, cell // cells ** 2]
+            if kept and tuple(at) not in kept:
+                continue
+            for walk in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):
+                corner = [at[i] + at[i] % 2 for i in range(3)]
+                t = [number(corner)]
+                for axis in walk:
+                    corner[axis] += 1 if at[axis] % 2 == 0 else -1
+                    t.append(number(corner))
+                a, b, c = ([nodes[t[k]][i] - nodes[t[0]][i] for i in range(3)] for k in (1, 2, 3))
+                if sum(a[i] * (b[(i + 1) % 3] * c[(i + 2) % 3] - b[(i + 2) % 3] * c[(i + 1) % 3])
+                       for i in range(3)) < 0:
+                    t[2], t[3] = t[3], t[2]
+                tetrahedra.append(t)
+        for moved, towards in ((number([2, 2, 2]), number([3, 2, 2])),
+                               *([(number([0, 2, 2]), number([0, 3, 2]))] if needle else [])):
+            nodes[moved] = [flat * a + (1 - flat) * b for a, b in zip(nodes[moved], nodes[towards])]
+        used = sorted({n for t in tetrahedra for n in t})
+        nodes, tetrahedra = [nodes[n] for n in used], [[used.index(n) for n in t] for t in tetrahedra]
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", len(nodes)]
+        lines += [" ".join(map(str, [i + 1, *x])) for i, x in enumerate(nodes)]
+        lines += ["$EndNodes", "$Elements", len(tetrahedra)]
+        lines += [" ".join(map(str, [i + 1, 4, 2, 1, 1, *(n + 1 for n in t)])) for i, t in enumerate(tetrahedra)]
+        return self.write(name, "\n".join(map(str, [*lines, "$EndElements", ""])))
+
+    def test_a_repair_is_refused_before_any_work(self):
+        mesh = self.bad_box("bad.msh")
+        self.assert_refused("inspect", mesh, "--repair", self.folder / "out.vtk", said=["out.vtk", ".msh"])
+        self.assert_refused("inspect", mesh, "--repair", mesh, said=["--overwrite"])
+        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", said=["no folder"])
+        for arguments in (["--tolerance", 0.1], ["--repair", "x.msh", "--tolerance", -1], ["--overwrite"]):
+            self.skerry("inspect", mesh, *arguments, code=2)
+        # A copy of the program has no skerry-fill beside it.
+        alone = pathlib.Path(shutil.copy(PROGRAM, self.folder / "skerry"))
+        done = subprocess.run([alone, "inspect", mesh, "--repair", self.folder / "out.msh"], capture_output=True,
+                              text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt-get install libnglib-dev", done.stderr)
+
+    def need_fill(self):
+        if not (pathlib.Path(PROGRAM).parent / "skerry-fill").exists():
+            self.skipTest("skerry-fill is not built: it needs libnglib-dev")
+
+    def test_a_repaired_mesh_has_a_longer_step_and_the_same_surface(self):
+        self.need_fill()
+        better = self.folder / "deep" / "better.msh"
+        for tolerance in (0, 0.01):
+            mesh = self.bad_box("bad.msh", needle=tolerance > 0)
+            found = json.loads(self.skerry("inspect", mesh, "--repair", better, "--tolerance", tolerance,
+                                           "--json").stdout)
+            before, after = found["before"], found["after"]
+            self.assertTrue(found["written"])
+            self.assertGreater(after["stable_dt"], 1.3 * before["stable_dt"])
+            self.assertAlmostEqual(after["volume"], 1, delta=0.01)
+            self.assertLessEqual(max(found["distance"].values()), max(found["tolerance"], 1e-12))
+            again = json.loads(self.skerry("inspect", better, "--json").stdout)
+            self.assertEqual(again["tetrahedra"], after["tetrahedra"])
+            self.assertEqual(again["step_bound"]["stable_dt"], after["stable_dt"])
+            if tolerance == 0:
+                self.assertEqual(found["edges_collapsed"] + found["edges_flipped"], 0)
+                self.assertAlmostEqual(after["volume"], before["volume"], places=12)
+            else:
+                self.assertGreater(found["edges_collapsed"], 0)
+        said = self.skerry("inspect", mesh, "--repair", mesh, "--overwrite").stdout
+        for part in ("before", "after", "stable step", "worst altitude", "volume", "surface", "written"):
+            self.assertIn(part, said)
+
+    def test_a_body_of_a_scene_is_repaired_for_its_material(self):
+        self.need_fill()
+        self.bad_box("bad.msh")
+        scene = self.write("two.json", {**SCENE, "bodies": SCENE["bodies"] + [
+            {"name": "bad", "mesh": {"file": "bad.msh", "scale": 0.2}, "material": "rubber", "position": [1, 0, 1]}]})
+        better = self.folder / "better.msh"
+        found = json.loads(self.skerry("inspect", scene, "--repair", better, "--json").stdout)
+        self.assertIn('body "bad"', found["mesh"])
+        self.assertAlmostEqual(found["after"]["volume"], 0.008, delta=0.0001)
+        kinds = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"]
+        self.assertAlmostEqual(found["before"]["stable_dt"], kinds[1]["stable_dt"], places=12)
+        self.skerry("inspect", scene, "--repair", better, "--body", "bda", code=2)
+
+    def test_a_node_that_joins_what_shares_no_face_there_is_parted(self):
+        self.need_fill()
+        chain = [(1, 1, 1), (0, 1, 1), (0, 2, 1), (0, 3, 1), (1, 3, 1), (2, 3, 1), (2, 3, 2), (2, 2, 2)]
+        mesh = self.bad_box("pinched.msh", flat=1, kept=chain)
+        out = self.folder / "parted.msh"
+        found = json.loads(self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0, "--json").stdout)
+        self.assertEqual(found["nodes_parted"], 1)
+        again = json.loads(self.skerry("inspect", out, "--json").stdout)
+        self.assertTrue(again["closed_manifold"])
+        self.assertAlmostEqual(again["volume"], found["before"]["volume"], places=12)
+        if found["kept"]:  # nothing better was found to fill it with
+            self.assertEqual(again["nodes"], found["before"]["nodes"] + 1)
+            self.assertEqual(again["tetrahedra"], found["before"]["tetrahedra"])
+        self.assertIn("1 node parted", self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0).stdout)
+        two = self.bad_box("two.msh", flat=1, kept=[(1, 1, 1), (2, 2, 2)])
+        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", said=["2 parts", "mend each part"])
+
+    def test_what_is_not_better_is_not_written(self):
+        self.need_fill()
+        good = self.bad_box("good.msh", flat=1)
+        out = self.folder / "out.msh"
+        done = self.skerry("inspect", good, "--repair", out, "--tolerance", 0, code=1)
+        self.assertIn("nothing was written", done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertFalse(out.exists())
+
+    def test_inspect_counts_labels_and_materials(self):
+        self.write("m.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n")
+        mesh = self.write("m.ele", "2 4 1\n1 1 2 3 4 -1\n2 2 3 4 5 20\n")
+        self.assertEqual(json.loads(self.skerry("inspect", mesh, "--json").stdout)["labels"], {"-1": 1, "20": 1})
+        self.assertIn("-1: 1, 20: 1 tetrahedra", self.skerry("inspect", mesh).stdout)
+        layered = self.write("layered.json", {"materials": {"rubber": {"E": 1e5}, "steel": {"E": 1e7}}, "bodies": [
+            {"mesh": {"file": "m.ele"}, "material": "rubber", "materials": {"20": "steel"}}]})
+        kind = json.loads(self.skerry("inspect", layered, "--json").stdout)["body_kinds"][0]
+        self.assertEqual(kind["materials"], {"rubber": 1, "steel": 1})
+        self.assertIn("rubber 1, steel 1", self.skerry("inspect", layered).stdout)
+
+    def test_inspect_finds_an_overlap(self):
+        sunk = json.loads(json.dumps(SCENE))
+        sunk["bodies"][0]["position"][2] = 0.09
+        problems = json.loads(self.skerry("inspect", self.write("sunk.json", sunk), "--json").stdout)["problems"]
+        self.assertIn("body 'block' and collider 'floor' overlap by 0.01 m at (0, 0, -0.01) m at the start", problems)
+        self.assertTrue(any("a run takes that apart" in problem for problem in problems), problems)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
