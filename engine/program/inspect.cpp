@@ -22,7 +22,7 @@ using Problems = std::vector<std::string>;
 
 // Tetrahedra below this quality are slivers, which shorten the step and reduce accuracy.
 constexpr Real poor_quality = 0.1;
-// If the smallest stable step is this many times smaller than the second smallest, a problem is reported.
+// A problem is reported if the smallest stable step is smaller than the second smallest by more than this factor.
 constexpr Real expensive_step_ratio = 4;
 constexpr Real hardly_longer = 1.03;  // ratios of step lengths between 1 and this value count as a small gain
 constexpr int timed_steps = 20;

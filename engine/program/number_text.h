@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Formats like printf with %.*g.
+/// Formats a number with `digits` significant digits, like %.*g of printf.
 inline std::string short_number(double value, int digits = 3) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);

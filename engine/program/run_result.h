@@ -27,7 +27,7 @@ struct RunResult {
     double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
-    int checkpoints = 0, checkpoints_failed = 0;  // numbers of checkpoints since the start or the resumption
+    int checkpoints = 0, checkpoints_failed = 0;  // numbers of checkpoints since the start or resumption
     std::size_t rigid_bodies = 0, implicit_bodies = 0;
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]

@@ -181,7 +181,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         else if (!colliders_file_.empty())
             list(2, colliders_file_);
     }
-    // The last file of colliders is listed for later frames until a collider differs from its present pose.
+    // Later frames refer to the last file of colliders until a collider leaves its present pose.
     if (!colliders_file_.empty()) colliders_changed(now);
 }
 

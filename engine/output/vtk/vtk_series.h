@@ -64,7 +64,7 @@ private:
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
     std::string colliders_file_;        // name of the last file of colliders
     Vec3 patch_center_ = Vec3::Zero();  // centre of the displayed square of planes [m]
-    Real patch_half_size_ = 0;          // half edge of this square [m]; 0 until a frame has bodies
+    Real patch_half_size_ = 0;          // half edge of the displayed square of planes; 0 until chosen [m]
     std::vector<Entry> entries_;
 };
 

@@ -54,7 +54,7 @@ std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     if (file.extension() == ".json") {
         try {
             add_files(read_json(file), file, hash);
-        } catch (const SceneError&) {  // the error makes the case refused when it runs
+        } catch (const SceneError&) {  // the case is refused with this error when it runs
         }
     }
     return files_[file] = hash.value();

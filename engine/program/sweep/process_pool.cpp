@@ -30,7 +30,8 @@ public:
     HeldSignals(const HeldSignals&) = delete;
     HeldSignals& operator=(const HeldSignals&) = delete;
 
-    /// Waits for one of these signals and returns its number, or 0 if none arrives within half a second.
+    /// Waits for one of the blocked signals. Returns the number of the signal, or 0 if none arrives within half a
+    /// second.
     int next() const {
         const timespec patience{0, 500000000};  // [ns]
         const int number = sigtimedwait(&held_, nullptr, &patience);
@@ -76,7 +77,7 @@ private:
     void begin_jobs() {
         while (may_begin_ && next_ < count_ && static_cast<int>(running_.size()) < at_once_) {
             std::cout.flush();
-            // Without this, parent and child would both write the text that is still buffered.
+            // Buffers are flushed before the fork. Otherwise parent and child would both write the buffered text.
             std::fflush(nullptr);
             const pid_t parent = getpid(), process = fork();
             if (process == 0) in_child(parent);

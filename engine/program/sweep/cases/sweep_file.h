@@ -13,7 +13,7 @@ namespace skerry {
 /// probably a typing error.
 inline constexpr int most_cases = 1000000;
 
-/// A JSON value of any type. When the scene is read, it checks whether the value fits the place that is set to it.
+/// A JSON value of any type. The reader of the scene checks whether the value fits the place to which it is assigned.
 struct AnyValue {
     Json json;
 };

@@ -11,6 +11,7 @@
 
 namespace skerry {
 
+/// Outcome of a case.
 /// - ok: the case was simulated to its end.
 /// - failed: the simulation ended early with an error.
 /// - refused: the scene is invalid or cannot be started.
@@ -51,6 +52,7 @@ std::filesystem::path case_file(const std::filesystem::path& folder, int index);
 /// null if the case was refused.
 void write_case(const std::filesystem::path& file, const CaseHead& head, const CaseResult& result, const Json& report);
 
+/// State of the result file of a case.
 /// - whole: the file has the result of this case.
 /// - missing: the file does not exist.
 /// - other: the file has the result of another case, or is not a result file.
