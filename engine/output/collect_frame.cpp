@@ -6,7 +6,7 @@ namespace skerry {
 
 namespace {
 
-/// Material of each tetrahedron.
+/// Returns the material of each tetrahedron of a body.
 std::vector<Index> materials_of(const World& world, BodyHandle body) {
     const Model& model = WorldAccess::state_of(world).model;
     const auto row = static_cast<std::size_t>(model.row(body, "frame"));

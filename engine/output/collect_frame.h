@@ -1,4 +1,4 @@
-// Collects a frame of output from a world.
+// Copies the state of a world into a frame of output.
 #pragma once
 
 #include "engine/output/frame.h"

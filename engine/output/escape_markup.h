@@ -1,4 +1,4 @@
-// Escapes text for XML and HTML.
+// Escapes the special characters of XML and HTML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Returns the text in a form that is valid in an attribute or between two tags.
+/// Returns the text in a form that is valid in the value of an attribute and between two tags.
 std::string escape_markup(std::string_view text);
 
 }  // namespace skerry

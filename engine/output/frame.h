@@ -1,4 +1,4 @@
-// One frame of output as plain data, the input of the writers. Only collect_frame.cpp collects it from a World.
+// One frame of output as plain data, which is the input of the writers. Only collect_frame.cpp reads the World.
 #pragma once
 
 #include <array>
@@ -11,24 +11,28 @@
 
 namespace skerry {
 
-/// A body in the output. The spans refer to the world and are valid until it changes.
+/// State of a body in one frame of output. The spans refer to the world and are valid until the world changes.
 struct BodyFrame {
     BodyHandle handle;
     std::string name;
-    std::span<const Vec3> position;                    // by node [m]
-    std::span<const Vec3> velocity;                    // by node [m/s]
-    std::span<const std::array<Index, 3>> surface;     // boundary triangles, as rows of position
-    std::span<const std::array<Index, 4>> tetrahedra;  // corners, as rows of position
-    std::vector<Mat3> stress, strain;                  // by tetrahedron: Cauchy stress [Pa] and Green strain
-    std::vector<Mat3> node_stress, node_strain;        // by node
-    std::vector<Index> material{};  // by tetrahedron; materials are numbered in the order in which they were added
+    std::span<const Vec3> position;  // by node [m]
+    std::span<const Vec3> velocity;  // by node [m/s]
+    // Corners of the boundary triangles, as indices of `position`.
+    std::span<const std::array<Index, 3>> surface;
+    // Corners of the tetrahedra, as indices of `position`.
+    std::span<const std::array<Index, 4>> tetrahedra;
+    std::vector<Mat3> stress, strain;            // values by tetrahedron: Cauchy stress [Pa] and Green strain
+    std::vector<Mat3> node_stress, node_strain;  // values by node: Cauchy stress [Pa] and Green strain
+    // Material number of each tetrahedron. Materials are numbered in the order in which they were added.
+    std::vector<Index> material{};
 };
 
 struct ColliderFrame {
     ColliderHandle handle;
     std::string name;
-    const Shape* shape = nullptr;  // in its own frame
-    MotionKey pose;                // shape frame to world; a plane is z = 0 of its frame, facing up
+    const Shape* shape = nullptr;  // shape in the frame of the collider
+    // Pose of the collider in the world. In the frame of the collider a plane is z = 0, and its normal is +z.
+    MotionKey pose;
 };
 
 struct Frame {
@@ -40,7 +44,8 @@ struct Frame {
     std::span<const Contact> contacts;
 };
 
-/// Number of contact regions. Regions are numbered consecutively from 0; -1 marks contacts without a moving node.
+/// Number of contact regions. Regions are numbered consecutively from 0. Contacts that belong to no region have the
+/// number -1.
 inline Index count_regions(std::span<const Contact> contacts) {
     Index count = 0;
     for (const Contact& contact : contacts) count = contact.region >= count ? contact.region + 1 : count;

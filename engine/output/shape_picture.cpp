@@ -8,11 +8,11 @@
 namespace skerry {
 namespace {
 
-constexpr int sectors = 48;      // around the axis: 7.5 degrees each, no visible corners at screen size
-constexpr int arc_steps = 12;    // per quarter circle of a profile, also 7.5 degrees each
-constexpr int plane_cells = 10;  // per edge of a patch; their edges appear as a grid
+constexpr int sectors = 48;      // facets around the axis: 7.5 degrees each, so that corners are hardly visible
+constexpr int arc_steps = 12;    // facets per quarter circle of a profile, also 7.5 degrees each
+constexpr int plane_cells = 10;  // cells per edge of the displayed square of a plane; they appear as a grid
 
-using Profile = std::vector<std::array<Real, 2>>;  // (radius, z); the outside is to the right when following it
+using Profile = std::vector<std::array<Real, 2>>;  // points (radius, z) in an order that has the outside on the right
 
 Mat3 rotation_of(const Vec3& axis_angle) {
     const Real angle = axis_angle.norm();
@@ -20,7 +20,8 @@ Mat3 rotation_of(const Vec3& axis_angle) {
     return Eigen::AngleAxis<Real>(angle, axis_angle / angle).toRotationMatrix();
 }
 
-/// Adds a circular arc with centre (0, z) to a profile, from the angle `from` to `to` above the horizontal.
+/// Adds a circular arc with centre (0, z) to a profile. The angles `from` and `to` are measured from the horizontal,
+/// upwards [rad].
 void add_arc(Profile& profile, Real radius, Real z, Real from, Real to) {
     const int steps = static_cast<int>(std::lround(std::abs(to - from) / (std::numbers::pi / 2) * arc_steps));
     for (int i = 0; i <= steps; ++i) {
@@ -30,8 +31,8 @@ void add_arc(Profile& profile, Real radius, Real z, Real from, Real to) {
     }
 }
 
-/// Revolves a profile about z. Profiles run upwards on the outside, so triangles are counter-clockwise seen from
-/// there.
+/// Revolves a profile about the z axis. The outside is on the right of the profile, and triangles are counter-clockwise
+/// as seen from outside.
 void revolve(const Profile& profile, SurfaceMesh& mesh) {
     const Index first = static_cast<Index>(mesh.nodes.size());
     for (const auto& [radius, z] : profile)
@@ -43,13 +44,13 @@ void revolve(const Profile& profile, SurfaceMesh& mesh) {
         for (int s = 0; s < sectors; ++s) {
             const Index a = first + static_cast<Index>(ring) * sectors + s,
                         b = first + static_cast<Index>(ring) * sectors + (s + 1) % sectors;
-            // A ring at a pole has radius 0: one of the two triangles there would be flat.
+            // At a pole the ring has radius 0, so one of the two triangles is degenerate and left out.
             if (profile[ring][0] > 0) mesh.triangles.push_back({a, b, b + sectors});
             if (profile[ring + 1][0] > 0) mesh.triangles.push_back({a, b + sectors, a + sectors});
         }
 }
 
-/// Adds the parallelogram corner + [0, 1] u + [0, 1] v, divided into cells and facing u x v.
+/// Adds the parallelogram with the edges u and v from `corner`, divided into cells x cells parts. Its normal is u x v.
 void add_patch(const Vec3& corner, const Vec3& u, const Vec3& v, int cells, SurfaceMesh& mesh) {
     const Index first = static_cast<Index>(mesh.nodes.size());
     for (int j = 0; j <= cells; ++j)
@@ -65,7 +66,8 @@ void add_patch(const Vec3& corner, const Vec3& u, const Vec3& v, int cells, Surf
 struct Picture {
     const PlanePatch& patch;
 
-    /// The pose already contains the plane's normal and point: in its own frame every plane is z = 0.
+    /// The pose of the collider contains the normal and the point of the plane. In the frame of the collider the plane
+    /// is z = 0.
     SurfaceMesh operator()(const Plane&) const {
         SurfaceMesh mesh;
         const Real half = patch.half_size;

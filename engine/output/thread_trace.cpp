@@ -1,4 +1,4 @@
-// Output of a run as a trace of the work of its threads.
+// Writer for a trace of the activities of all threads.
 #include <ostream>
 
 #include "engine/output/write_file.h"

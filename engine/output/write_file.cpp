@@ -20,7 +20,7 @@ std::string what(int error) {
         .raise();
 }
 
-/// Removes the unfinished file, even if its writer throws.
+/// Removes the unfinished file at the end of its scope, also if an exception is thrown.
 struct Temporary {
     std::filesystem::path path;
 
@@ -43,11 +43,11 @@ const char* name_of(std::filesystem::file_type type) {
     }
 }
 
-/// Destination of the bytes, after following symbolic links.
+/// Destination of the bytes, with symbolic links resolved.
 struct Target {
     std::filesystem::path path;
-    bool takes_bytes = false;  // stream such as a pipe or a terminal: nothing can be replaced
-    std::filesystem::perms permissions = std::filesystem::perms::unknown;  // permissions of the existing file
+    bool takes_bytes = false;  // the file is a pipe or a terminal, which is written directly
+    std::filesystem::perms permissions = std::filesystem::perms::unknown;  // permissions of the file to be replaced
 };
 
 Target target_of(const std::filesystem::path& file) {
@@ -66,7 +66,7 @@ Target target_of(const std::filesystem::path& file) {
         target.path = to.is_absolute() ? to : target.path.parent_path() / to;
     }
     if (!fs::exists(found)) return target;
-    // renaming would succeed without write permission on the old file, but that file was protected on purpose
+    // Renaming would also replace a write-protected file. Such a file is refused, because it was protected on purpose.
     constexpr fs::perms any_may_write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
     if ((found.permissions() & any_may_write) == fs::perms::none || access(target.path.c_str(), W_OK) != 0)
         complain(file, "a file that is protected against writing", "a file that can be replaced");

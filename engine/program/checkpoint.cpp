@@ -59,7 +59,8 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
     return memory;
 }
 
-constexpr double slack = 1e-9;  // share of the interval; times are sums of frames and carry rounding
+// Tolerance for rounding errors of summed times, as a fraction of the interval between checkpoints.
+constexpr double slack = 1e-9;
 
 double multiple_after(double time, double every) {
     return (std::floor(time / every + slack) + 1) * every;
@@ -76,7 +77,8 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what;
 }
 
-/// Points the handles of a probe to the same bodies, colliders and attachments in the world with another number.
+/// Sets the world number in all handles of a probe. They then refer to the same bodies, colliders and attachments of
+/// the world with this number.
 void rename_world(RecordedProbe& probe, std::uint32_t number) {
     const auto rename = [number](auto& handle) { handle.world = number; };
     std::visit(
@@ -122,7 +124,8 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
         if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
             refuse(file, "collider \"" + world.name(colliders[c]) + "\"",
                    "\"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
-    for (Probe& probe : scene.probes)  // handles store the number of their world
+    // Handles of the old world are not valid in the new one.
+    for (Probe& probe : scene.probes)
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
     const std::uint32_t number = bodies.empty() && colliders.empty() ? 0
                                  : bodies.empty()                    ? colliders.front().world

@@ -1,4 +1,5 @@
-// Checkpoint files of runs: each holds the world and the progress of the run, so that a killed run can be resumed.
+// Checkpoint files of runs. A checkpoint holds the world and the progress of a run, so that a killed run can be
+// resumed.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +11,13 @@
 
 namespace skerry {
 
-/// State of a run that is not part of its world.
+/// State of a run, apart from its world, that a checkpoint stores.
 struct RunMemory {
-    std::filesystem::path scene;           // absolute path
+    std::filesystem::path scene;           // absolute path of the scene file
     std::vector<std::string> assignments;  // SceneOverrides::assignments
     double seconds = 0;                    // planned duration of the run [s]
-    double frame_step = 0;                 // [s]
-    int samples = 1;                       // calls of advance per frame
+    double frame_step = 0;                 // time between two frames [s]
+    int samples = 1;                       // number of calls of advance per frame
     long frame = 0;                        // number of the frame being simulated
     int sample = 0;                        // index of the next call of advance within the frame
     double seconds_wall = 0;
@@ -32,22 +33,23 @@ struct Restart {
 /// Reads a checkpoint. Throws SceneError if the file is not a checkpoint of a run.
 Restart read_restart(const std::filesystem::path& file, const LoadSettings& settings);
 
-/// Replaces the world of the scene by that of a checkpoint. Throws SceneError unless both have the same bodies and
-/// colliders: equal names, and equal numbers of nodes per body.
+/// Replaces the world of the scene by the world of a checkpoint. Throws SceneError unless both worlds have the same
+/// bodies and colliders, with equal names and with equal numbers of nodes per body.
 void put_in_place(const std::filesystem::path& file, World world, Scene& scene);
 
-/// Writes checkpoints while a run goes on.
+/// Writes checkpoints during a run.
 class CheckpointWriter {
 public:
-    /// `every`: simulated time between checkpoints [s]. The first is due at the first multiple of it after `time`.
-    /// With an empty file name none is written.
+    /// `every` is the simulated time between checkpoints [s]. The first checkpoint is due at the first multiple of
+    /// `every` after `time`. If the file name is empty, no checkpoints are written.
     CheckpointWriter(std::filesystem::path file, double every, double time);
     bool due(double time) const;
-    /// Reports a failure to write on standard error; the previous checkpoint then stays in place.
+    /// Writes a checkpoint. If this fails, reports the error on standard error and leaves the previous checkpoint in
+    /// place.
     void write(World& world, const RunMemory& memory);
     int written() const { return written_; }
     int failed() const { return failed_; }
-    /// Describes the written file for the user.
+    /// Returns a description of the checkpoint file for the user.
     std::string summary() const;
 
 private:

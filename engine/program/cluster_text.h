@@ -1,4 +1,4 @@
-// Text about clusters for the program's output.
+// Text about clusters of elements, for the output of the program.
 #pragma once
 
 #include <string>

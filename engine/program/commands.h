@@ -1,4 +1,4 @@
-// The commands of the program. Each of them returns its exit code.
+// The commands of the program. Each command returns the exit code of the program.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ namespace skerry {
 
 enum ExitCode : int {
     exit_ok = 0,
-    exit_failed = 1,     // a step could not be committed, a problem did not converge, or a strict run has warnings
-    exit_bad_input = 2,  // error in a file or on the command line
-    exit_output = 3,     // the computation succeeded but an output could not be written
+    exit_failed = 1,     // the simulation or solver failed, or a strict run has warnings
+    exit_bad_input = 2,  // error in an input file or on the command line
+    exit_output = 3,     // the computation succeeded, but an output could not be written
 };
-inline constexpr int exit_signal = 128;  // the signal's number is added
+inline constexpr int exit_signal = 128;  // base of the exit codes for signals: 128 + number of the signal
 
-/// Content of one file of exported contact problems.
+/// Content of one file of exported contact problems: a whole step, or one contact region of a step.
 enum class ProblemsOf { step, region };
 template <>
 struct EnumNames<ProblemsOf> {
@@ -33,30 +33,33 @@ struct EnumNames<ProblemsOf> {
 };
 
 struct RunOptions {
-    std::filesystem::path scene;  // may be empty with `restart`, which names the scene
+    std::filesystem::path scene;  // may be empty if `restart` is given: the checkpoint names the scene
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    std::map<std::string, std::filesystem::path> outputs;  // place by option of output_formats(); empty: not written
+    // File or folder of each output, by option of output_formats(). An empty path means that the output is not written.
+    std::map<std::string, std::filesystem::path> outputs;
     ProblemsOf problems_of = ProblemsOf::step;
-    std::optional<int> problems_every;  // export interval [steps]
+    std::optional<int> problems_every;  // number of steps between two exported steps
     bool quiet = false;
-    bool profile = false;              // also print times, solver figures and other details at the end
-    bool strict = false;               // warnings make the run fail
-    std::filesystem::path checkpoint;  // empty: not written
+    bool profile = false;              // also print step limits, solver figures, energies and stage times
+    bool strict = false;               // warnings make the run end with exit_failed
+    std::filesystem::path checkpoint;  // file for checkpoints; empty: no checkpoints
     std::optional<Real> every;         // simulated time between two checkpoints [s]
-    std::filesystem::path restart;     // checkpoint to resume from; empty: start from the scene's beginning
+    std::filesystem::path restart;     // checkpoint from which the run resumes; empty: a new run
 };
 int run(const RunOptions& options);
 
 struct InspectOptions {
     std::filesystem::path file;
-    std::vector<std::string> assignments;  // PLACE=VALUE, for a scene
+    std::vector<std::string> assignments;  // assignments PLACE=VALUE that change a scene
     bool json = false;
-    std::filesystem::path repair;  // file for the repaired mesh; empty: no repair
-    Real tolerance = 2e-3;   // largest distance between new and old surface, as a share of the bounding box's diagonal
-    std::string body;        // body of the scene whose mesh is repaired; empty: the body that bounds the step
-    bool overwrite = false;  // the repaired mesh may replace the file it was read from
+    std::filesystem::path repair;  // file for the repaired mesh; empty: only inspect
+    // Largest allowed distance between the old and the new surface, as a fraction of the diagonal of the bounding box.
+    Real tolerance = 2e-3;
+    // Name of the body whose mesh is repaired. If empty, the body with the smallest stable step is chosen.
+    std::string body;
+    bool overwrite = false;  // the repaired mesh may replace the input file
 };
 int inspect(const InspectOptions& options);
 
@@ -69,14 +72,16 @@ int solve(const SolveOptions& options);
 
 struct SweepOptions {
     std::filesystem::path cases;
-    std::filesystem::path out;    // folder of the results; empty: out/NAME for the file NAME.json of cases
-    std::optional<int> jobs;      // number of cases that run at a time
-    std::optional<int> rank, of;  // rank of this process and number of processes that share the cases
-    bool probes = false;          // also write the probe series of each case
-    bool redo = false;            // results of other cases may be replaced
-    bool dry_run = false;         // only lists the cases
-    bool table = false;           // only write the table of the existing results
-    bool strict = false;          // cases that fail, are refused or have warnings make the sweep fail
+    // Folder of the results. If empty, it is out/NAME for the file of cases NAME.json.
+    std::filesystem::path out;
+    std::optional<int> jobs;      // number of cases that run at the same time
+    std::optional<int> rank, of;  // rank of this process, number of processes that share the cases
+    bool probes = false;          // also write the time series of the probes of each case
+    bool redo = false;            // also run cases whose files hold outdated results, and replace these files
+    bool dry_run = false;         // list the cases without running them
+    bool table = false;           // write the table of the existing results without running cases
+    // A case that fails, is refused or has warnings makes the sweep end with exit_failed.
+    bool strict = false;
     bool quiet = false;
 };
 int sweep(const SweepOptions& options);

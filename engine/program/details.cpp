@@ -1,4 +1,4 @@
-// Details of a run for --profile: step lengths, solver, energies, times of the stages.
+// Details of a run that --profile prints: step limits, solver figures, energies and times of the stages.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -53,7 +53,7 @@ std::string stage_table(const RunResult& result) {
     return text;
 }
 
-/// Limits that shortened the steps, listed down to a hundredth of the steps.
+/// Lists the causes that limited the length of at least 1 % of the steps, except for the setting step_size.
 std::string limit_lines(const WorldReport& r) {
     const auto why = [](const StepLimitReport& of) -> std::string {
         switch (of.limit) {
@@ -84,7 +84,8 @@ std::string limit_lines(const WorldReport& r) {
     return text;
 }
 
-/// Stable step, and numbers of steps that were changed or repeated.
+/// Lines with the stable step, and the numbers of attempts at a step that were repeated and of steps that were
+/// shortened.
 std::string step_length_lines(const WorldReport& r) {
     std::string text;
     if (!r.stable_step_body.empty())

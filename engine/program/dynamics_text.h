@@ -1,4 +1,4 @@
-// Text and JSON about the automatic choice of dynamics of bodies.
+// Text and JSON about the automatic choice between explicit and implicit dynamics of bodies.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,12 @@
 
 namespace skerry {
 
-/// One text for each kind of choice: the first body of this kind with its numbers, and the count of the others.
+/// Returns one text for each kind of choice (the chosen dynamics and its reason). The text describes the first body of
+/// this kind and counts the others.
 inline std::vector<std::string> choice_texts(const WorldReport& report) {
     std::vector<std::string> texts;
-    std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;  // first choice of the kind, count
+    // First choice of each kind, and number of bodies of this kind.
+    std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;
     for (const DynamicsChoice& choice : report.dynamics_choices) {
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {
             return kind.first->dynamics == choice.dynamics && kind.first->estimate.reason == choice.estimate.reason;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr useconds_t poll_interval = 20000;  // [us]
 
-/// Temporary file without a name: the system removes it however this program ends.
+/// Temporary file without a name. The system removes it when this program ends, even after a crash.
 using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 NamelessFile nameless_file() {
@@ -31,7 +31,7 @@ NamelessFile nameless_file() {
     return file;
 }
 
-/// Path of skerry-fill: the folder of this program, where the build and an installation put it.
+/// Path of skerry-fill, which is in the same folder as this program, both after a build and after an installation.
 std::filesystem::path fill_program() {
     std::error_code ignored;
     return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / "skerry-fill";
@@ -63,13 +63,14 @@ Mesh read_mesh(std::FILE* in) {
     return mesh;
 }
 
-/// Mapping of files to the file descriptors of a child process.
+/// Redirection of standard input, file descriptor 3 and the messages of a child process.
 struct FileActions {
     posix_spawn_file_actions_t actions;
 
     FileActions(int in, int out) {
         posix_spawn_file_actions_init(&actions);
-        // First to high numbers: `in` or `out` may already have the number that the other one is to get.
+        // The descriptors are first duplicated to high numbers. Otherwise the first redirection could overwrite the
+        // other file, if that file has the number 0 or 3.
         posix_spawn_file_actions_adddup2(&actions, in, 100);
         posix_spawn_file_actions_adddup2(&actions, out, 101);
         posix_spawn_file_actions_adddup2(&actions, 100, STDIN_FILENO);
@@ -84,7 +85,7 @@ struct FileActions {
     FileActions& operator=(const FileActions&) = delete;
 };
 
-/// Returns the exit status of the child process.
+/// Runs skerry-fill and returns its status in the form of waitpid. Calls `wait` until the process ends.
 int run_fill(std::FILE* in, std::FILE* out, const std::function<void()>& wait) {
     const std::string program = fill_program().string();
     char* arguments[] = {const_cast<char*>(program.c_str()), nullptr};
@@ -119,7 +120,7 @@ Mesh fill_surface(const SurfaceMesh& surface, Real largest_edge, const std::func
     const int status = run_fill(in.get(), out.get(), wait);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return {};
     Mesh mesh = read_mesh(out.get());
-    // Netgen orders the corners of a tetrahedron with the opposite orientation.
+    // Netgen orders the corners of a tetrahedron for the opposite orientation.
     if (!mesh.tetrahedra.empty() && inspect(mesh).volume < 0)
         for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
     return mesh;

@@ -1,4 +1,4 @@
-// Fills a surface with tetrahedra by running the program skerry-fill.
+// Fills a surface with tetrahedra by running the separate program skerry-fill.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,11 @@
 
 namespace skerry {
 
-/// Throws SceneError with installation instructions unless skerry-fill is in the folder of this program.
+/// Throws SceneError with installation instructions if the folder of this program does not contain skerry-fill.
 void require_fill();
 
-/// Fills a closed surface with tetrahedra whose largest edge is about `largest_edge` [m]. The surface is kept bitwise.
-/// `wait` is called about 50 times a second. Returns a mesh without tetrahedra if skerry-fill fails.
+/// Fills a closed surface with tetrahedra of edge length up to about `largest_edge` [m]. The surface is unchanged
+/// bitwise. Meanwhile `wait` is called about 50 times a second. Returns a mesh without tetrahedra if skerry-fill fails.
 Mesh fill_surface(const SurfaceMesh& surface, Real largest_edge, const std::function<void()>& wait);
 
 }  // namespace skerry

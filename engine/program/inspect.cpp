@@ -20,11 +20,13 @@ namespace {
 
 using Problems = std::vector<std::string>;
 
-constexpr Real poor_quality = 0.1;        // below it a tetrahedron is a sliver that costs steps and accuracy
-constexpr Real expensive_step_ratio = 4;  // a stable step this many times below that of the next kind is reported
-constexpr Real hardly_longer = 1.03;      // ratio of steps below which the gain is called small
+// Tetrahedra below this quality are slivers, which shorten the step and reduce accuracy.
+constexpr Real poor_quality = 0.1;
+// A problem is reported if the smallest stable step is smaller than the second smallest by more than this factor.
+constexpr Real expensive_step_ratio = 4;
+constexpr Real hardly_longer = 1.03;  // ratios of step lengths between 1 and this value count as a small gain
 constexpr int timed_steps = 20;
-constexpr std::size_t longest_list = 300;  // longest list of names in a message [characters]
+constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
 Problems problems_of(const MeshReport& r) {
     Problems problems;
@@ -75,15 +77,15 @@ Json bound_json(const StepBound& bound) {
     return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
 }
 
-/// Comparison of a step with the present one. The ratio may be below 1: without some tetrahedra the others carry less
-/// mass.
+/// Describes the ratio of the step without the worst tetrahedra to the present step. The ratio may be below 1: removing
+/// tetrahedra reduces the mass of their nodes, and this shortens the steps of the neighbouring tetrahedra.
 std::string compared(Real ratio) {
     if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter";
     if (ratio < 1) return "hardly shorter";
     return ratio < hardly_longer ? "hardly longer" : short_number(ratio) + " times as long";
 }
 
-/// Prints the tetrahedra that bound the step, and the step without the worst of them.
+/// Prints the tetrahedra that limit the stable step, and the stable step without the worst tetrahedra.
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
         std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
@@ -96,7 +98,8 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << compared(w.step / bound.step) << "\n";
 }
 
-/// Returns, for example, "1: 300, 2: 20 tetrahedra". A long list is cut after the first 20 labels.
+/// Returns the number of tetrahedra per label, for example "1: 300, 2: 20 tetrahedra". Only the first 20 labels are
+/// listed.
 std::string labels_text(const MeshReport& report) {
     constexpr std::size_t most = 20;
     std::string text;
@@ -127,7 +130,7 @@ int inspect_mesh(const InspectOptions& options) {
                               options);
     const MeshReport report = inspect(mesh);
     const Problems problems = problems_of(report);
-    // A mesh that cannot be added to a world has no stable step.
+    // A mesh without tetrahedra, or with inverted or flat ones, cannot be added to a world and has no stable step.
     const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
     const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
     if (options.json) {
@@ -160,20 +163,22 @@ int inspect_mesh(const InspectOptions& options) {
     return exit_ok;
 }
 
-/// Report on bodies that share mesh and materials, and therefore a stable step.
+/// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
     std::string first_name;
-    std::vector<std::pair<std::string, std::size_t>> materials;  // material and number of its tetrahedra, above 0
+    // Name of each material, and number of tetrahedra of this material, which is above 0.
+    std::vector<std::pair<std::string, std::size_t>> materials;
     std::size_t count = 0;
-    std::size_t body = 0;  // index in ScenePlan::bodies of the first one
+    std::size_t body = 0;  // index in ScenePlan::bodies of the first body of this kind
     MeshReport mesh;
     BodyDynamics dynamics;
-    StepBound bound;  // for a rigid or implicit body: empty, with an infinite step
+    StepBound bound;  // for rigid and implicit bodies: empty, with an infinite step
 
     bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
 
-/// Treats the body as explicit and elastic, whatever its dynamics: its mesh then has a stable step.
+/// Returns the input of step_bound for a body. The body is treated as explicit and elastic, so that its mesh has a
+/// stable step even if its dynamics are rigid or implicit.
 StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
     StepCase of{.settings = plan.settings,
                 .material = plan.materials[body.material].second,
@@ -184,7 +189,8 @@ StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
     return of;
 }
 
-/// Number of tetrahedra per material: the body's own material first, then those of its labels.
+/// Returns the number of tetrahedra of each material of a body: first the body's own material, then the materials of
+/// its labels.
 std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan& plan, const BodyPlan& body,
                                                                  const MeshReport& mesh) {
     std::vector<std::pair<std::size_t, std::size_t>> count{{body.material, mesh.tetrahedra}};
@@ -204,8 +210,9 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Groups bodies by mesh, materials and dynamics. Each kind is put into a world of its own, which gives the step it
-/// would allow. `became`: dynamics of each body in the world; empty: those of the plan.
+/// Groups the bodies by mesh, materials, elements and dynamics. The stable step of each explicit kind is computed in a
+/// separate world. `became` holds the dynamics that each body has in the world. If it is empty, the dynamics of the
+/// plan are used.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
@@ -233,7 +240,8 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
     return kinds;
 }
 
-/// Returns, for example, "192 tetrahedra (smoothed), mean edge 0.05 m" or "a sphere of 0.1 m (rigid)".
+/// Describes the shape of a body, for example "192 tetrahedra (smoothed), mean edge 0.05 m" or
+/// "a sphere of radius 0.1 m (rigid)".
 std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
     const std::string how(kind.sets_step() ? name_of(kind.bound.element) : name_of(kind.dynamics));
     if (const auto& sphere = body.shape.sphere)
@@ -248,7 +256,7 @@ std::string shape_text(const BodyPlan& body, const BodyKindReport& kind) {
            with_unit(kind.mesh.mean_edge, "m");
 }
 
-/// Returns, for example, "steel" or "steel 300, rubber 20".
+/// Describes the materials of a body, for example "steel", or with numbers of tetrahedra "steel 300, rubber 20".
 std::string materials_text(const BodyKindReport& kind) {
     if (kind.materials.size() == 1) return kind.materials.front().first;
     std::string text;
@@ -257,11 +265,11 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene at the start of a run, and its overlaps before the run resolves them.
+/// A scene as a run would start it, and the overlaps of the scene before a run resolves them.
 struct SceneStart {
     Scene scene;
-    WorldReport as_written;  // report of the world in which no body is moved
-    std::string outcome;     // treatment of overlaps by a run; empty if there are none
+    WorldReport as_written;  // report of the world in which overlaps are not resolved
+    std::string outcome;     // how a run treats the overlaps, as text; empty if there are none
 };
 
 SceneStart start_of(const ScenePlan& plan) {
@@ -282,17 +290,18 @@ SceneStart start_of(const ScenePlan& plan) {
 }
 
 struct SceneCost {
-    double seconds_per_second = 0;  // wall time per simulated second, measured in the first steps
+    double seconds_per_second = 0;  // wall time per simulated second, measured over the first steps
     Real overlap = 0;               // deepest overlap at the start [m]
-    Real into_shell = 0;            // depth of surfaces in each other's contact distance at the start [m]
-    Index contacts = 0;             // number of contacts at the start
+    // Largest penetration into the contact distance minus the largest overlap, at the start [m].
+    Real into_shell = 0;
+    Index contacts = 0;  // number of contacts at the start
     std::string failure{}, turning{};
 };
 
-/// `overlap`: deepest overlap found before [m].
+/// Runs the first steps and measures cost, overlaps and contacts. `overlap` is the deepest overlap already known [m].
 SceneCost try_steps(World& world, Real overlap) {
     SceneCost cost{.overlap = overlap};
-    constexpr Real hardly = 1e-9;  // [s]; long enough to find contacts, too short to move anything noticeably
+    constexpr Real hardly = 1e-9;  // duration of a step that finds the contacts but hardly moves anything [s]
     const StepReport first = world.advance(hardly);
     cost.overlap = std::max(overlap, first.max_penetration);
     cost.into_shell = first.max_gap_violation - first.max_penetration;
@@ -338,7 +347,8 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
     return problems;
 }
 
-/// Returns the body whose mesh is to be repaired: the named one, or one of the kind that bounds the step.
+/// Returns the body whose mesh is to be repaired: the body that the user named, or else a body with the smallest stable
+/// step.
 const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& options) {
     const auto refuse = [&](const std::string& object, const std::string& found, const std::string& expected) {
         Complaint{options.file.string(), object, {}, found, expected, {}}.raise();

@@ -16,7 +16,8 @@ namespace skerry {
 
 namespace {
 
-/// Status line with elapsed seconds on a terminal; prints nothing if standard error is not a terminal.
+/// Status line on a terminal: the current activity and the elapsed seconds. Prints nothing if standard error is not a
+/// terminal.
 class DoingLine {
 public:
     explicit DoingLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}

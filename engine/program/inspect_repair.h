@@ -6,19 +6,21 @@
 
 namespace skerry {
 
-/// A mesh to repair and its use.
+/// A mesh to repair, and the body for which its stable step is computed.
 struct RepairTask {
     const Mesh& mesh;
-    std::string what;  // the file, or the body of a scene
+    std::string what;  // name in messages: the mesh file, or the scene and the body
     StepCase of;
-    std::string step_of;  // description of the body whose steps are printed
-    bool scaled = false;  // the scene has scaled the mesh: the written file must not be scaled again
+    std::string step_of;  // description of the material for which the stable step is computed
+    bool scaled = false;  // the nodes are already scaled: a scene must use the new file without `scale`
 };
 
-/// Checks before any work starts: the file name, skerry-fill and the input. Throws SceneError.
+/// Checks the options before any computation: the output file is a writable .msh file, it does not replace the input
+/// file without --overwrite, and skerry-fill exists. Throws SceneError otherwise.
 void check_repair(const InspectOptions& options);
 
-/// Repairs the mesh, prints the figures of both meshes and writes the new one if it is better. Returns the exit code.
+/// Repairs the mesh, prints the properties of the old and the new mesh, and writes the new mesh if it is better.
+/// Returns the exit code of the program.
 int inspect_repair(const RepairTask& task, const InspectOptions& options);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// The program: reads the command line, calls a command, turns exceptions into messages and exit codes.
+// Main function: reads the command line, runs the requested command, and turns exceptions into messages and exit codes.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -96,7 +96,7 @@ fails is a result, too; one that was killed is none, and is run again.
 Exit codes: 0 all cases of this process have a result, 1 one of them has none (--strict: or one failed, was refused or
 has warnings), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
-/// Accepts finite numbers above 0, as needed for a length, a time or a tolerance.
+/// Validator that accepts finite numbers above 0.
 const CLI::Validator positive_number(
     [](std::string& text) {
         double value = 0;
@@ -122,7 +122,8 @@ std::vector<std::string> names_of_all() {
     return names;
 }
 
-/// Adds an option whose values are the names of an enum. A removed name is refused with the hint of RemovedNames.
+/// Adds an option whose values are the names of an enum. If a name was removed from the enum, the error message
+/// includes the hint of RemovedNames.
 template <class Enum, class Target>
 void add_choice(CLI::App& app, const std::string& flag, Target& target, const std::string& meaning) {
     app.add_option_function<std::string>(
@@ -136,7 +137,7 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target, const st
         ->check(CLI::IsMember(names_of_all<Enum>()));
 }
 
-/// Adds an option whose target stays empty unless the option is given.
+/// Adds an option for a number above 0. `target` stays empty unless the user gives the option.
 CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Real>& target,
                         const std::string& meaning) {
     return app
@@ -154,7 +155,7 @@ void add_set(CLI::App& command, std::vector<std::string>& assignments) {
         ->allow_extra_args(false);
 }
 
-/// Adds an option for a whole number. Its target stays empty unless the option is given.
+/// Adds an option for a whole number of at least `least`. `target` stays empty unless the user gives the option.
 void add_count(CLI::App& app, const std::string& flag, std::optional<int>& target, int least,
                const std::string& meaning) {
     constexpr int most = 2147483647;
@@ -180,7 +181,7 @@ void add_outputs(CLI::App& command, RunOptions& options) {
     command.add_flag("--strict", options.strict, "end with exit code 1 if the run has warnings");
 }
 
-/// Adds the options that replace settings of the scene.
+/// Adds the options that override settings of the scene.
 void add_overrides(CLI::App& command, SceneOverrides& overrides) {
     add_set(command, overrides.assignments);
     add_choice<Backend>(command, "--backend", overrides.backend, "library that runs the threads");
@@ -197,7 +198,7 @@ void add_overrides(CLI::App& command, SceneOverrides& overrides) {
                                "grouping of contacts into regions, each of which is solved on its own");
 }
 
-/// Adds the options to stop and continue a run. Returns --restart.
+/// Adds the options for writing checkpoints and for resuming a run. Returns the option --restart.
 CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
     CLI::Option* checkpoint = command.add_option(
         "--checkpoint", options.checkpoint,
@@ -296,7 +297,7 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
     command.add_flag("--quiet", options.quiet, "no progress, no table");
 }
 
-/// CLI11 requires a command but does not name an unknown one in its message. This function does.
+/// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
 void require_known_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     const std::string found = argv[1];
@@ -312,7 +313,7 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
         .raise();
 }
 
-/// Returns the version and the instruction set used by the kernels on this machine.
+/// Returns the version, the instruction set that the kernels use, and the instruction sets of this machine.
 std::string version_text() {
     std::string sets;
     for (const std::string_view set : instruction_sets()) sets += (sets.empty() ? "" : ", ") + std::string(set);
@@ -350,11 +351,12 @@ int run_command_line(int argc, char** argv) {
     return exit_ok;
 }
 
-/// Keeps freed memory in the process. Loading a scene soon allocates it again, and the system would clear its pages
-/// each time.
+/// Makes the allocator keep freed memory instead of returning it to the system. Loading a scene frees and allocates
+/// much memory, and the system would have to clear every page that it hands out again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;  // [bytes]; the library adapts to these, but late
+    // Sizes in bytes. The C library would adapt these limits on its own, but later.
+    constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);
 #endif

@@ -1,4 +1,4 @@
-// Formats numbers and lines of a summary for people.
+// Formats numbers, and lines of a summary, for people to read.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Formats like printf with %.*g.
+/// Formats a number with `digits` significant digits, like %.*g of printf.
 inline std::string short_number(double value, int digits = 3) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);
@@ -18,7 +18,7 @@ inline std::string percent(double share) {
     return short_number(100 * share) + " %";
 }
 
-/// Groups digits by thousands: 1,234,567.
+/// Formats a count with its digits in groups of three, for example 1,234,567.
 inline std::string grouped(std::uint64_t value) {
     std::string digits = std::to_string(value);
     for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
@@ -26,13 +26,13 @@ inline std::string grouped(std::uint64_t value) {
     return digits;
 }
 
-/// Formats an estimated count, given as a double.
+/// Formats an estimated count that is given as a double.
 inline std::string count_text(double count) {
-    constexpr double most_written_out = 1e15;  // larger counts are written as powers of ten
+    constexpr double most_written_out = 1e15;  // counts from here on are written with a power of ten
     return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_number(count);
 }
 
-/// Chooses the prefix that leaves one to three digits before the point: (0.00031, "s") gives "310 us".
+/// Formats a value with the SI prefix that leaves one to three digits before the point: (0.00031, "s") gives "310 us".
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;
@@ -45,20 +45,21 @@ inline std::string with_unit(double value, const char* unit) {
     return short_number(value) + " " + unit;
 }
 
-/// Returns, for example, "40 s", "12 min", "3.5 h" or "20 days".
+/// Formats a duration, for example "40 s", "12 min", "3.5 h" or "20 days".
 inline std::string duration_text(double seconds) {
     struct Unit {
         double seconds;
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    constexpr double enough = 2;  // smallest number of units for which a unit is used
+    constexpr double enough = 2;  // a unit is used for durations of at least two units
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");
 }
 
-/// A line of a summary with its label in a column of its own. An empty label continues the line above.
+/// Returns a line of a summary: the label in the first column, the text in the second. With an empty label the line
+/// continues the line above.
 inline std::string summary_line(const std::string& label, const std::string& text) {
     constexpr std::size_t width = 14;
     return "  " + label + std::string(label.size() < width ? width - label.size() : 1, ' ') + text + "\n";

@@ -1,4 +1,5 @@
-// The outputs that `skerry run` offers. To add a format, write a Writer and add a row to the list in the source.
+// List of the outputs that `skerry run` offers. To add a format, write a Writer and add a row to the list in the
+// source.
 #pragma once
 
 #include <filesystem>
@@ -11,23 +12,24 @@
 
 namespace skerry {
 
-/// The data from which a writer is made. The referenced objects outlive the writer.
+/// Data from which a Writer is constructed. The referenced objects outlive the writer.
 struct OutputRequest {
     std::filesystem::path place;
     const Scene& scene;
     const RunOptions& options;
-    const RunResult& result;  // complete when the writer is closed, except for writers further down the list
+    // Result of the run. When a writer is closed, the result is complete, except for the writers that are closed later.
+    const RunResult& result;
 };
 
 struct OutputFormat {
-    const char* option;   // option of the command line whose value is the place
-    const char* meaning;  // for `skerry run --help`
-    bool is_folder;       // the place is a folder, not a file
+    const char* option;   // option on the command line; its value is the file or folder
+    const char* meaning;  // description of the option for `skerry run --help`
+    bool is_folder;       // true if the value of the option is a folder
     std::unique_ptr<Writer> (*make)(const OutputRequest&);
 };
 
-/// All formats, in the order in which the outputs of a run are written. The statistics are last: they report the
-/// outputs that failed.
+/// Returns all formats, in the order in which the outputs of a run are written. The statistics come last, because they
+/// list the outputs that failed.
 std::span<const OutputFormat> output_formats();
 
 }  // namespace skerry

@@ -13,10 +13,10 @@ namespace {
 
 struct Sample {
     int sticking = 0, sliding = 0;
-    Real slip = 0;  // sum over contacts, later their mean [m/s]
+    Real slip = 0;  // sum of the slip speeds of the contacts, later their mean [m/s]
 };
 
-/// True if the contact presses on a node that is inside the probe.
+/// True if the contact acts on a node of the probe. `inside` has a flag for each node of the body `body`.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
         const bool ours =
@@ -26,7 +26,7 @@ bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& i
     return false;
 }
 
-/// Largest stress among the given entries of `stress` [Pa].
+/// Returns the largest von Mises stress of the given entries of `stress` [Pa].
 Real largest_von_mises(std::span<const Mat3> stress, std::span<const std::size_t> nodes) {
     Real largest = 0;
     for (const std::size_t n : nodes) largest = std::max(largest, von_mises(stress[n]));
@@ -66,7 +66,7 @@ void ProbeRecorder::sample(const World& world, Real seconds) {
         }
         const int closed = sample.sticking + sample.sliding;
         if (closed > 0) sample.slip /= closed;
-        // A part slides if at least half of its closed contacts slide.
+        // A probe counts as sliding if at least half of its closed contacts slide.
         const State state = closed == 0 ? State::open : (2 * sample.sliding >= closed ? State::slide : State::stick);
         states.push_back(state);
 

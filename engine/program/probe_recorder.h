@@ -1,4 +1,4 @@
-// Records the probes of a scene: when parts of bodies stick and when they slide.
+// Records for each probe of a scene when it sticks and when it slides. A probe is a set of nodes of a body.
 #pragma once
 
 #include <string>
@@ -11,27 +11,27 @@ namespace skerry {
 
 struct ProbeRecord {
     std::string name;
-    Real stick_time = 0, slide_time = 0, open_time = 0;  // [s]
-    Real slide_alone_time = 0;                           // time during which no other probe slides [s]
-    int changes = 0;                                     // changes between sticking and sliding
-    Real max_slip = 0;                                   // largest mean over the probe's closed contacts [m/s]
-    Real slip_distance = 0;                              // time integral of that mean slip [m]
-    Real max_von_mises = 0;                              // largest stress at the probe's nodes [Pa]
-    std::vector<Real> time;                              // times of the samples [s]
-    std::vector<int> sticking, sliding;                  // numbers of contacts
-    std::vector<Real> slip;                              // mean over closed contacts [m/s]
-    std::vector<Real> von_mises;                         // largest value at the probe's nodes [Pa]
+    Real stick_time = 0, slide_time = 0, open_time = 0;  // times in each state [s]
+    Real slide_alone_time = 0;           // time during which this probe slides and no other probe does [s]
+    int changes = 0;                     // number of changes between sticking and sliding
+    Real max_slip = 0;                   // largest value of `slip` [m/s]
+    Real slip_distance = 0;              // time integral of `slip` [m]
+    Real max_von_mises = 0;              // largest value of `von_mises` [Pa]
+    std::vector<Real> time;              // times of the samples [s]
+    std::vector<int> sticking, sliding;  // numbers of sticking and sliding contacts in each sample
+    std::vector<Real> slip;              // mean slip speed of the closed contacts in each sample [m/s]
+    std::vector<Real> von_mises;         // largest stress at the nodes of the probe in each sample [Pa]
 };
 
 class ProbeRecorder {
 public:
     explicit ProbeRecorder(const Scene& scene);
-    /// Counts the contacts of the last step and evaluates the stress. The sample stands for the `seconds` since the
-    /// previous one.
+    /// Takes a sample of each probe: counts its contacts in the last step and evaluates its stress. `seconds` is the
+    /// time since the previous sample [s].
     void sample(const World& world, Real seconds);
     const std::vector<ProbeRecord>& records() const { return records_; }
-    /// State that a recorder of the same probes needs to resume; go_on() restores it. go_on() throws nlohmann's
-    /// exceptions, and std::out_of_range for other probes.
+    /// Returns the state of the recorder for a checkpoint. go_on() restores this state in a recorder of the same
+    /// probes. For other probes it throws std::out_of_range, and for invalid JSON nlohmann's exceptions.
     Json saved() const;
     void go_on(const Json& saved);
 
@@ -39,16 +39,16 @@ private:
     enum class State { open, stick, slide };
     struct Tracked {
         BodyHandle body;
-        std::vector<char> inside;  // flag per local node
+        std::vector<char> inside;  // flag for each node of the body: node of the probe
         State last_closed = State::open;
-        std::size_t stressed = 0;                   // index in `stressed_` of the body with the probe's nodes
-        std::vector<std::size_t> stressed_nodes{};  // positions of the probe's nodes in that entry
+        std::size_t stressed = 0;                   // index of the probe's body in `stressed_`
+        std::vector<std::size_t> stressed_nodes{};  // indices of the probe's nodes in Stressed::nodes
     };
-    /// Nodes of all probes of a body. Their stress is evaluated in one call, because each call searches for
-    /// neighbours.
+    /// A body and the nodes of all probes on it. The stress of these nodes is evaluated in one call, because each call
+    /// has to find the tetrahedra around the nodes.
     struct Stressed {
         BodyHandle body;
-        std::vector<Index> nodes{};  // local numbers
+        std::vector<Index> nodes{};  // node numbers within the body
     };
 
     std::vector<Tracked> tracked_;
@@ -57,7 +57,7 @@ private:
 };
 
 Json to_json(const ProbeRecord& record);
-/// Reads all members except the name.
+/// Reads all members of a record except the name.
 void from_json(const Json& json, ProbeRecord& record);
 
 }  // namespace skerry

@@ -24,14 +24,15 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
     return text;
 }
 
-/// Returns the export interval [steps] for which about `file_count` steps are written.
+/// Returns the interval between exported steps for which about `file_count` of all `steps` steps are exported.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    // a run may have infinitely many steps
+    // The upper limit is needed because `steps` may be infinite.
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
-/// Writes problems while the world advances. A failure within a step is thrown by the next sample() or close().
+/// Writes contact problems during the steps. If writing fails within a step, the next call of sample() or close()
+/// throws the error.
 class ExportedProblems final : public Writer {
 public:
     ExportedProblems(const std::filesystem::path& folder, const std::string& scene, const RunOptions& options)
@@ -67,9 +68,9 @@ private:
     std::filesystem::path folder_;
     std::string scene_;
     ProblemsOf of_;
-    std::optional<int> every_;  // export interval [steps]
+    std::optional<int> every_;  // number of steps between two exported steps
     long files_ = 0, steps_ = 0;
-    double seconds_ = 0;  // time spent on the export [s]
+    double seconds_ = 0;  // wall time of the export [s]
     std::exception_ptr failure_;
 };
 
@@ -79,7 +80,7 @@ void ExportedProblems::write_step(const StepProblem& step) {
     if (of_ == ProblemsOf::step) {
         write(step.problem, step, name + numbered("contacts", 1, step.problem.contacts()), step.impulse);
     } else {
-        // sorts contacts by region, and regions by number
+        // Pairs of region and contact number. Sorting them brings the contacts of each region together.
         std::vector<std::pair<Index, Index>> order;
         for (std::size_t i = 0; i < step.region.size(); ++i) order.emplace_back(step.region[i], static_cast<Index>(i));
         std::sort(order.begin(), order.end());

@@ -1,4 +1,4 @@
-// Exports the contact problems of a run as files that other solvers can read.
+// Exports the contact problems of a run as files for other solvers.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Writes the problems of the steps that the options name. Throws SceneError if the scene's name is not a file name.
+/// Returns a writer for the contact problems of single steps, which the options select. Throws SceneError if the name
+/// of the scene cannot be used as a file name.
 std::unique_ptr<Writer> exported_problems(const std::filesystem::path& folder, const Scene& scene,
                                           const RunOptions& options);
 

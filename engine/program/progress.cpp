@@ -11,8 +11,8 @@ namespace skerry {
 
 namespace {
 
-constexpr double refresh_interval = 0.1;  // interval of the bar [s]
-constexpr double first_line = 1;          // [s]; by then the speed is known well enough
+constexpr double refresh_interval = 0.1;  // time between two updates of the bar [s]
+constexpr double first_line = 1;          // wall time of the first line; by then the time left can be estimated [s]
 constexpr double longest_silence = 600;   // longest time between two lines [s]
 constexpr int bar_width = 24;             // [characters]
 

@@ -1,4 +1,5 @@
-// Displays the progress of a run and the time left: a bar on a terminal, otherwise occasional lines.
+// Displays the progress of a run and the estimated time left: as a bar on a terminal, otherwise as a line from time to
+// time.
 #pragma once
 
 #include <chrono>
@@ -7,7 +8,7 @@
 
 namespace skerry {
 
-/// Measures wall time since its construction [s].
+/// Measures the wall time since the construction of the object [s].
 class Stopwatch {
 public:
     double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -16,23 +17,24 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Returns, for example, [######..................].
+/// Returns a bar filled to the fraction `share`, for example [######..................].
 std::string bar_text(double share);
 
-/// Erases the bar before a message is printed; does nothing if standard error is not a terminal.
+/// Erases the progress bar, so that a message can be printed. Does nothing if standard error is not a terminal.
 void clear_bar();
 
 class Progress {
 public:
-    /// Progress of a run of `seconds` with about `steps` steps of size `step` [s]. Everything goes to standard error.
-    /// With `wanted` false nothing is ever shown.
+    /// `seconds`: simulated time of the run [s]. `steps`: estimated number of steps. `step`: step length [s]. If
+    /// `wanted` is false, nothing is displayed. All output goes to standard error.
     Progress(bool wanted, double seconds, double steps, double step);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Prints a summary of the run once, then its progress at limited intervals: the bar ten times a second, lines
-    /// after 1, 2, 4, ... s and finally every ten minutes. Cheap enough to be called before every step.
+    /// Displays the progress if the last display was long enough ago: the bar ten times a second, lines after 1, 2, 4,
+    /// ... s and later every ten minutes. The first call that displays something also prints a summary of the run. The
+    /// function is cheap enough to be called before every step.
     void show(double time, std::uint64_t steps);
 
 private:

@@ -17,11 +17,18 @@ namespace skerry {
 
 namespace {
 
-constexpr Real least_gain = 1.05;                // of the step: a smaller gain does not justify a new mesh
-constexpr Real knot_altitude = 0.4;              // of the surface's mean edge (measured: docs/decisions/0012)
-constexpr Real least_count = 0.7;                // of the tetrahedra: with fewer the mesh would be coarser, not better
-constexpr Real largest_edges[] = {1.5, 1, 0.7};  // of the mesh's mean edge; a finer surface enforces smaller ones
-constexpr Real volume_rounding = 1e-6;           // relative volume difference of a surface and its filling
+// Smallest ratio of new to old step that justifies a new mesh.
+constexpr Real least_gain = 1.05;
+// Triangles of the surface with an altitude below this fraction of its mean edge are knots (measured:
+// docs/decisions/0012).
+constexpr Real knot_altitude = 0.4;
+// Smallest ratio of new to old number of tetrahedra. With fewer tetrahedra the mesh would be coarser, not better.
+constexpr Real least_count = 0.7;
+// Sizes of tetrahedra to be tried, as multiples of the mean edge of the old mesh. A finer surface leads to smaller
+// tetrahedra.
+constexpr Real largest_edges[] = {1.5, 1, 0.7};
+// Largest accepted difference between the volume inside a surface and the volume of its tetrahedra, as a fraction.
+constexpr Real volume_rounding = 1e-6;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -39,7 +46,8 @@ Real area_of(const SurfaceMesh& surface) {
     return area;
 }
 
-/// Volume by the divergence theorem, relative to a point of the surface: the rounding error then scales with its size.
+/// Volume inside a closed surface by the divergence theorem. Positions are taken relative to a point of the surface, so
+/// that the rounding error depends on the size of the surface and not on its position.
 Real volume_inside(const SurfaceMesh& surface) {
     Real volume = 0;
     for (const auto& t : surface.triangles) {
@@ -59,7 +67,7 @@ Real mean_edge_of(const SurfaceMesh& surface) {
     return sum / static_cast<Real>(3 * surface.triangles.size());
 }
 
-/// Returns the stable step [s], or 0 for a mesh that is not a valid body.
+/// Returns the stable step [s], or 0 if the mesh cannot be a body.
 Real step_of(const Mesh& mesh, const MeshReport& report, const StepCase& of) {
     return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, of, false).step : 0;
 }
@@ -70,11 +78,11 @@ MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const StepC
     return figures;
 }
 
-/// A new mesh of the body, with the changes of its surface.
+/// A new mesh for the body, and the numbers of edges of the surface that were changed.
 struct Candidate {
     Mesh mesh;
     SurfaceMesh surface;
-    MeshFigures figures;  // step 0: no candidate found
+    MeshFigures figures;  // a step of 0 means that no mesh was found
     std::size_t collapsed = 0, flipped = 0;
 };
 
@@ -138,8 +146,8 @@ public:
     }
 
 private:
-    /// Thinning checks the distance at few points of the surface only. If the full check fails, it is repeated with a
-    /// smaller tolerance.
+    /// Removes knots from the surface within the tolerance. thin_knots checks the distance to the old surface at few
+    /// points only. If a full check then finds a larger distance, the thinning is repeated with a smaller tolerance.
     mesh::ThinnedSurface thinned_within_tolerance() const {
         constexpr int tries = 4;
         constexpr Real less = 0.75;
@@ -152,8 +160,8 @@ private:
         return {};
     }
 
-    /// Fills the surface with tetrahedra of several sizes. `best` becomes the mesh with the longest step. The finest
-    /// size is only tried if no coarser one was accepted.
+    /// Fills the surface with tetrahedra of several sizes, and sets `best` to the acceptable mesh with the longest
+    /// step. The finest size is tried only if no coarser mesh was acceptable.
     void try_fill(const SurfaceMesh& surface, const std::string& which, Candidate& best) {
         const Real volume = volume_inside(surface);
         for (const Real size : largest_edges) {
@@ -188,7 +196,7 @@ private:
         result_.collapsed = result_.flipped = 0;
     }
 
-    /// Sets the refusal if the mesh in the result is not to be written.
+    /// Sets result_.refusal if the new mesh is not good enough to be written.
     void judge(const SurfaceMesh& surface) {
         if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
             result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"
@@ -197,7 +205,7 @@ private:
         }
         progress_("measuring how far the surface moved");
         result_.distance = mesh::surface_distance(surface_, surface);
-        // With tolerance 0 the surfaces must agree up to rounding.
+        // With a tolerance of 0 the surfaces must agree except for rounding errors.
         const Real rounding = 1e-9 * (result_.before.mesh.upper - result_.before.mesh.lower).norm();
         if (result_.distance.greatest() > std::max(result_.tolerance, rounding))
             result_.refusal = "the surface would move by " + with_unit(result_.distance.greatest(), "m") +
@@ -209,7 +217,7 @@ private:
     }
 
     mesh::PartedMesh parted_;
-    const Mesh& mesh_;  // the mesh in parted_
+    const Mesh& mesh_;  // refers to parted_.mesh
     const StepCase& of_;
     const std::function<void(const std::string&)>& progress_;
     SurfaceMesh surface_;

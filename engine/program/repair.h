@@ -1,4 +1,4 @@
-// Computes a better mesh of the same body.
+// Computes a mesh of the same body with a longer stable step.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Figures of one mesh in the table that a repair prints.
+/// Properties of one mesh in the table that a repair prints.
 struct MeshFigures {
     MeshReport mesh;
     Real surface_area = 0;  // [m^2]
@@ -20,19 +20,27 @@ struct MeshFigures {
 struct RepairedMesh {
     Mesh mesh;
     MeshFigures before, after;
-    mesh::SurfaceDistance distance;          // from the old surface to the new one, and back
-    Real tolerance = 0;                      // [m]
-    std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges
-    std::size_t parted = 0;                  // number of nodes split because their tetrahedra share no face there
-    std::string kept;                        // reason why the old tetrahedra are kept, apart from split nodes
-    std::string refusal;                     // reason why the mesh is not to be written; empty: it is better
+    mesh::SurfaceDistance distance;          // distances between the old surface (first) and the new surface (second)
+    Real tolerance = 0;                      // largest allowed distance [m]
+    std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
+    // Number of nodes that were split because some of their tetrahedra were not connected by faces.
+    std::size_t parted = 0;
+    // If only nodes were split and the tetrahedra are the old ones: the reason why no new tetrahedra were accepted.
+    std::string kept;
+    std::string refusal;  // reason why the mesh must not be written; empty if it is better
 };
 
-/// Fills the mesh's surface with new tetrahedra and returns the mesh with the longest stable step. The surface is
-/// tried as it is and without its knots (needles and caps). Removing them moves it by at most `tolerance`, a share of
-/// the bounding box's diagonal; 0: only as it is. First, nodes whose tetrahedra share no face there are split
-/// (part_fans.h); a mesh with split nodes is accepted even with its old tetrahedra. `progress` is called with the
-/// current activity many times a second. Throws SceneError for a mesh whose surface cannot be filled.
+/// Fills the surface of the mesh with new tetrahedra, and returns the mesh with the longest stable step.
+///
+/// 1. Nodes whose tetrahedra are not connected by faces are split (part_fans.h).
+/// 2. The surface is filled as it is.
+/// 3. If `tolerance` is above 0, a surface without needles and caps (knots) is also filled. Removing the knots moves
+/// the surface by at most `tolerance`, as a fraction of the diagonal of the bounding box.
+/// 4. If no new tetrahedra are better than the old ones but nodes were split, the old tetrahedra are returned with
+/// these nodes.
+///
+/// `progress` is called many times a second with a description of the current activity. Throws SceneError if the
+/// surface cannot be filled.
 RepairedMesh repair(const Mesh& mesh, const std::string& what, const StepCase& of, Real tolerance,
                     const std::function<void(const std::string&)>& progress);
 

@@ -23,7 +23,7 @@ namespace {
 void require_writable_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::path existing = std::filesystem::absolute(folder);
-    if (!existing.has_filename()) existing = existing.parent_path();  // path with a trailing slash
+    if (!existing.has_filename()) existing = existing.parent_path();  // removes a trailing slash
     while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
     if (!std::filesystem::is_directory(existing, error))
         refuse_output(folder, existing.string() + ", which is no folder", "a folder");
@@ -43,7 +43,7 @@ void require_writable_file(const std::filesystem::path& file) {
 void require_distinct(std::span<const NamedFile> files) {
     const auto place = [](const std::filesystem::path& file) {
         std::error_code error;
-        // weakly_canonical leaves a relative name relative if the file does not exist yet
+        // If the file does not exist yet, weakly_canonical would leave a relative name relative.
         const std::filesystem::path full = std::filesystem::absolute(file);
         const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
         return error ? full : found;

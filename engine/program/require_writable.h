@@ -1,4 +1,4 @@
-// Checks before any computation that output can be written.
+// Checks before any computation whether the outputs can be written.
 #pragma once
 
 #include <filesystem>
@@ -6,18 +6,20 @@
 
 namespace skerry {
 
-/// Requires that a file can be created or replaced; missing folders are created later. Leaves no trace. Throws
-/// SceneError.
+/// Throws SceneError unless the file can be created or replaced. The folder may be missing if it can be created. The
+/// check does not change any file or folder.
 void require_writable_file(const std::filesystem::path& file);
-/// Requires that a folder can be created or written into. Leaves no trace. Throws SceneError.
+/// Throws SceneError unless the folder can be created, or exists and can be written. The check does not change any file
+/// or folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
-/// A file and its name in messages; an empty path stands for no file.
+/// A file, and the name by which messages call it. An empty path means that there is no such file.
 struct NamedFile {
     const char* name;
     std::filesystem::path file;
 };
-/// Requires that no output replaces another one or an input. Throws SceneError that names both.
+/// Throws SceneError, which names both files, if two of the files are the same. No output then replaces another output
+/// or an input.
 void require_distinct(std::span<const NamedFile> files);
 
 }  // namespace skerry

@@ -23,8 +23,8 @@ namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
 
-/// SIGINT and SIGTERM end the run between two steps; a second one kills the process. Exceeding the file size limit
-/// becomes an ordinary write error.
+/// Handles signals during a run. The first SIGINT or SIGTERM ends the run between two steps, and the second kills the
+/// process. SIGXFSZ is ignored, so that exceeding the file size limit becomes an ordinary write error.
 class SignalGuard {
 public:
     SignalGuard() {
@@ -51,9 +51,9 @@ private:
 const char* const advice =
     "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps";
 
-/// Runs all frames from the state in `memory`. result.status holds the error, if any. A run stopped within a frame
-/// keeps the previous checkpoint: advance() divides its duration into equal steps, and the rest of a call would be
-/// another call.
+/// Runs all frames, from the state in `memory` on. An error is stored in result.status. If a run stops within a call of
+/// advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a resumed run could not
+/// reproduce the remaining steps of that call.
 class FrameLoop {
 public:
     FrameLoop(Scene& scene, const RunPlan& plan, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
@@ -84,7 +84,7 @@ public:
                 if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
                 advance(duration);
             }
-            if (result_.status != "ok" && !(world_.time() > begin)) break;  // no progress since the previous frame
+            if (result_.status != "ok" && !(world_.time() > begin)) break;  // the frame has made no progress
             add_frame();
             const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());
@@ -148,7 +148,7 @@ private:
     Progress& progress_;
     RunResult& result_;
     ProbeRecorder probes_;
-    std::uint64_t steps_ = 0;  // in this part of the run
+    std::uint64_t steps_ = 0;  // number of steps since the start or the resumption
 };
 
 void count_bodies(const World& world, RunResult& result) {
@@ -161,11 +161,11 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
-/// Lists meshes whose boundary is not a closed manifold, one body per mesh. Contacts find the way out of a body by its
-/// surface, which fails where the surface does not have two sides.
+/// Returns a text for each mesh whose boundary is not a closed manifold, with one of its bodies as example. At such
+/// places a contact cannot tell the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
-    const std::vector<BodyHandle> bodies = world.bodies();  // in the order of the plan
+    const std::vector<BodyHandle> bodies = world.bodies();  // bodies in the order of ScenePlan::bodies
     std::vector<bool> seen(plan.meshes.size(), false);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];

@@ -14,16 +14,16 @@ namespace skerry {
 
 namespace {
 
-/// Place of an output; empty if the output is not requested.
+/// Returns the file or folder of an output, or an empty path if the output is not requested.
 std::filesystem::path place_of(const OutputFormat& format, const RunOptions& options) {
     const auto found = options.outputs.find(format.option);
     return found == options.outputs.end() ? std::filesystem::path() : found->second;
 }
 
-/// Checks that all places can be written and that no file has two uses. Returns the files that the run reads or writes
-/// under a given name.
+/// Throws SceneError unless all outputs can be written and no file has two uses. Returns all files that the user has
+/// named, for reading or for writing.
 std::vector<NamedFile> check_places(const RunOptions& options) {
-    // a checkpoint may replace the one that the run resumes from
+    // The run may write its checkpoint to the file from which it resumes.
     std::error_code error;
     const bool same = std::filesystem::equivalent(options.restart, options.checkpoint, error);
     std::vector<NamedFile> files{{"the scene", options.scene},

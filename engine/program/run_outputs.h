@@ -1,4 +1,4 @@
-// The requested outputs of a run. If one of them fails, the others continue.
+// The requested outputs of a run. If an output fails, the other outputs continue.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,18 @@ namespace skerry {
 
 class RunOutputs {
 public:
-    /// Opens the outputs that `options` request. Throws SceneError if one of them cannot be written, or would replace
-    /// another one or an input. Failures and the time spent are added to `result`. All references must outlive this.
+    /// Opens the outputs that `options` request. Throws SceneError if an output cannot be written, or would replace
+    /// another output or an input. Later failures and the time spent are added to `result`. All arguments must outlive
+    /// the object.
     RunOutputs(const RunOptions& options, Scene& scene, const RunStart& start, RunResult& result);
 
-    /// Call this after every call of advance.
+    /// Must be called after every call of World::advance.
     void sample(const World& world);
     void add_frame(const World& world);
-    /// Completes all files, and lists them in the result.
+    /// Completes the files of all outputs, and adds their descriptions to RunResult::written.
     void finish(const World& world);
 
-    /// True if outputs were requested and none of them is still usable.
+    /// True if outputs were requested and all of them have failed.
     bool all_failed() const;
 
 private:
@@ -32,7 +33,8 @@ private:
         std::unique_ptr<Writer> writer;
         bool failed = false;
     };
-    /// Calls `write` for each output that has not failed. Reports a failure at once.
+    /// Calls `write` for each output that has not failed. If the call throws, reports the failure on standard error at
+    /// once.
     void for_each(FunctionRef<void(Writer&)> write);
 
     std::vector<Output> outputs_;

@@ -1,4 +1,4 @@
-// Division of a run into output frames and of frames into calls of advance; estimate of the number of steps.
+// Plan of a run: its division into frames, the division of frames into calls of advance, and an estimate of the steps.
 #pragma once
 
 #include "engine/program/checkpoint.h"
@@ -7,29 +7,32 @@
 namespace skerry {
 
 struct RunPlan {
-    static constexpr double slack = 1e-9;  // share of a frame: 0.1 s are six frames of 1/60 s, not seven
+    // Tolerance for rounding, as a fraction of a frame: 0.1 s must be six frames of 1/60 s, not seven.
+    static constexpr double slack = 1e-9;
 
-    double seconds = 0, frame_step = 0;  // [s]
-    int samples = 1;                     // probe samples per frame, each one call of advance
+    double seconds = 0, frame_step = 0;  // duration of the run, time between two frames [s]
+    int samples = 1;                     // number of probe samples per frame; each sample is one call of advance
 
     long frames() const;
-    /// Time from the end of the previous frame to the end of this one; the last frame may be shorter [s].
+    /// Returns the length of a frame, which is the time since the previous frame [s]. The last frame may be shorter
+    /// than the others.
     double length_of(long frame) const;
-    /// Upper bound of the step size in the current state of the world, also bounded by the length of a sample [s].
+    /// Returns an upper bound of the step length in the present state of the world [s]. A step is never longer than a
+    /// sample.
     double longest_step(const World& world) const;
-    /// Estimate of the number of remaining steps. Each sample is divided into equal steps.
+    /// Estimates the number of remaining steps. Each sample is divided into equal steps.
     double steps(const World& world) const;
 };
 
-/// Plan of a new run: options of the command line override values of the scene. Throws SceneError for more than 1e9
-/// frames or samples per frame.
+/// Returns the plan of a new run. Options of the command line override the values of the scene. Throws SceneError if
+/// there are more than 1e9 frames, or more than 1e9 samples per frame.
 RunPlan plan_run(const Scene& scene, const RunOptions& options);
-/// Plan of a run that is resumed at `time`. It keeps the frames and samples of the first part, because the calls of
-/// advance have to be the same. Throws SceneError if nothing is left to simulate.
+/// Returns the plan of a run that is resumed at `time` [s]. The lengths of frames and samples stay the same, so that
+/// the calls of advance are the same as without the interruption. Throws SceneError if nothing is left to simulate.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if a run planned for `planned` seconds would have ended within this frame, and `plan` makes the frame longer
-/// or shorter.
+/// True if a run of `planned` seconds would have ended within this frame, and the frame has a different length in
+/// `plan`.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

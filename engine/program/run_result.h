@@ -1,4 +1,4 @@
-// Result of a run, and its presentations: JSON for scripts and text for people.
+// Result of a run, and its presentation as JSON for scripts and as text for people.
 #pragma once
 
 #include <memory>
@@ -17,40 +17,41 @@ namespace skerry {
 struct RunResult {
     std::string scene;
     std::string scene_file;
-    std::string status = "ok";  // otherwise the error
-    int stopped_by = 0;         // number of the signal that stopped the run; 0: none
+    std::string status = "ok";  // "ok", or a description of the error
+    int stopped_by = 0;         // signal that stopped the run; 0 if there was none
     Settings settings;
-    int threads = 0;  // number actually used
+    int threads = 0;  // number of threads that the run used
     double seconds_simulated = 0;
-    double seconds_wall = 0;    // wall time of the steps alone
-    double seconds_load = 0;    // wall time for reading and building the scene
-    double seconds_output = 0;  // wall time for writing outputs and checkpoints
+    double seconds_wall = 0;    // wall time of the steps, without outputs [s]
+    double seconds_load = 0;    // wall time for reading and building the scene [s]
+    double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
-    int checkpoints = 0, checkpoints_failed = 0;  // written and failed in this part of the run
+    int checkpoints = 0, checkpoints_failed = 0;  // numbers of checkpoints since the start or resumption
     std::size_t rigid_bodies = 0, implicit_bodies = 0;
-    Real peak_kinetic_energy = 0;  // largest value of all frames [J]
-    Real mean_edge = 0;            // mean over the bodies' surfaces [m]
+    Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
+    Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
-    std::vector<std::pair<std::string, std::string>> outputs_failed;  // option and error
-    std::vector<std::string> bad_boundaries;                          // one sentence for each invalid mesh boundary
-    std::vector<std::string> written;                                 // the written files, as texts for the user
+    std::vector<std::pair<std::string, std::string>> outputs_failed;  // option and error message
+    std::vector<std::string> bad_boundaries;  // one sentence for each mesh with an invalid boundary
+    std::vector<std::string> written;         // description of each written output
 };
 
-/// Carries out a run with its outputs. Throws SceneError for an invalid scene or invalid options.
+/// Simulates a scene and writes the requested outputs. Throws SceneError if the scene or an option is invalid.
 RunResult simulate(const RunOptions& options);
 
-/// Reasons not to rely on the run, each with its remedy, one sentence each. Empty if all error estimates are small.
+/// Returns the reasons not to rely on the run, one sentence each, with a remedy. Returns nothing if all error estimates
+/// are small.
 std::vector<std::string> warnings_of(const RunResult& result);
-/// Document of --stats. The names of its keys are part of the interface.
+/// Returns the JSON document of --stats. Scripts rely on the names of its keys.
 Json statistics_of(const RunResult& result);
-/// Writes this document when it is closed. `result` must outlive the writer.
+/// Writer for the JSON document of --stats, which is written when the run ends. `result` must outlive the writer.
 std::unique_ptr<Writer> statistics_file(const std::filesystem::path& file, const RunResult& result);
-/// Short text printed at the end of a run.
+/// Returns the short text that is printed at the end of a run.
 std::string summary_of(const RunResult& result);
-/// Additional lines for --profile: step lengths, solver, energies, times of the stages, state hash.
+/// Returns the additional lines for --profile: step limits, solver figures, energies, times of the stages, state hash.
 std::string details_of(const RunResult& result);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Text and JSON about overlaps at the start.
+// Text and JSON about bodies that overlap at the start of a run.
 #pragma once
 
 #include "engine/program/number_text.h"
@@ -22,7 +22,8 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// Smallest depth worth a warning, as a share of the mean edge.
+/// Depth of an overlap, or of a penetration into the contact distance, above which a warning is given. It is a fraction
+/// of the mean edge length.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
@@ -30,8 +31,8 @@ inline std::string into_shell_text(Real depth) {
            " too deep in each other's contact distance: move the bodies apart, or lower contact_distance";
 }
 
-/// Rotation per step from which a warning is given [rad]. Contacts assume straight motion; the error of a surface's
-/// place is then 3 % of its lever arm.
+/// Rotation of a collider per step above which a warning is given [rad]. Contacts assume that the surface moves
+/// straight within a step. At this rotation the position error of a surface point is 3 % of its distance from the axis.
 inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
@@ -41,7 +42,8 @@ inline std::string turning_text(const WorldReport& report) {
            "to " + percent(visible_turn / report.collider_turn) + " of its length";
 }
 
-/// Returns, for example, "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm".
+/// Describes how the overlaps were resolved, for example
+/// "3 overlaps, 4 bodies moved apart, the furthest ball_2 by 1.5 mm".
 inline std::string moves_text(const WorldReport& report) {
     const StartMove* furthest = nullptr;
     for (const StartMove& move : report.start_moves)

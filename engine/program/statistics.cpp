@@ -23,7 +23,7 @@ Json number_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
-/// Error estimates of the run. `warnings` lists in words those that are too large to rely on it.
+/// Returns the error estimates of the run. `warnings` describes the estimates that are too large.
 Json trust_of(const RunResult& result) {
     const WorldReport& r = result.report;
     return {

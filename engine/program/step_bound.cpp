@@ -23,7 +23,8 @@ struct Body {
 Body body_of(const Mesh& mesh, const StepCase& of) {
     Settings settings = of.settings;
     settings.step_size.reset();
-    settings.clusters = false;  // measures the stable step of the elements alone
+    // Clusters are switched off, so that the stable step is the step of the elements alone.
+    settings.clusters = false;
     settings.backend = Backend::serial;
     World world(settings);
     BodySettings body = of.body;
@@ -49,8 +50,9 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
     return found;
 }
 
-/// Orders all tetrahedra, worst first. Nodal masses are shared, so neighbours of a bad tetrahedron allow hardly more
-/// than it does. Among those near the smallest step the flattest therefore come first.
+/// Sorts all tetrahedra by the step that they allow, smallest first. Steps within 10 % of the smallest one count as
+/// equal, and are sorted by altitude. The reason: a bad tetrahedron reduces the steps of its neighbours almost to its
+/// own step, because they share nodal masses, and only its small altitude distinguishes it.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());
@@ -65,7 +67,7 @@ std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     return order;
 }
 
-/// Copy of the mesh without the tetrahedra `gone` and without nodes that then belong to none.
+/// Returns a copy of the mesh without the tetrahedra `gone`, and without the nodes that no remaining tetrahedron uses.
 Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     std::vector<bool> stays(mesh.tetrahedra.size(), true);
     for (const Index t : gone) stays[static_cast<std::size_t>(t)] = false;
@@ -88,10 +90,11 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
-/// Stable step without the worst tetrahedra. They are removed in several rounds, because the neighbours of a removed
-/// one then have different masses. `order`: all tetrahedra of the mesh, worst first.
+/// Computes the stable step of the mesh without its worst tetrahedra. These are removed in several rounds, because each
+/// removal changes the nodal masses and therefore the order of the remaining tetrahedra. `order` lists all tetrahedra
+/// of the mesh, worst first.
 std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
-    constexpr std::size_t rounds = 3;  // per share
+    constexpr std::size_t rounds = 3;  // number of rounds per share
     std::vector<StepWithout> without;
     Mesh rest = mesh;
     std::size_t gone = 0;

@@ -1,4 +1,4 @@
-// Tetrahedra of a mesh that bound its stable step.
+// Stable step of a mesh, and the tetrahedra that limit it.
 #pragma once
 
 #include <map>
@@ -8,25 +8,26 @@
 
 namespace skerry {
 
-/// All inputs on which the stable step of a single body depends. Defaults: default material and elements.
+/// All data, apart from the mesh, on which the stable step of a single body depends. By default the default material
+/// and elements.
 struct StepCase {
     Settings settings;
     MaterialSettings material;
     BodySettings body;
-    std::map<int, MaterialSettings> labelled;  // materials of tetrahedra by label
+    std::map<int, MaterialSettings> labelled;  // material by label of the tetrahedra
 };
 
 struct CostlyTetrahedron {
-    Index tetrahedron = 0;      // number in the mesh, counted from 0
-    Vec3 place = Vec3::Zero();  // centre in the mesh's frame [m]
-    Real altitude = 0;          // smallest altitude [m]
-    Real mean_edge = 0;         // mean of the six edges [m]
-    Real step = 0;              // step that this tetrahedron allows [s]
+    Index tetrahedron = 0;      // index in the mesh
+    Vec3 place = Vec3::Zero();  // centroid in the coordinates of the mesh [m]
+    Real altitude = 0;          // smallest altitude of the tetrahedron [m]
+    Real mean_edge = 0;         // mean length of the six edges [m]
+    Real step = 0;              // largest stable step that this tetrahedron allows [s]
 };
 
-/// The stable step if some tetrahedra were removed.
+/// Stable step that the mesh would have without its worst tetrahedra.
 struct StepWithout {
-    Real share = 0;  // share of the tetrahedra removed
+    Real share = 0;  // fraction of the tetrahedra that are removed
     std::size_t count = 0;
     Real step = 0;  // [s]
 };
@@ -34,13 +35,14 @@ struct StepWithout {
 struct StepBound {
     Real step = 0;  // [s]
     ElementKind element{};
-    std::vector<CostlyTetrahedron> worst;  // the one that bounds the step, then the flattest with hardly more
+    // The tetrahedron with the smallest step, then the flattest tetrahedra among those with nearly as small steps.
+    std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
 };
 
 /// Computes the stable step of a body with this mesh. With `details` it also finds the few worst tetrahedra, and the
-/// step without the worst 0.1 % and 1 %, with the masses of the remaining mesh. Throws SceneError for a mesh that is
-/// not a valid body.
+/// stable step of the mesh without its worst 0.1 % and 1 % of the tetrahedra. Throws SceneError if the mesh cannot be a
+/// body.
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details);
 
 }  // namespace skerry

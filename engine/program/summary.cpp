@@ -1,4 +1,4 @@
-// The summary at the end of a run, for people who do not know the methods behind it.
+// Summary that is printed at the end of a run, for people who do not know the methods of the engine.
 #include <cmath>
 
 #include "engine/program/number_text.h"
@@ -12,7 +12,7 @@ std::string count_of(std::size_t count, const std::string& noun, const std::stri
     return grouped(count) + " " + (count == 1 ? noun : nouns);
 }
 
-/// Returns, for example, "11 deformable (2 of them implicit), 1 rigid, 1 collider".
+/// Returns the numbers of bodies and colliders, for example "11 deformable (2 of them implicit), 1 rigid, 1 collider".
 std::string bodies_text(const RunResult& result) {
     const WorldReport& r = result.report;
     const std::size_t deformable = r.bodies - result.rigid_bodies;
@@ -27,7 +27,7 @@ std::string bodies_text(const RunResult& result) {
 }
 
 std::string time_text(const RunResult& result) {
-    constexpr double least = 1e-3;  // shorter times for output are not worth a word [s]
+    constexpr double least = 1e-3;  // shorter output times are not mentioned [s]
     return with_unit(result.seconds_wall, "s") + " for the steps on " +
            count_of(static_cast<std::size_t>(result.threads), "thread", "threads") + ", " +
            with_unit(result.seconds_load, "s") + " to load the scene" +
@@ -42,7 +42,7 @@ std::string penetration_text(const RunResult& result) {
 }
 
 std::string balance_text(const WorldReport& r) {
-    constexpr double rounding = 1e-9;  // share below which the error of momentum is rounding
+    constexpr double rounding = 1e-9;  // relative momentum errors below this value are rounding errors
     return "energy adds up to within " + percent(r.energy_error_share) + ", momentum " +
            (std::isnan(r.momentum_error)        ? "is not checked: a held body is damped or implicit"
             : r.momentum_error_share < rounding ? "to within rounding"
@@ -71,7 +71,7 @@ std::string warning_lines(const RunResult& result) {
                                                           : "none about the part that was simulated");
 }
 
-/// Figures of the steps; none if no step was taken.
+/// Lines with statistics of the steps. Empty if no step was made.
 std::string step_lines(const RunResult& result) {
     const WorldReport& r = result.report;
     if (r.steps == 0) return {};

@@ -1,4 +1,4 @@
-// Warnings: reasons not to rely on a run, each with its remedy.
+// Warnings: reasons not to rely on the result of a run. Each warning includes a remedy.
 #include <algorithm>
 
 #include "engine/program/number_text.h"
@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Adds warnings about the start. Returns true if these explain later errors.
+/// Adds warnings about overlaps at the start. Returns true if these overlaps may have caused the later errors.
 bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) {
     const WorldReport& r = result.report;
     constexpr std::size_t most_named = 5;
@@ -53,11 +53,13 @@ void warn_of_elements(const WorldReport& r, const std::string& shorter, std::vec
 }
 
 void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
-    constexpr double small_share = 0.02;  // of the energy; at the stable step this error stays below 1 %
+    // Relative error of the energy balance above which a warning is given. With the stable step the error is below
+    // 1 %.
+    constexpr double small_share = 0.02;
     if (r.energy_error_share > small_share)
         warnings.push_back("the energy balance has an error of " + percent(r.energy_error_share) + ", more than " +
                            percent(small_share) + ": " + shorter);
-    constexpr double rounding = 1e-9;  // sums of millions of terms stay far below this
+    constexpr double rounding = 1e-9;  // relative rounding errors of sums of millions of terms are far below this value
     if (r.momentum_error_share > rounding)
         warnings.push_back("the momentum balance has an error of " + percent(r.momentum_error_share) +
                            ", more than rounding: please report it as a bug, with the scene");

@@ -1,4 +1,4 @@
-// Output of a run as a page that plays it in a browser.
+// Writer for an HTML page that plays the run in a browser.
 #include "engine/output/writer.h"
 #include "skerry/output.h"
 

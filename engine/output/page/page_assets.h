@@ -1,14 +1,14 @@
-// Parts of the page, embedded by the build (embed.cmake writes page_assets.cpp), so that an installed library needs no
-// data files.
+// Parts of the HTML page. The build embeds them in the library (embed.cmake writes page_assets.cpp), so that an
+// installed library needs no data files.
 #pragma once
 
 #include <string_view>
 
 namespace skerry {
 
-extern const std::string_view page_html;  // contains @marks@ as placeholders for the parts
+extern const std::string_view page_html;  // template; marks such as @style@ are replaced by parts
 extern const std::string_view page_style;
 extern const std::string_view page_script;
-extern const std::string_view three_js;  // empty: not found by the build
+extern const std::string_view three_js;  // empty if the build did not find three.js
 
 }  // namespace skerry

@@ -10,15 +10,16 @@
 namespace skerry {
 namespace {
 
-/// Names in the order of the alternatives of Shape.
+/// Names of the kinds of shapes, in the order of the alternatives of Shape.
 constexpr const char* kind_names[] = {"plane", "sphere", "box", "capsule", "cylinder", "bucket", "mesh"};
 static_assert(std::size(kind_names) == std::variant_size_v<Shape>);
 
-/// Value of a field at a node; `field` counts from 0 to page_field_count - 1.
+/// Value of a displayed field at a node; `field` counts from 0 to page_field_count - 1.
 Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
     if (field == 0) return body.velocity[node].norm();
     if (field == stress_field) return von_mises(body.node_stress[node]);
-    return von_mises(body.node_strain[node]) * 2 / 3;  // the factor 2/3 gives the axial strain of a bar in tension
+    // The factor 2/3 gives the axial strain of an incompressible bar in tension.
+    return von_mises(body.node_strain[node]) * 2 / 3;
 }
 
 }  // namespace
@@ -70,7 +71,9 @@ void PageData::add(const Frame& frame) {
                      .regions = count_regions(frame.contacts)});
 }
 
-/// Widens the scales. This must happen for all bodies of a frame before the first of them is packed.
+/// Collects the values of a body at the vertices of the page, and widens the value scales so that they include these
+/// values. All bodies of a frame must be measured before the first body is packed, because packing uses the final
+/// scales of the frame.
 void PageData::measure_body(const BodyFrame& body, std::size_t place) {
     SKERRY_CHECK(body.velocity.size() == body.position.size() && body.node_stress.size() == body.position.size() &&
                  body.node_strain.size() == body.position.size());

@@ -1,4 +1,4 @@
-// Data played by the page: frames in a compact encoding.
+// Data that the page plays: all frames of the run in a compact encoding.
 #pragma once
 
 #include <array>
@@ -15,26 +15,29 @@
 
 namespace skerry {
 
-/// A collider in the state in which it was first seen. Planes have no triangles: the page draws them itself.
+/// A collider with the shape that it had in its first frame. Planes have no triangles, because the page draws them
+/// itself.
 struct PageCollider {
     std::string name;
-    std::string kind;  // plane, sphere, box, capsule, cylinder, bucket, mesh
+    std::string kind;  // one of plane, sphere, box, capsule, cylinder, bucket, mesh
     SurfaceMesh picture;
 };
 
-/// Values of one frame for the plots.
+/// Values of one frame for the plots on the page.
 struct PageRow {
     Real time;  // [s]
     Energy energy;
     Index contacts, stick, slide, regions;
 };
 
-/// Packs frames as they arrive into one stream, compressed as a whole (docs/decisions/0016-page-stream.md). Counts and
-/// changes are encoded as in pack.h, all other numbers are little-endian. A frame consists of
-///   counts of bodies, colliders, contacts
-///   changes from zero: exponents e of the tops 4^e of speed, stress, strain and force (ValueScale)
-///   per body: count: its number; its shape if it is new; then positions, then values of each field (BodyStream)
-///   per collider: count: its number; f32 position[3] [m], rotation[3] (axis times angle)
+/// Packs frames into one stream as they arrive. The stream is compressed as a whole
+/// (docs/decisions/0016-page-stream.md). Counts and changes are encoded as in pack.h, all other numbers are
+/// little-endian. A frame consists of
+///   numbers of bodies, colliders and contacts, as counts
+///   exponents e of the largest values 4^e of speed, stress, strain and force (ValueScale), as changes from zero
+///   for each body: its number as a count; its shape in its first frame only; positions; values of each field
+///   (BodyStream)
+///   for each collider: its number as a count; f32 position[3] [m], rotation[3] (axis times angle) [rad]
 ///   contacts (ContactStream)
 class PageData {
 public:
@@ -46,7 +49,7 @@ public:
     std::span<const PageRow> rows() const { return rows_; }
     /// All frames, compressed.
     std::string packed_frames() const { return frames_.packed(); }
-    /// One per field, page_field_count in all.
+    /// Distribution of the values of each field, page_field_count entries.
     std::span<const Quantile> fields() const { return fields_; }
     const Quantile& force() const { return force_; }
     const Vec3& gravity() const { return gravity_; }
@@ -69,9 +72,9 @@ private:
     Quantile force_;
     std::array<ValueScale, page_field_count> field_scale_;
     ValueScale force_scale_;
-    Vec3 gravity_ = Vec3::Zero();  // of the first frame [m/s^2]
-    // Scratch memory, kept between frames: values at the vertices of the frame's bodies by body and field, and flags
-    // of new bodies.
+    Vec3 gravity_ = Vec3::Zero();  // gravity in the first frame [m/s^2]
+    // Scratch memory that is reused for each frame. For each body of the frame: its number, a flag if it is new, and
+    // its values by field and vertex.
     struct BodyValues {
         Index number = 0;
         bool is_new = false;

@@ -20,7 +20,7 @@ Json json_of(const Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// Packs numbers as base64; the page reads them as an array.
+/// Encodes rows of numbers of type T as base64. The page decodes them to a typed array.
 template <class T, class Rows>
 std::string packed(const Rows& rows) {
     std::string bytes;
@@ -39,7 +39,7 @@ Json json_of_colliders(const PageData& data) {
     return list;
 }
 
-/// One array per quantity, with one value per frame.
+/// Plotted quantities as JSON: one array per quantity, with one value per frame.
 Json json_of_rows(const PageData& data) {
     Json rows;
     const auto column = [&](const char* name, auto&& value) {
@@ -89,7 +89,7 @@ Json json_of_report(const PageSummary& summary) {
             {"stages", stages}};
 }
 
-/// Ends of a legend: the largest value, and the value below which 99 % lie.
+/// Two upper ends for the legend of a field: the largest value, and the value below which 99 % of the values lie.
 Json json_of(const Quantile& quantile) {
     return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
 }
@@ -106,8 +106,8 @@ std::string describe(const PageData& data, const PageSummary& summary) {
                        {"strain", json_of(data.fields()[2])},
                        {"force", json_of(data.force())},
                        {"report", json_of_report(summary)}};
-    // Users choose the names: bytes that are not UTF-8 become U+FFFD, and every '<' is escaped so that none can end
-    // the script element.
+    // Names come from users and may contain any bytes. Bytes that are not UTF-8 become U+FFFD. Every '<' is escaped, so
+    // that no name can close the script element.
     std::string text;
     for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
         if (c == '<')
@@ -119,13 +119,13 @@ std::string describe(const PageData& data, const PageSummary& summary) {
 }
 
 std::string escape_html(const std::string& text) {
-    // Converts to JSON and back, which replaces bytes that are not UTF-8.
+    // Converting the text to JSON and back replaces bytes that are not UTF-8.
     std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
     clean = Json::parse(clean).get<std::string>();
     return escape_markup(clean);
 }
 
-/// Compressed three.js, about a fifth of the size of its text.
+/// Returns the compressed text of three.js, which has about a fifth of the size.
 std::string packed_three_js() {
     Deflater deflater;
     deflater.add(three_js);
@@ -148,7 +148,7 @@ void require_page_library(const std::filesystem::path& file) {
 void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary) {
     require_page_library(file);
     write_file(file, [&](std::ostream& out) {
-        // Replaces the @marks@ of the template in one pass: inserted text is not searched for marks.
+        // Replaces the @marks@ of the template in one pass, so that marks inside an inserted text stay unchanged.
         std::string_view rest = page_html;
         const auto upto = [&](std::string_view mark) {
             const std::size_t place = rest.find(mark);

@@ -1,4 +1,4 @@
-// Writes the page as one file: the player, three.js, the summary of the run, and its frames.
+// Writes the HTML page as one file that contains the player, three.js, the summary of the run and its frames.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace skerry {
 
-/// Data of the run as a whole.
+/// Data of the page that do not belong to a frame.
 struct PageSummary {
     std::string title;
     WorldReport report;
     std::uint64_t state_hash = 0;
 };
 
-/// Throws SceneError, which names `file`, if this build has no three.js.
+/// Throws SceneError if this build has no three.js. The message names `file`.
 void require_page_library(const std::filesystem::path& file);
 
 void write_page(const std::filesystem::path& file, const PageData& data, const PageSummary& summary);

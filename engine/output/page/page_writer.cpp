@@ -13,7 +13,7 @@ struct PageWriter::Impl {
 
 PageWriter::PageWriter(const std::filesystem::path& file, const std::string& title)
     : impl_(new Impl{.file = file, .title = title, .data = {}}) {
-    // Reports these failures before the run instead of after it.
+    // A missing three.js and a folder that cannot be created are reported before the run, not after it.
     require_page_library(file);
     if (file.has_parent_path()) make_folder(file.parent_path());
 }

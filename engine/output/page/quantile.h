@@ -1,4 +1,4 @@
-// Quantiles of many positive numbers without storing the numbers.
+// Estimates quantiles of many positive numbers without storing the numbers.
 #pragma once
 
 #include <cmath>
@@ -9,17 +9,18 @@
 
 namespace skerry {
 
-/// Counts values in bins 2 % wide. A legend can then end where nearly all values do, instead of at one extreme value.
+/// Histogram of positive values with bins that are 2 % wide. It gives a legend an upper end that includes nearly all
+/// values, without being stretched by a single extreme value.
 class Quantile {
 public:
     void add(Real value) {
-        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero in any case
+        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero, so only positive values matter
         ++bins_[static_cast<int>(std::floor(std::log(value) / log_width))];
         ++count_;
         if (value > max_) max_ = value;
     }
-    /// Returns the value below which the fraction `share` of the positive values lies, accurate to 2 %; 0 if there are
-    /// none.
+    /// Returns the value below which the fraction `share` of the positive values lies, accurate to 2 %. Returns 0 if
+    /// there are no values.
     Real at(Real share) const {
         std::uint64_t below = 0;
         for (const auto& [bin, count] : bins_) {

@@ -1,4 +1,4 @@
-// Finds the material point at a place.
+// Finds the material point of a body at a given position.
 #pragma once
 
 #include <array>
@@ -14,12 +14,13 @@ struct MaterialPoint {
     std::array<Real, 4> weight{};
 };
 
-/// Returns the corners of the tetrahedron that contains the place, with its barycentric coordinates. Outside all
-/// tetrahedra it returns the nearest node, if that is no further away than `reach` [m], or else nothing.
+/// Returns the corners of the tetrahedron that contains the position `place`, and the barycentric coordinates of this
+/// position. If no tetrahedron contains it, returns the nearest node, or nothing if this node is farther away than
+/// `reach` [m].
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach);
 
-/// Returns the nearest node and its distance [m].
+/// Returns the node nearest to `place`, and its distance from `place` [m].
 std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& place);
 
 }  // namespace skerry

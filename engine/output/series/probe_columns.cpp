@@ -18,7 +18,7 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 cannot deduce this for an aggregate
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 needs this deduction guide for an aggregate
 
 void put_vector(const Vec3& v, std::vector<Real>& values) {
     values.insert(values.end(), {v.x(), v.y(), v.z()});
@@ -94,7 +94,7 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    const bool known = force.seconds > 0;  // without a step no time has passed in which an impulse could act
+    const bool known = force.seconds > 0;  // without a step since the last row the mean force is undefined
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = known ? 1 / force.seconds : none;
     put_vector(known ? force.impulse : Vec3::Constant(none), values);

@@ -1,4 +1,4 @@
-// Columns recorded by each kind of probe, and their values at a time.
+// Columns that each kind of probe records, and the values of these columns.
 #pragma once
 
 #include <vector>
@@ -7,29 +7,30 @@
 
 namespace skerry {
 
-/// Sums of a force probe since the previous row.
+/// Force data that a force probe has summed up since its previous row.
 struct ForceSum {
-    Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();  // [N s], [N m s], [N s]
+    // Sums of impulse [N s], angular impulse [N m s] and friction impulse [N s].
+    Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
     Real pressing = 0, largest = 0, seconds = 0;
     Index contacts = 0;
 
     void add(const ForceReport& report);
 };
 
-/// A probe with its accumulated state.
+/// A probe together with the data that it has accumulated.
 struct TrackedProbe {
     RecordedProbe probe;
-    Vec3 origin = Vec3::Zero();  // reference of displacements [m]
+    Vec3 origin = Vec3::Zero();  // position from which displacements are measured [m]
     ForceSum force{};
 };
 
 bool measures_force(const RecordedProbe& probe);
-/// Starts a probe. Throws SceneError if the world does not have its body, collider or other object.
+/// Starts a probe. Throws SceneError if the world lacks an object or node that the probe names.
 TrackedProbe track(const World& world, RecordedProbe probe);
 void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
-/// Adds the forces of the last call of advance; only for force probes.
+/// Adds the forces of the last call of advance to a force probe. Does nothing for other probes.
 void add_forces(const World& world, TrackedProbe& probe);
-/// Appends one value per column and resets the accumulated forces.
+/// Appends one value per column of the probe to `values`, and resets the accumulated forces.
 void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values);
 
 }  // namespace skerry

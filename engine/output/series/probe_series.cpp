@@ -1,4 +1,4 @@
-// Output of a run as time series of its probes: CSV or HDF5.
+// Writer for the time series of probes, as CSV or HDF5 file.
 #include <optional>
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Records the rows; derived classes write them.
+/// Records the rows of the time series. Derived classes write the rows to a file.
 class ProbeSeries : public Writer {
 public:
     ProbeSeries(const std::filesystem::path& file, const Scene& scene) : file_(file), probes_(scene.recorded) {}
@@ -45,7 +45,7 @@ protected:
     }
 };
 
-/// Writes all rows at the end.
+/// Writes all rows at the end of the run.
 class Hdf5Series final : public ProbeSeries {
 public:
     using ProbeSeries::ProbeSeries;

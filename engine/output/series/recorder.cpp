@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real slack = 1e-9;  // share of `every`; times are sums of steps and carry rounding
+constexpr Real slack = 1e-9;  // tolerance for rounding errors of summed times, as a fraction of `every`
 
 [[noreturn]] void refuse(const std::string& name, const char* field, const std::string& found,
                          const std::string& expected) {
@@ -33,7 +33,7 @@ constexpr Real slack = 1e-9;  // share of `every`; times are sums of steps and c
         .raise();
 }
 
-/// Calls function() and adds the name of the probe to its error messages.
+/// Calls function(). A SceneError that it throws gets the name of the probe at the front of its message.
 template <class Function>
 auto called_for(const RecordedProbe& probe, Function function) {
     try {
@@ -55,7 +55,7 @@ void check_names(const std::vector<RecordedProbe>& probes) {
     }
 }
 
-/// Quotes a field as in RFC 4180 where necessary.
+/// Returns the text as a CSV field, in quotes if RFC 4180 requires them.
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -78,7 +78,8 @@ std::string csv_row(std::span<const Real> values) {
     return line + "\n";
 }
 
-/// Returns the complete rows up to a time from a file with the same headings.
+/// Reads an existing CSV file, which must have the headings `head`. Returns its complete rows with times up to `until`
+/// [s].
 std::string rows_to_keep(const std::filesystem::path& file, const std::string& head, Real until) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return {};
@@ -142,7 +143,7 @@ struct Recorder::Impl {
     std::vector<Real> values;  // row by row
     std::filesystem::path stream_file;
     std::ofstream stream;
-    std::uintmax_t stream_size = 0;  // size of the complete rows [bytes]
+    std::uintmax_t stream_size = 0;  // size of the file up to the last complete row [bytes]
 
     std::size_t rows() const { return values.size() / columns.size(); }
     std::span<const Real> row(std::size_t number) const {
@@ -155,7 +156,8 @@ struct Recorder::Impl {
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
-        std::error_code ignored;  // removes the incomplete row
+        // Truncating the file removes the incomplete row.
+        std::error_code ignored;
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         Complaint{.file = stream_file.string(),
                   .object = "output",
@@ -193,7 +195,8 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    if (r.begun && !(time > r.last_time)) return;  // no time has passed since the last call, which added these forces
+    // Without a step since the last call, the forces of the last step have been added already.
+    if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
     r.last_time = time;
@@ -205,7 +208,7 @@ void Recorder::sample(const World& world) {
         r.values.push_back(time);
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { put_row(world, probe, r.values); });
     } catch (...) {
-        r.values.resize(before);  // removes the incomplete row
+        r.values.resize(before);  // removes the values of the incomplete row
         throw;
     }
     if (r.stream.is_open()) r.put(csv_row(r.row(r.rows() - 1)));
@@ -232,7 +235,7 @@ void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real>
     r.stream_file = file;
     errno = 0;
     r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
-    std::error_code ignored;  // a pipe has no size
+    std::error_code ignored;  // file_size fails for a pipe, which has no size
     r.stream_size = std::filesystem::file_size(file, ignored);
     if (!r.stream) r.put("");
 }

@@ -1,4 +1,4 @@
-// Writes series to HDF5 files.
+// Writes time series to HDF5 files.
 #include "engine/hdf5/hdf5_image.h"
 #include "engine/output/write_file.h"
 #include "skerry/recorder.h"

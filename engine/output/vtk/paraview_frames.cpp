@@ -1,4 +1,4 @@
-// Output of a run as frames for ParaView.
+// Writer for frames in the VTK format of ParaView.
 #include <exception>
 #include <system_error>
 #include <vector>
@@ -45,11 +45,11 @@ private:
         std::error_code ignored;
         return std::filesystem::weakly_canonical(std::filesystem::absolute(place), ignored);
     }
-    /// Makes the frames so far readable, if there is room for the index.
+    /// Writes the index, so that the frames written so far can be opened. Does nothing if the index cannot be written.
     void write_index_if_possible() {
         try {
             writer_->close();
-        } catch (const SceneError&) {  // the error of the frame is the one to report
+        } catch (const SceneError&) {  // the caller reports the error of the frame instead
         }
     }
 

@@ -21,7 +21,7 @@ VtkFile::VtkFile(std::string_view kind, Real time, std::initializer_list<VtkText
     open(kind_);
     tags_ += "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
              number_text(time) + "</DataArray>\n";
-    // VTK's own encoding: character codes, with a zero after each text
+    // VTK encodes texts as decimal character codes, and ends each text with a zero.
     for (const auto& [name, strings] : texts) {
         tags_.append("<Array type=\"String\" Name=\"").append(name).append("\" NumberOfTuples=\"");
         tags_.append(std::to_string(strings.size())).append("\" format=\"ascii\">");

@@ -1,4 +1,4 @@
-// One VTK XML file: a header of tags, followed by all arrays as raw bytes.
+// One VTK XML file: XML tags, followed by all arrays as raw bytes.
 #pragma once
 
 #include <bit>
@@ -27,28 +27,29 @@ inline constexpr std::string_view vtk_type<std::int32_t> = "Int32";
 template <>
 inline constexpr std::string_view vtk_type<std::uint8_t> = "UInt8";
 
-/// Returns the shortest text that reads back as the same number, in any locale.
+/// Returns the shortest text that reads back as the same number. The text does not depend on the locale.
 std::string number_text(double value);
 
-/// Texts in the field data; ParaView shows them as an array of strings.
+/// Named list of texts in the field data of a file. ParaView shows it as an array of strings.
 struct VtkTexts {
     std::string_view name;
     std::span<const std::string> texts;
 };
 
-/// Assembles a file in the order of the format (VTK file formats, "XML file formats", appended data): tags, then for
-/// each array a 64-bit count and its raw little-endian bytes. Raw bytes take a quarter less space than base64, and all
-/// of VTK's own readers accept them.
+/// Builds a file in the appended-data form of the format (VTK file formats, "XML file formats"): XML tags, then for
+/// each array its number of bytes (64 bits) and its raw little-endian bytes. Raw bytes take a quarter less space than
+/// base64, and all of VTK's own readers accept them.
 class VtkFile {
 public:
-    /// `kind` is UnstructuredGrid or PolyData. The time goes into the field data, where ParaView looks for it in a
-    /// file that is opened alone.
+    /// `kind` is UnstructuredGrid or PolyData. The time is stored in the field data. ParaView reads it there if the
+    /// file is opened without the index of the series.
     VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts = {});
 
     void open(std::string_view tag, std::string_view attributes = "");
     void close(std::string_view tag);
 
-    /// Adds an array of `tuples` rows; fill(put) calls put(value) for each of their components, in order.
+    /// Adds an array of `tuples` rows with `components` numbers each. fill(put) must call put(value) for every number,
+    /// row by row.
     template <class T>
     void array(std::string_view name, int components, std::size_t tuples, auto&& fill) {
         begin_array(vtk_type<T>, name, components);
@@ -64,7 +65,7 @@ public:
         check_size(end);
     }
 
-    /// Ends the file and writes it under its name at once.
+    /// Completes the file and writes it. The file appears under its name only when it is complete.
     void write(const std::filesystem::path& file);
 
 private:

@@ -19,7 +19,7 @@ namespace skerry {
 namespace {
 
 constexpr std::uint8_t vtk_tetra = 10;
-constexpr std::size_t least_digits = 4;  // smallest number of digits of a frame number
+constexpr std::size_t least_digits = 4;  // frame numbers are padded with zeros to this number of digits
 constexpr std::pair<const char*, const char*> kinds[] = {
     {"bodies", ".vtu"}, {"contacts", ".vtp"}, {"colliders", ".vtp"}};
 
@@ -29,12 +29,12 @@ void put_vector(auto& put, const Vec3& v) {
     put(v.z());
 }
 
-/// Writes the components in VTK's order, which ParaView shows as XX, YY, ZZ, XY, YZ, XZ.
+/// Writes the six components of a symmetric tensor in VTK's order, which ParaView shows as XX, YY, ZZ, XY, YZ, XZ.
 void put_symmetric(auto& put, const Mat3& m) {
     for (const auto& [row, column] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}) put(m(row, column));
 }
 
-/// Writes one value of T per row.
+/// Adds an array with one number of type T per row.
 template <class T>
 void scalars(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
     file.array<T>(name, 1, std::size(rows), [&](auto put) {
@@ -48,7 +48,7 @@ void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
     });
 }
 
-/// Writes the end offsets of `count` cells with `nodes` nodes each.
+/// Adds the array "offsets" of `count` cells with `nodes` nodes each: for each cell the index after its last node.
 void offsets(VtkFile& file, std::size_t count, Index nodes) {
     file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
         for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);
@@ -98,7 +98,7 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
             is_series_file(entry.path().filename().string(), name_))
             earlier_.push_back(entry.path());
     for (const std::filesystem::path& file : earlier_) require_replaceable(file);
-    // Removes the index first: if removing another file fails, no index lists missing files.
+    // The index is removed first. If removing another file then fails, no index is left that lists missing files.
     std::stable_partition(earlier_.begin(), earlier_.end(),
                           [](const auto& file) { return file.extension() == ".pvd"; });
 }
@@ -139,7 +139,8 @@ void VtkSeries::remove_earlier() {
     earlier_.clear();
 }
 
-/// Reads the reference positions of displacements from the first frame, if that has the same nodes.
+/// Reads the node positions of the first frame, from which displacements are measured. Does nothing if that frame has a
+/// different number of nodes.
 void VtkSeries::read_origins(const Frame& now) {
     std::size_t points = 0;
     for (const BodyFrame& body : now.bodies) points += body.position.size();
@@ -148,7 +149,7 @@ void VtkSeries::read_origins(const Frame& now) {
     text << in.rdbuf();
     const std::string file = text.str(), start = "<AppendedData encoding=\"raw\">_";
     const std::size_t found = file.find(start), first = found + start.size() + sizeof(std::uint64_t);
-    std::uint64_t bytes = 0;  // the positions are the first array
+    std::uint64_t bytes = 0;  // size of the first array, which holds the positions
     if (found == std::string::npos || first + points * sizeof(Vec3) > file.size()) return;
     std::memcpy(&bytes, file.data() + found + start.size(), sizeof bytes);
     if (bytes != points * sizeof(Vec3)) return;
@@ -167,7 +168,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
     const auto list = [&](int part, const std::string& file) {
         std::error_code ignored;
         const bool there = std::filesystem::exists(folder_ / file, ignored);
-        std::erase(earlier_, folder_ / file);  // a file of this run
+        std::erase(earlier_, folder_ / file);  // files of the continued run are not removed
         if (there) entries_.push_back({static_cast<Real>(frame_count_) * frame_step, part, file});
         return there;
     };
@@ -180,7 +181,8 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         else if (!colliders_file_.empty())
             list(2, colliders_file_);
     }
-    if (!colliders_file_.empty()) colliders_changed(now);  // the latest written file is valid from here on
+    // Later frames refer to the last file of colliders until a collider leaves its present pose.
+    if (!colliders_file_.empty()) colliders_changed(now);
 }
 
 void VtkSeries::write_frame(const Frame& frame) {
@@ -239,8 +241,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
 
     VtkFile file("UnstructuredGrid", frame.time, {{"body_names", body_names_}, {"material_names", material_names_}});
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
-    // Positions are doubles: users evaluate their differences (gaps, travel, strain), for which float leaves few
-    // digits. All else is float, which is more accurate than the simulation.
+    // Positions are doubles, because users compute small differences of them (gaps, travel, strain), for which floats
+    // have too few digits. All other real numbers are floats, whose rounding errors are below the errors of the
+    // simulation.
     file.open("Points");
     file.array<double>("Points", 3, points,
                        of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put_vector(put, b.position[n]); }));
@@ -339,8 +342,8 @@ bool VtkSeries::colliders_changed(const Frame& frame) {
     return true;
 }
 
-/// Planes are infinite. The displayed part is a square around the bodies of the first frame that has any. Its edge is
-/// twice the diagonal of their bounding box.
+/// Chooses the displayed part of the infinite planes, once: a square around the bodies. Its edge is twice the diagonal
+/// of the bounding box of all bodies. Does nothing as long as there are no bodies.
 void VtkSeries::measure_patch(const Frame& frame) {
     if (patch_half_size_ > 0) return;
     Vec3 lower = Vec3::Constant(1e300), upper = -lower;
@@ -351,7 +354,8 @@ void VtkSeries::measure_patch(const Frame& frame) {
         }
     if ((lower.array() > upper.array()).any()) return;
     patch_center_ = (lower + upper) / 2;
-    patch_half_size_ = std::max((upper - lower).norm(), 1e-6);  // a single point still shows a floor
+    // The minimum size is for bodies whose bounding box is a single point.
+    patch_half_size_ = std::max((upper - lower).norm(), 1e-6);
 }
 
 void VtkSeries::write_colliders(const Frame& frame, const std::string& name) const {

@@ -1,4 +1,4 @@
-// Writes a series of VTK files from frames.
+// Writes a series of VTK files, some for each frame.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,22 @@
 
 namespace skerry {
 
-/// True if a series called `name` may write a file with this file name.
+/// True if `file_name` is the name of a file that a series called `name` may write.
 bool is_series_file(std::string_view file_name, std::string_view name);
 
-/// Writes NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, if a collider was added, removed or moved,
-/// NAME_colliders_0000.vtp. NAME.pvd lists them by time. Bodies and colliders are numbered in the order of their first
-/// appearance and keep their number. The first frame removes all files of an earlier series with the same name, as far
-/// as they have the above names, and nothing else. Throws SceneError if they cannot be replaced. A frame that cannot
-/// be written completely leaves no files.
+/// Writes up to three files for each frame: NAME_bodies_0000.vtu, NAME_contacts_0000.vtp and, if a collider was added,
+/// removed or moved, NAME_colliders_0000.vtp. The index NAME.pvd lists the files by time. Bodies and colliders are
+/// numbered in the order of their first appearance, and their numbers never change. The first frame removes the files
+/// of an earlier series with the same name, and no other files. Throws SceneError if these files cannot be replaced. If
+/// a frame cannot be written completely, its files are removed.
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
-    /// Continues a series as if `frames` frames had been written, `frame_step` seconds apart, `now` being the last.
-    /// Existing files of these frames are listed in the index.
+    /// Continues a series of which `frames` frames have been written, `frame_step` seconds apart. Files of these frames
+    /// are listed in the index if they still exist. `now` is the present state of the world.
     void go_on(const Frame& now, std::size_t frames, Real frame_step);
-    /// Names in the order in which materials were added. Materials without a name become "material NUMBER".
+    /// Sets the names of the materials, in the order in which the materials were added. A material without a name is
+    /// called "material NUMBER".
     void name_materials(std::vector<std::string> names) { material_names_ = std::move(names); }
     void write_frame(const Frame& frame);
     void write_index() const;
@@ -33,8 +34,8 @@ public:
 private:
     struct Entry {
         Real time;         // [s]
-        int part;          // 0 bodies, 1 contacts, 2 colliders
-        std::string file;  // in the folder of the index
+        int part;          // index of "bodies", "contacts" or "colliders": 0, 1 or 2
+        std::string file;  // file name without folder; the index is in the same folder
     };
 
     void remove_earlier();
@@ -48,19 +49,22 @@ private:
     void measure_patch(const Frame& frame);
     std::string frame_file(const char* what, const char* extension) const;
 
-    std::vector<std::filesystem::path> earlier_;  // files of an earlier series with this name, its index first
+    // Files of an earlier series with the same name, the index file first.
+    std::vector<std::filesystem::path> earlier_;
     std::filesystem::path folder_;
     std::string name_;
     std::size_t frame_count_ = 0;
     std::map<BodyHandle, Index> body_number_;
     std::map<ColliderHandle, Index> collider_number_;
-    std::vector<std::string> body_names_, collider_names_;  // by number
+    std::vector<std::string> body_names_, collider_names_;  // names by number
     std::vector<std::string> material_names_;
-    std::map<BodyHandle, std::vector<Vec3>> origin_;  // positions at the first appearance of a body, by node [m]
-    std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;  // as last written
-    std::string colliders_file_;                                        // last file written
-    Vec3 patch_center_ = Vec3::Zero();                                  // centre of the displayed part of planes [m]
-    Real patch_half_size_ = 0;  // half size of the displayed part of planes; 0: not measured yet [m]
+    // Node positions of each body in its first frame, from which displacements are measured [m].
+    std::map<BodyHandle, std::vector<Vec3>> origin_;
+    // Colliders and poses in the last file of colliders.
+    std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
+    std::string colliders_file_;        // name of the last file of colliders
+    Vec3 patch_center_ = Vec3::Zero();  // centre of the displayed square of planes [m]
+    Real patch_half_size_ = 0;          // half edge of the displayed square of planes; 0 until chosen [m]
     std::vector<Entry> entries_;
 };
 

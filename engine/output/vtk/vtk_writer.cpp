@@ -16,7 +16,7 @@ VtkWriter::VtkWriter(const std::filesystem::path& folder, const std::string& nam
 VtkWriter::~VtkWriter() = default;
 
 void VtkWriter::go_on(const World& world, std::size_t frames, Real frame_step) {
-    // forces of the next frame are impulses over the mean step since this one
+    // The series needs the present bodies and the present poses of the colliders.
     impl_->series.go_on(collect_frame(world), frames, frame_step);
 }
 

@@ -1,9 +1,11 @@
-// skerry-fill: reads a closed surface from standard input and writes tetrahedra inside it to a file. It is a separate
-// program for two reasons. Netgen (LGPL), and the CAD libraries, Tcl, Python and MPI that Debian's build of it loads,
-// stay out of `skerry`. A failure on some surface ends this process alone. `skerry inspect --repair` calls it.
+// skerry-fill: reads a closed surface from standard input and writes tetrahedra that fill the surface to a file.
+// `skerry inspect --repair` calls it. It is a separate program for two reasons. First, `skerry` then does not link
+// Netgen (LGPL) and the libraries that Debian's build of Netgen loads (CAD libraries, Tcl, Python and MPI). Second, if
+// Netgen crashes on a surface, only this process ends.
 //
-// Input: "NODES TRIANGLES LARGEST_EDGE", lines "x y z", lines "a b c" counted from 0. Output, to file descriptor 3:
-// "NODES TETRAHEDRA", lines "x y z", lines "a b c d" counted from 0.
+// Input: "NODES TRIANGLES LARGEST_EDGE", then lines "x y z" of the nodes, then lines "a b c" of the triangles, with
+// nodes counted from 0. Output, to file descriptor 3: "NODES TETRAHEDRA", then lines "x y z" of the nodes, then lines
+// "a b c d" of the tetrahedra, with nodes counted from 0.
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -15,7 +17,7 @@ namespace nglib {
 
 namespace {
 
-constexpr int output = 3;  // standard output receives Netgen's own messages
+constexpr int output = 3;  // file descriptor; standard output is used for Netgen's own messages
 
 bool read_surface(nglib::Ng_Mesh* mesh, nglib::Ng_Meshing_Parameters& settings) {
     long nodes = 0, triangles = 0;
@@ -65,6 +67,6 @@ int main() {
     settings.optsteps_3d = 5;
     if (!read_surface(mesh, settings)) return 2;
     if (nglib::Ng_GenerateVolumeMesh(mesh, &settings) != nglib::NG_OK) return 1;
-    // Skips the libraries' clean-up at exit, which is outside our control.
+    // std::_Exit skips the exit handlers of the libraries, over which this program has no control.
     std::_Exit(write_mesh(mesh) ? 0 : 2);
 }

@@ -40,11 +40,12 @@ std::string CaseHasher::hash(std::span<const std::string> assignments) {
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;
-    files_[file] = 0;  // value for a missing file, or one that includes itself
+    // Preliminary value, which is used if the file includes itself.
+    files_[file] = 0;
     Hash hash;
     std::ifstream stream(file, std::ios::binary);
     add_text({std::istreambuf_iterator<char>(stream), {}}, hash);
-    // The two files of TetGen belong together by name only; neither mentions the other.
+    // The .node and the .ele file of a TetGen mesh share their name, but neither file names the other. Both are hashed.
     for (const auto& [one, other] : {std::pair{".node", ".ele"}, std::pair{".ele", ".node"}})
         if (file.extension() == one) {
             std::ifstream beside(std::filesystem::path(file).replace_extension(other), std::ios::binary);
@@ -53,7 +54,7 @@ std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     if (file.extension() == ".json") {
         try {
             add_files(read_json(file), file, hash);
-        } catch (const SceneError&) {  // the case will be refused for it
+        } catch (const SceneError&) {  // the case is refused with this error when it runs
         }
     }
     return files_[file] = hash.value();

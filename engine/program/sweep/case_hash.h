@@ -1,4 +1,4 @@
-// One number for all inputs that determine the result of a case.
+// Hash of all inputs that determine the result of a case.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,21 @@ namespace skerry {
 
 class Hash;
 
-/// Hashes cases of one scene: the content of its file after a case's assignments, and all scene and mesh files that it
-/// names. Each file is read once.
+/// Computes hashes of the cases of one scene. The hash covers the scene after the assignments of the case, and all
+/// scene and mesh files that the scene names. Each file is read once.
 class CaseHasher {
 public:
-    /// Throws SceneError for a scene that cannot be read.
+    /// Throws SceneError if the scene file cannot be read.
     explicit CaseHasher(const std::filesystem::path& scene);
-    /// Returns "0x" and 16 digits. Assignments that fail are hashed as text.
+    /// Returns the hash of a case as "0x" and 16 digits. If an assignment fails, the hash also covers the text of all
+    /// assignments.
     std::string hash(std::span<const std::string> assignments);
     const Json& scene() const { return scene_; }
 
 private:
     std::uint64_t hash_of_file(const std::filesystem::path& file);
-    /// Adds the hashes of all files named by the keys "include" and "file".
+    /// Adds to `hash` the hashes of all files that the keys "include" and "file" name. Names are relative to the folder
+    /// of `of`.
     void add_files(const Json& json, const std::filesystem::path& of, Hash& hash);
 
     std::filesystem::path file_;

@@ -1,4 +1,4 @@
-// Displays the progress of a sweep: a bar on a terminal, otherwise occasional lines.
+// Displays the progress of a sweep: as a bar on a terminal, otherwise as a line from time to time.
 #pragma once
 
 #include "engine/program/progress.h"
@@ -7,14 +7,14 @@ namespace skerry {
 
 class CaseProgress {
 public:
-    /// Expects `count` cases. Everything goes to standard error. With `wanted` false nothing is ever shown.
+    /// `count` is the number of cases. If `wanted` is false, nothing is displayed. All output goes to standard error.
     CaseProgress(bool wanted, int count);
     ~CaseProgress();
     CaseProgress(const CaseProgress&) = delete;
     CaseProgress& operator=(const CaseProgress&) = delete;
 
-    /// Can be called at any rate. Shows a bar ten times a second, or lines after 1, 2, 4, ... s and finally every ten
-    /// minutes.
+    /// Displays the progress if the last display was long enough ago: the bar ten times a second, lines after 1, 2, 4,
+    /// ... s and later every ten minutes. `done` and `running` are numbers of cases.
     void show(int done, int running);
 
 private:

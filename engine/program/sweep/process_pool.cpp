@@ -17,7 +17,8 @@ namespace skerry {
 
 namespace {
 
-/// Blocks the signals that the pool waits for, so that none arrives unnoticed between a check and the wait.
+/// Blocks the signals that the pool waits for. A signal that arrives between a check and the next wait is then not
+/// lost.
 class HeldSignals {
 public:
     HeldSignals() {
@@ -29,13 +30,14 @@ public:
     HeldSignals(const HeldSignals&) = delete;
     HeldSignals& operator=(const HeldSignals&) = delete;
 
-    /// Returns the next of these signals, or 0 after half a second.
+    /// Waits for one of the blocked signals. Returns the number of the signal, or 0 if none arrives within half a
+    /// second.
     int next() const {
         const timespec patience{0, 500000000};  // [ns]
         const int number = sigtimedwait(&held_, nullptr, &patience);
         return number > 0 ? number : 0;
     }
-    /// Restores the previous signal mask, for a child process.
+    /// Restores the signal mask from before the pool. Child processes call this.
     void let_go() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
 
 private:
@@ -75,12 +77,13 @@ private:
     void begin_jobs() {
         while (may_begin_ && next_ < count_ && static_cast<int>(running_.size()) < at_once_) {
             std::cout.flush();
-            std::fflush(nullptr);  // otherwise parent and child would both write the buffered output
+            // Buffers are flushed before the fork. Otherwise parent and child would both write the buffered text.
+            std::fflush(nullptr);
             const pid_t parent = getpid(), process = fork();
             if (process == 0) in_child(parent);
             if (process < 0 && running_.empty()) throw std::system_error(errno, std::generic_category(), "no process");
             if (process < 0) {
-                at_once_ = static_cast<int>(running_.size());  // the system allows no more processes
+                at_once_ = static_cast<int>(running_.size());  // the system allows no more processes than those running
                 return;
             }
             running_.push_back({process, next_++});
@@ -91,11 +94,11 @@ private:
         for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
         signals_.let_go();
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (getppid() != parent) _exit(1);  // the parent ended before prctl took effect
+        if (getppid() != parent) _exit(1);  // the parent ended before the call of prctl
         const int code = calls_.run(next_);
         std::cout.flush();
         std::fflush(nullptr);
-        _exit(code);  // skips exit handlers, which belong to the parent
+        _exit(code);  // unlike exit, _exit does not run the exit handlers of the parent
     }
 
     void collect() {

@@ -1,4 +1,4 @@
-// Runs jobs in separate processes, a limited number at a time.
+// Runs jobs in separate processes, with a limit on the number of simultaneous processes.
 #pragma once
 
 #include <string>
@@ -10,21 +10,26 @@
 namespace skerry {
 
 struct PoolEnd {
-    std::vector<std::pair<int, std::string>> lost;  // jobs that failed, with a description of how they ended
-    std::vector<int> stopped;                       // jobs that were running when a signal ended the pool
-    int done = 0;                                   // number of jobs that returned 0
-    int signal = 0;                                 // signal that ended the pool; 0: none
+    // Failed jobs, each with a description of how its process ended.
+    std::vector<std::pair<int, std::string>> lost;
+    std::vector<int> stopped;  // jobs that were running when a signal ended the pool
+    int done = 0;              // number of jobs that returned 0
+    int signal = 0;            // signal that ended the pool; 0: none
 };
 
-/// Callbacks of the pool.
+/// Functions that the pool calls.
 struct PoolCalls {
-    FunctionRef<int(int)> run;            // called in a new process; takes the job, returns its exit code
-    FunctionRef<bool(int, int)> goes_on;  // called with job and exit code; returns whether further jobs may start
-    FunctionRef<void(int, int)> show;     // jobs done and running, after each change and twice a second
+    // Runs the job with the given number and returns its exit code. Called in a new process.
+    FunctionRef<int(int)> run;
+    // Called with the number of a job and its exit code (-1 after a signal). Returns whether more jobs may start.
+    FunctionRef<bool(int, int)> goes_on;
+    // Called with the numbers of ended and of running jobs, after each change and at least about twice a second.
+    FunctionRef<void(int, int)> show;
 };
 
-/// Runs jobs 0 to `count` - 1 in order, `at_once` at a time. SIGINT and SIGTERM are passed on to the running jobs; a
-/// second one kills them. Jobs die with this process, however it ends. No other thread may run during the call. Throws
+/// Runs the jobs 0 to `count` - 1 in this order, at most `at_once` of them at the same time. After a first SIGINT or
+/// SIGTERM no more jobs start, and the running jobs get SIGTERM. A second signal kills the running jobs. If this
+/// process ends, for whatever reason, the system kills its jobs. No other thread may run during the call. Throws
 /// std::system_error if not even one process can be created.
 PoolEnd run_in_processes(int count, int at_once, const PoolCalls& calls);
 

@@ -16,7 +16,7 @@ double seconds_of(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// CPU time of this process since its start [s].
+/// Returns the CPU time of this process since its start [s].
 double cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -65,7 +65,8 @@ int run_to_file(const CaseJob& job) {
 }  // namespace
 
 int run_case(const CaseJob& job) {
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes an ordinary write error
+    // Exceeding the file size limit then becomes an ordinary write error.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run_to_file(job);
     } catch (const std::exception& error) {

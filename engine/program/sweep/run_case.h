@@ -10,16 +10,18 @@ struct CaseJob {
     std::filesystem::path scene;
     CaseHead head;
     std::filesystem::path folder;  // folder of the result file
-    bool probes = false;           // also write the series of the scene's probes, as CSV
+    bool probes = false;           // also write the time series of the scene's probes as CSV
 };
 
-/// Simulates with one thread and writes the case's file last, after all other files. A refused scene and a step that
-/// cannot be committed also count as results. Returns an exit code: exit_ok if the file exists, exit_output if it
-/// could not be written, exit_signal plus the signal's number if it was stopped, exit_failed for any other failure,
-/// which leaves no file.
+/// Simulates a case with one thread. The result file is written last, after all other files of the case. A refused
+/// scene and a simulation that fails are results, too. Returns
+/// - exit_ok if the result file exists,
+/// - exit_output if a file could not be written,
+/// - exit_signal plus the number of the signal if a signal stopped the run,
+/// - exit_failed after any other failure, which leaves no result file.
 int run_case(const CaseJob& job);
 
-/// File of the probe series of a case; during the run the series has the unfinished name.
+/// File for the time series of the probes of a case. The file has the unfinished name until the run has ended.
 std::filesystem::path series_file(const std::filesystem::path& folder, int index);
 std::filesystem::path unfinished_series_file(const std::filesystem::path& folder, int index);
 

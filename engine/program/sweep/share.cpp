@@ -22,7 +22,7 @@ public:
 
     bool has(const char* name) const { return text(name) != nullptr; }
 
-    /// Returns nothing if the variable is not set.
+    /// Returns the value of the variable as a number, or nothing if the variable is not set.
     std::optional<int> number(const char* name) const {
         const char* const found = text(name);
         if (found == nullptr) return {};
@@ -35,7 +35,8 @@ public:
     }
 
 private:
-    /// Treats an empty variable as not set, because scripts disable a variable that way.
+    /// Returns the value of a variable, or null. An empty variable counts as not set, because scripts unset variables
+    /// this way.
     const char* text(const char* name) const {
         const char* const value = environment_(name);
         return value != nullptr && *value != '\0' ? value : nullptr;
@@ -51,7 +52,8 @@ void require_within(const Share& share, const std::string& who) {
                      "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
 }
 
-/// Rank among the tasks of one job. The innermost launcher comes first: the others may have started it.
+/// Returns the share from the rank of this process among the tasks of one job. The launchers are sorted from the
+/// innermost to the outermost, because an outer launcher may have started an inner one.
 Share task_share(const Variables& variables) {
     struct Launcher {
         const char *rank, *of;
@@ -60,7 +62,8 @@ Share task_share(const Variables& variables) {
         {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, {"PMI_RANK", "PMI_SIZE"}, {"SLURM_PROCID", "SLURM_NTASKS"}};
     for (const Launcher& launcher : launchers) {
         const bool slurm = std::strcmp(launcher.rank, "SLURM_PROCID") == 0;
-        // a process started by sbatch has rank 0 and the number of possible tasks, but is not a job step
+        // A batch script started by sbatch is not a task: it has rank 0, and SLURM_NTASKS is only the number of
+        // possible tasks.
         if (slurm && variables.has("SLURM_JOB_ID") && !variables.has("SLURM_STEP_ID")) continue;
         const char* const count = slurm && variables.has("SLURM_STEP_NUM_TASKS") ? "SLURM_STEP_NUM_TASKS" : launcher.of;
         const std::optional<int> rank = variables.number(launcher.rank), of = variables.number(count);
@@ -72,7 +75,8 @@ Share task_share(const Variables& variables) {
     return {};
 }
 
-/// Rank among the jobs of a SLURM array, whose numbers may start anywhere and have a constant stride.
+/// Returns the share from the rank of this process among the jobs of a SLURM array. The job numbers of an array may
+/// start with any number and have a constant stride.
 Share array_share(const Variables& variables) {
     const std::optional<int> id = variables.number("SLURM_ARRAY_TASK_ID");
     if (!id) return {};

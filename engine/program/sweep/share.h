@@ -1,4 +1,4 @@
-// Distribution of a sweep's cases over several processes that do not communicate.
+// Distribution of the cases of a sweep over several processes that do not communicate.
 #pragma once
 
 #include <functional>
@@ -7,22 +7,27 @@
 
 namespace skerry {
 
-/// Case i belongs to the process whose rank is i mod `of`.
+/// The cases that one process runs: those with case number mod `of` = `rank`.
 struct Share {
     int rank = 0, of = 1;
-    std::string said_by;       // options or variables that define the share; empty: none, this process gets all cases
-    std::optional<int> cores;  // cores for this process according to its launcher; empty: those the system allows
+    // Options or environment variables that define the share. Empty if there are none; the process then runs all cases.
+    std::string said_by;
+    // Number of cores for this process according to its launcher. Empty if the system decides.
+    std::optional<int> cores;
 
     bool has(int index) const { return index % of == rank; }
 };
 
-/// Returns the value of an environment variable, or null.
+/// Function that returns the value of an environment variable, or null if the variable is not set.
 using Environment = std::function<const char*(const char*)>;
 
-/// Reads the share from `--rank` and `--of`. Without them it combines the position in a SLURM array with the rank
-/// among tasks started by mpirun (Open MPI, or the PMI of MPICH and Intel MPI) or srun. A batch script of SLURM is one
-/// process, regardless of the number of tasks it may start. Throws SceneError for values that are not numbers or are
-/// inconsistent.
+/// Returns the share of this process.
+/// - If `rank` and `of` are given, these define the share.
+/// - Otherwise the share combines the position in a SLURM array with the rank among the tasks that mpirun (Open MPI, or
+/// the PMI of MPICH and Intel MPI) or srun has started.
+///
+/// A batch script of SLURM is one process, regardless of the number of tasks that it may start. Throws SceneError for
+/// values that are not numbers or are inconsistent.
 Share share_of(std::optional<int> rank, std::optional<int> of, const Environment& environment);
 
 }  // namespace skerry

@@ -1,4 +1,5 @@
-// The command `skerry sweep`: finds the missing cases, runs them and writes the table once all are done.
+// The command `skerry sweep`: runs the cases that have no result yet, and writes the table when all cases have a
+// result.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/file.h>
@@ -24,12 +25,14 @@ namespace skerry {
 
 namespace {
 
-/// Number of cores that the system lets this process use: those of its cgroup or CPU affinity, not all of the machine.
+/// Returns the number of cores that this process may use. A cgroup or a CPU affinity can make it smaller than the
+/// number of cores of the machine.
 int cores_here() {
     cpu_set_t set;
     CPU_ZERO(&set);
     if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
-    return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));  // a cpu_set_t cannot represent all cores
+    // sched_getaffinity fails if the machine has more cores than a cpu_set_t can represent.
+    return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
 std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
@@ -39,11 +42,12 @@ std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
     return mine;
 }
 
-/// Returns those of the cases `mine` that have no result. Refuses results of other cases unless `redo` is set.
+/// Returns the cases of `mine` that have no result yet. If the file of a case holds anything but the result of this
+/// case, throws SceneError unless `redo` is set.
 std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
     std::vector<int> left;
     int others = 0;
-    std::string first;  // description of the first such file
+    std::string first;  // description of the first file of another case
     for (const int index : mine) {
         const CaseFile file = plan.read(index);
         if (file.state == CaseFileState::other && others++ == 0)
@@ -79,7 +83,7 @@ void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
               << " of them are done; results in " << plan.folder.string() << std::endl;
 }
 
-/// Locks the folder of results against other processes during its lifetime, if the file system supports it.
+/// Locks the folder of results against other processes while the object exists, if the file system supports locks.
 class FolderLock {
 public:
     explicit FolderLock(const std::filesystem::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -115,7 +119,7 @@ void write_tables(const SweepPlan& plan, const SweepTable& table, bool quiet) {
     if (!quiet) std::cout << table_text(table) << "wrote " << csv.string() << "\nwrote " << page.string() << std::endl;
 }
 
-/// Removes partial files of cases that did not end.
+/// Removes the incomplete files of a case that did not end normally.
 void remove_unfinished(const SweepPlan& plan, int index) {
     std::error_code ignored;
     std::filesystem::remove(case_file(plan.folder, index) += ".part", ignored);
@@ -133,7 +137,8 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
     const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
     const auto goes_on = [&](int, int code) {
-        run.output_failed |= code == exit_output;  // a full disk will not have space for later cases either
+        // If the disk is full, later cases cannot be written either.
+        run.output_failed |= code == exit_output;
         return !run.output_failed;
     };
     const auto show = [&](int done, int running) { progress.show(done, running); };
@@ -147,7 +152,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     return run;
 }
 
-/// True if no case of this process failed, was refused or has warnings.
+/// True if none of the cases `mine` failed, was refused or has warnings.
 bool all_good(const SweepPlan& plan, const std::vector<int>& mine) {
     return std::ranges::all_of(mine, [&](int index) {
         const CaseFile file = plan.read(index);
@@ -161,22 +166,21 @@ bool is_there(const SweepPlan& plan, int index) {
     return std::filesystem::exists(case_file(plan.folder, index), error);
 }
 
-/// True if every case has a file. With many processes most of them soon find a missing file and read no results of
-/// others.
+/// True if every case has a file. The files are not read, so that this check is fast for each of many processes.
 bool all_there(const SweepPlan& plan) {
     for (int i = 0; i < plan.cases.count(); ++i)
         if (!is_there(plan, i)) return false;
     return true;
 }
 
-/// Writes the table if all cases have a result; otherwise prints how to continue.
+/// Writes the table if all cases have a result or --table is given. Otherwise prints how to continue the sweep.
 void conclude(const SweepPlan& plan, const std::vector<int>& mine, const SweepOptions& options) {
     if (options.table || all_there(plan)) {
         const SweepTable table = collect(plan);
         if (options.table || count_missing(table) == 0) return write_tables(plan, table, options.quiet);
     }
     if (options.quiet) return;
-    // counts files, because a stopped process may have written its result before it ended
+    // Counts files instead of successful jobs, because a job may have written its result before a signal stopped it.
     const auto there = std::ranges::count_if(mine, [&](int index) { return is_there(plan, index); });
     const bool all = there == static_cast<std::ptrdiff_t>(mine.size());
     std::cout << there << " of " << mine.size() << " cases of this process have a result in " << plan.folder.string()
@@ -192,7 +196,7 @@ int exit_code_of(const SweepPlan& plan, const std::vector<int>& mine, const Swee
     return options.strict && !all_good(plan, mine) ? exit_failed : exit_ok;
 }
 
-/// Refuses a folder in which results would replace the input files.
+/// Throws SceneError if the folder of results cannot be written, or if results would replace the input files.
 void check_folder(const SweepPlan& plan, const SweepOptions& options) {
     require_writable_folder(plan.folder);
     for (const char* name : {"sweep.csv", "sweep.html"}) require_writable_file(plan.folder / name);
@@ -237,7 +241,7 @@ int sweep(const SweepOptions& options) {
     }
     try {
         conclude(plan, mine, options);
-    } catch (const SceneError& error) {  // only the table failed: the results exist
+    } catch (const SceneError& error) {  // the results exist, only the table failed
         std::cerr << "skerry: " << error.what() << std::endl;
         return exit_output;
     }

@@ -18,7 +18,8 @@ std::vector<std::string> keys_of(const Json& json, const char* key) {
     return names;
 }
 
-/// Sets one place of a scene. Refuses to create a new material by setting one of its values: no body would use it.
+/// Sets a place of a scene to a value. Refuses a place inside a material that the scene lacks, because no body would
+/// use this new material.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
@@ -32,7 +33,7 @@ void try_place(const Place& of, const std::string& place, const Json& value, con
                       nearest_hint(name, before));
 }
 
-/// Requires that at least one of the first cases gives a readable scene; otherwise the sweep itself is wrong.
+/// Throws SceneError if none of the first cases gives a readable scene, because then the sweep itself is wrong.
 void require_a_readable_case(const SweepPlan& plan) {
     const SweepFile& file = plan.file;
     constexpr int most_tried = 100;
@@ -52,7 +53,8 @@ void require_a_readable_case(const SweepPlan& plan) {
         .refuse_inner("no case is a scene that can be read; " + first);
 }
 
-/// Tries all places on the scene. For a list each case is tried, otherwise only the first.
+/// Sets all places of the sweep in the scene, and throws SceneError if a place does not exist. For a list every case is
+/// tested, otherwise only the first case.
 void require_places(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

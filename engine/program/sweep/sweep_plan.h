@@ -1,4 +1,4 @@
-// Plan of a sweep before it runs: its cases, checked against the scene, and the paths of their files.
+// Plan of a sweep: the cases, tested with the scene, and the paths of their result files.
 #pragma once
 
 #include <string>
@@ -12,15 +12,16 @@ namespace skerry {
 struct SweepPlan {
     SweepFile file;
     Cases cases;
-    std::filesystem::path folder;     // folder of the results
-    std::vector<std::string> hashes;  // one hash per case
+    std::filesystem::path folder;     // folder for the result files
+    std::vector<std::string> hashes;  // hash of each case
 
     CaseJob job(int index, bool probes) const;
     CaseFile read(int index) const;
 };
 
-/// Reads cases and scene. Throws SceneError for places that do not exist in the scene, and if none of the first
-/// hundred cases gives a readable scene. A single case with an unreadable scene is a result.
+/// Reads the file of cases and the scene. Throws SceneError if a place does not exist in the scene, or if none of the
+/// first hundred cases gives a readable scene. If only some cases give unreadable scenes, these cases are refused when
+/// they run.
 SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace skerry

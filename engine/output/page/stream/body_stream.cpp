@@ -22,7 +22,8 @@ Lattice Lattice::around(std::span<const Vec3> points) {
 }
 
 Code3 Lattice::code(const Vec3& point, const Code3& code_prev) const {
-    constexpr Real far = static_cast<Real>(std::int64_t{1} << 45);  // sums of a few such numbers are exact in a double
+    // Largest number of steps from the origin. Doubles represent sums of a few numbers of this size exactly.
+    constexpr Real far = static_cast<Real>(std::int64_t{1} << 45);
     Code3 code = code_prev;
     for (int axis = 0; axis < 3; ++axis) {
         const Real steps_away = (point[axis] - origin[axis]) / step;
@@ -50,7 +51,8 @@ BodyStream::BodyStream(const BodyFrame& body) {
     triangles_.reserve(body.surface.size());
     for (const auto& [a, b, c] : body.surface) triangles_.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
     lattice_ = Lattice::around(points);
-    now_.resize(std::max<std::size_t>(node_.size(), 1));  // without a surface first_code() is the origin
+    // One entry is needed at least: first_code() of a body without a surface is 0.
+    now_.resize(std::max<std::size_t>(node_.size(), 1));
     before_ = now_;
     for (Values& values : values_) values.code.resize(node_.size());
 }
@@ -92,7 +94,7 @@ void BodyStream::put_positions(const BodyFrame& body, std::string& out) {
 
 void BodyStream::put_values(std::span<const std::vector<Real>> values, std::span<const ValueScale> scales,
                             std::string& out) {
-    // Changes of the stress codes, which predict those of strain.
+    // Changes of the stress codes since the last frame. They predict the changes of the strain codes.
     std::vector<int> stress_change(node_.size());
     const std::int64_t stress_sum_prev = values_[stress_field].sum;
     for (std::size_t field = 0; field < page_field_count; ++field) {

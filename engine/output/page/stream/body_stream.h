@@ -1,4 +1,4 @@
-// Encodes one body of the page, frame after frame, as changes.
+// Encodes the positions and values of one body, frame after frame, as changes from predictions.
 #pragma once
 
 #include <array>
@@ -12,15 +12,17 @@
 
 namespace skerry {
 
-/// Fields that the page displays at a vertex, in this order: speed [m/s], von Mises stress [Pa], equivalent strain.
+/// Number of fields that the page displays at a vertex. In this order: speed [m/s], von Mises stress [Pa], equivalent
+/// strain.
 inline constexpr std::size_t page_field_count = 3;
 inline constexpr std::size_t stress_field = 1, strain_field = 2;
 
-/// A point on a lattice, in steps from its origin.
+/// A lattice point: its three coordinates relative to the origin of the lattice, in lattice steps.
 using Code3 = std::array<std::int64_t, 3>;
 
-/// Lattice for the points of a body. Its origin is the lower corner of the surface when first seen. The largest extent
-/// of the surface is divided into 2^14 steps. Points are accurate to half a step, 1/32768 of that extent.
+/// Lattice for the positions of a body. The origin is the lower corner of the bounding box of the surface in the first
+/// frame of the body. The largest extent of this box is divided into 2^14 steps. Rounding to the lattice moves a
+/// coordinate by at most half a step, which is 1/32768 of that extent.
 struct Lattice {
     static constexpr int steps = 1 << 14;
 
@@ -28,28 +30,31 @@ struct Lattice {
     Real step = 1e-6;            // [m]
 
     static Lattice around(std::span<const Vec3> points);
-    /// Returns the nearest lattice point. Coordinates that are not finite, or more than 2^45 steps away, are taken
-    /// from `code_prev`.
+    /// Returns the nearest lattice point. A coordinate that is not finite, or more than 2^45 steps from the origin, is
+    /// taken from `code_prev` instead.
     Code3 code(const Vec3& point, const Code3& code_prev) const;
     Vec3 point(const Code3& code) const;
 };
 
-/// Surface nodes of a body, which are the vertices on the page, and their encoded values in the last frame.
+/// Encoder of one body. It stores the surface nodes, which are the vertices on the page, and the codes of the last
+/// frame.
 class BodyStream {
 public:
     explicit BodyStream(const BodyFrame& body);
 
-    /// Writes counts of vertices and triangles; f64 origin[3] and step of the lattice [m]; node numbers, each as
-    /// change from the previous vertex; triangle corners, each as change from the previous corner.
+    /// Writes, in this order: the numbers of vertices and triangles; f64 origin[3] and step of the lattice [m]; for
+    /// each vertex the node number, as change from the previous vertex; for each triangle corner the vertex number, as
+    /// change from the previous corner.
     void put_shape(std::string& out) const;
-    /// Writes positions by axis, then by vertex. Each number is the code minus its prediction, as a change from the
-    /// previous vertex. The prediction extrapolates linearly from the last two frames; it is the last code in the
-    /// second frame and 0 in the first.
+    /// Writes the positions of all vertices axis by axis. Each number is a residual (lattice coordinate minus
+    /// prediction), written as change from the residual of the previous vertex. The prediction is 0 in the first frame,
+    /// the last coordinate in the second frame, and afterwards a linear extrapolation from the last two frames.
     void put_positions(const BodyFrame& body, std::string& out);
-    /// Writes values by field, then by vertex. Each number is the code minus its prediction, as a change from the
-    /// previous vertex. The prediction is the code of the last frame. For strain the change of the stress code is
-    /// added, times the ratio of the last frame's sums of strain and stress codes (if not 0), rounded: the two are
-    /// nearly proportional.
+    /// Writes the values of all vertices field by field. Each number is a residual (code minus prediction), written as
+    /// change from the residual of the previous vertex. The prediction of speed and stress is the code of the last
+    /// frame. Strain is nearly proportional to stress. Its prediction is therefore the last strain code plus r times
+    /// the change of the stress code, rounded. The factor r is the sum of all strain codes divided by the sum of all
+    /// stress codes, both of the last frame, or 0 if the latter sum is 0.
     void put_values(std::span<const std::vector<Real>> values, std::span<const ValueScale> scales, std::string& out);
 
     const std::vector<Index>& node() const { return node_; }
@@ -60,13 +65,14 @@ private:
     struct Values {
         int exponent = ValueScale::lowest;
         std::vector<int> code;  // by vertex
-        std::int64_t sum = 0;   // sum of the codes
+        std::int64_t sum = 0;   // sum of the codes of all vertices
     };
 
     Lattice lattice_;
-    std::vector<Index> node_;                      // node of the body, by vertex
-    std::vector<std::array<Index, 3>> triangles_;  // as vertices
-    std::vector<Code3> now_, before_, next_;       // by vertex; next_ is scratch
+    std::vector<Index> node_;                      // node number within the body, by vertex
+    std::vector<std::array<Index, 3>> triangles_;  // corners as vertex numbers
+    // Lattice coordinates by vertex, in the last frame and in the frame before; next_ is scratch memory.
+    std::vector<Code3> now_, before_, next_;
     int frames_ = 0;
     std::array<Values, page_field_count> values_;
 };

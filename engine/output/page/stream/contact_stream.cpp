@@ -13,7 +13,8 @@ auto key_of(const ContactSides& sides, const std::array<Index, 4>& node) {
     return std::tuple(sides, node);
 }
 
-/// Returns the lattice for the point of a contact, and the first vertex of its body on that lattice.
+/// Returns the lattice on which the point of a contact is encoded, and the lattice coordinates of the first vertex of
+/// the body to which the lattice belongs.
 std::pair<Lattice, Code3> place_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
     const Index body = sides.first >= 0 ? sides.first : sides.second;
     if (body < 0) return {Lattice{}, Code3{}};

@@ -1,4 +1,4 @@
-// Encodes the contacts of the page, frame after frame, as changes.
+// Encodes the contacts of each frame as changes from the previous frame.
 #pragma once
 
 #include <compare>
@@ -13,35 +13,41 @@
 
 namespace skerry {
 
-/// Both sides of a contact, as body and collider numbers of the page; -1: none.
+/// The partners of a contact, as body and collider numbers of the page; -1 means that there is no such partner.
 struct ContactSides {
     Index first = -1, second = -1, collider = -1;
 
     auto operator<=>(const ContactSides&) const = default;
 };
 
-/// Matches contacts with those of the previous frame by the touching nodes, and encodes the changes.
+/// Encoder of contacts. A contact continues a contact of the previous frame if both have the same partners and nodes.
+/// It is then written as changes from the previous frame.
 class ContactStream {
 public:
-    /// Writes per contact 0 if it is new, else 1 + zigzag(its row in the previous frame - expected row); the row after
-    /// the last match is expected. Then per new contact: first, second, collider, each plus one. Then, component by
-    /// component for all contacts, x, y, z of the point, x, y, z of the force and its normal part, each as a change.
-    /// The reference is the contact in the previous frame. For a new contact it is the row above if that has the same
-    /// first body, else zero (points: first vertex of the body). Points use the lattice of the first body, or else of
-    /// the second, or else one of 1 um. Last, for all contacts the change of the region since the row above, then for
-    /// all u8 state (0 open, 1 stick, 2 slide).
+    /// Writes, in this order:
+    /// 1. for each contact: 0 if it is new, otherwise 1 + zigzag(its row in the previous frame - expected row), where
+    /// the expected row follows the row of the last match;
+    /// 2. for each new contact: first, second and collider, each plus one;
+    /// 3. component by component, for all contacts: x, y, z of the point, x, y, z of the force, and the normal force,
+    /// each as change from a reference. The reference of a contact that continues is its value in the previous frame.
+    /// The reference of a new contact is the row above, if that row has the same first body; otherwise it is zero for
+    /// forces, and the first vertex of the body for points;
+    /// 4. for all contacts: the change of the region number from the row above;
+    /// 5. for all contacts: the state as u8 (0 open, 1 stick, 2 slide).
+    /// Points are encoded on the lattice of the first body. If the contact has no first body, the lattice of the second
+    /// body is used, and without any body a lattice of 1 um.
     void put_frame(const Frame& frame, std::span<const ContactSides> sides, const std::vector<BodyStream>& bodies,
                    const ValueScale& force, std::string& out);
 
 private:
-    static constexpr std::size_t number_count = 7;  // point, force, normal part
+    static constexpr std::size_t number_count = 7;  // 3 for the point, 3 for the force, 1 for the normal force
 
     struct Row {
         ContactSides sides;
         std::array<Index, 4> node;
         std::array<std::int64_t, number_count> code;
     };
-    /// Sorts the rows of the previous frame by sides and nodes, into order_prev_.
+    /// Sorts the row numbers of the previous frame by partners and nodes of the contacts. The result is order_prev_.
     void sort_rows();
     Index find(const ContactSides& sides, const std::array<Index, 4>& node) const;
 

@@ -12,7 +12,8 @@
 namespace skerry {
 namespace {
 
-/// Owns memory allocated by zlib. It cannot be moved, because zlib's state points back at the z_stream.
+/// Owner of the memory that zlib allocates. It cannot be moved, because zlib's state stores the address of the
+/// z_stream.
 struct Stream {
     z_stream z{};
 
@@ -22,8 +23,8 @@ struct Stream {
     Stream& operator=(const Stream&) = delete;
 };
 
-/// Throws std::bad_alloc if memory is short. Other errors would be bugs: a stream is never closed twice and the output
-/// always has space.
+/// Checks a status returned by zlib. Throws std::bad_alloc if memory is short. Any other error is a bug, because a
+/// stream is never closed twice and the output always has space.
 void require(int status) {
     if (status == Z_MEM_ERROR) throw std::bad_alloc();
     SKERRY_CHECK(status == Z_OK || status == Z_STREAM_END || status == Z_BUF_ERROR);
@@ -32,7 +33,7 @@ void require(int status) {
 void run(z_stream& z, std::string_view bytes, int flush, std::string& out) {
     std::array<unsigned char, 1 << 16> room;
     do {
-        // zlib counts bytes in unsigned int
+        // zlib counts bytes with an unsigned int, so longer input is passed in parts
         const std::size_t part = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
         z.next_in = const_cast<unsigned char*>(reinterpret_cast<const unsigned char*>(bytes.data()));
         z.avail_in = static_cast<uInt>(part);
@@ -54,8 +55,8 @@ struct Deflater::Impl {
 };
 
 Deflater::Deflater() : impl_(new Impl) {
-    // Changes of numbers rarely repeat: with Z_FILTERED frames are 3 % smaller than with the default strategy, and
-    // text is nearly as small.
+    // Encoded changes of numbers rarely contain repeated byte sequences. With Z_FILTERED, frames are 3 % smaller than
+    // with the default strategy, and text is nearly as small.
     require(deflateInit2(&impl_->stream.z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, Z_FILTERED));
 }
 

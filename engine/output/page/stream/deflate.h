@@ -1,4 +1,4 @@
-// Compresses bytes (zlib, RFC 1950). Browsers decompress them with DecompressionStream("deflate").
+// Compresses bytes with zlib (RFC 1950). Browsers decompress them with DecompressionStream("deflate").
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Compresses bytes as they arrive and stores only the compressed ones.
+/// Compresses bytes as they arrive. Only the compressed bytes are stored.
 class Deflater {
 public:
     Deflater();
@@ -16,7 +16,7 @@ public:
     Deflater& operator=(Deflater&&) noexcept;
 
     void add(std::string_view bytes);
-    /// Returns all bytes so far as a complete compressed stream. More bytes can be added afterwards.
+    /// Returns all bytes added so far as a complete compressed stream. More bytes can be added afterwards.
     std::string packed() const;
 
 private:

@@ -1,4 +1,4 @@
-// Encodes numbers as bytes.
+// Encodes numbers as bytes with variable length, and bytes as base64 text.
 #pragma once
 
 #include <bit>
@@ -21,13 +21,14 @@ inline void put_floats(std::string& out, const Vec3& v) {
     for (int axis = 0; axis < 3; ++axis) put(out, static_cast<float>(v[axis]));
 }
 
-/// Writes seven bits per byte, lowest first; all bytes but the last have the eighth bit set (LEB128).
+/// Writes a count with seven bits per byte, lowest bits first. Every byte but the last has its eighth bit set (LEB128).
 inline void put_count(std::string& out, std::uint64_t value) {
     for (; value > 127; value >>= 7) out += static_cast<char>((value & 127) | 128);
     out += static_cast<char>(value);
 }
 
-/// Maps 0, -1, 1, -2, ... to 0, 1, 2, 3, ...: small changes of either sign become small counts.
+/// Maps the integers 0, -1, 1, -2, ... to the counts 0, 1, 2, 3, ..., so that small changes of either sign need few
+/// bytes.
 constexpr std::uint64_t zigzag(std::int64_t value) {
     return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
 }

@@ -1,4 +1,4 @@
-// Encodes values in eleven bits, with a finer resolution for small values.
+// Encodes a value in eleven bits, with a finer resolution for small values.
 #pragma once
 
 #include <algorithm>
@@ -10,24 +10,24 @@
 
 namespace skerry {
 
-/// Codes are square roots of values: code = 2047 sqrt(value / top). `top` is a power of four, not below any value so
-/// far. The error of a value is sqrt(value top) / 2047: 0.5 % at a hundredth of the top, 5 % at a ten-thousandth, so
-/// one impact costs small values little accuracy. If the top grows by a factor of four, codes halve: changes between
-/// frames stay small integers.
+/// Scale for encoding values as integers: code = 2047 sqrt(value / top). `top` is a power of four that is at least as
+/// large as every value so far. The rounding error of a value is sqrt(value top) / 2047. The relative error is 0.5 %
+/// for value = top / 100 and 5 % for value = top / 10000, so a single large value costs small values little accuracy.
+/// If `top` grows by a factor of four, all codes halve, except for rounding to integers.
 class ValueScale {
 public:
     static constexpr int last = 2047;
-    /// Exponents of a new scale and of the widest one. 4^highest is finite.
+    /// Smallest exponent, of a new scale, and largest exponent. 4^highest is finite.
     static constexpr int lowest = -255, highest = 511;
 
     void widen(Real value) {
         if (!std::isfinite(value)) return;
         while (exponent_ < highest && value > top()) ++exponent_;
     }
-    /// exponent of four
+    /// exponent e of top = 4^e
     int exponent() const { return exponent_; }
     Real top() const { return std::ldexp(1.0, 2 * exponent_); }
-    /// Code with the sign of the value. NaN becomes 0; values above the top get the last code.
+    /// Returns the code, with the sign of the value. The code of NaN is 0, and values above `top` get the largest code.
     int code(Real value) const {
         if (std::isnan(value)) return 0;
         const Real root = std::ldexp(std::sqrt(std::abs(value)), -exponent_);
@@ -43,7 +43,7 @@ private:
     int exponent_ = lowest;
 };
 
-/// Converts a code of an earlier scale to a later one.
+/// Converts a code of a scale with `exponent_prev` to the code of the same value with the larger `exponent`.
 inline int shifted(int code, int exponent_prev, int exponent) {
     return code >> std::min(exponent - exponent_prev, 31);
 }

@@ -77,7 +77,8 @@ void expand_list(const SweepFile& sweep, Cases& cases) {
 
 void expand_random(const RandomEntry& random, Cases& cases) {
     for (const DrawnEntry& entry : random.parameters) add_parameter(cases, entry.name, entry.set.items, entry.place);
-    // draws case by case, so that a larger count leaves the earlier cases unchanged
+    // All parameters of a case are drawn before the next case. A larger count therefore leaves the earlier cases
+    // unchanged.
     Draws draws(random.seed);
     for (int i = 0; i < random.count; ++i) {
         Row& row = cases.values.emplace_back();

@@ -10,29 +10,31 @@
 namespace skerry {
 
 struct Parameter {
-    std::string name;                 // heading of its column
-    std::vector<std::string> places;  // places in the scene that all get its value
-    Place place;                      // position in the file of cases
+    std::string name;                 // heading of the parameter's column in tables
+    std::vector<std::string> places;  // places in the scene that are set to the value of the parameter
+    Place place;                      // position of the parameter in the file of cases
 };
 
 struct Cases {
     std::vector<Parameter> parameters;
-    std::vector<std::vector<std::optional<Json>>> values;  // by case and parameter; a list may lack some
+    // Values by case and parameter. A value is empty if a case of a list does not set the parameter.
+    std::vector<std::vector<std::optional<Json>>> values;
 
     int count() const { return static_cast<int>(values.size()); }
 };
 
-/// Expands all cases in order; in a grid the last parameter varies first. Throws SceneError for more than a million
-/// cases, and if two parameters have the same name or the same place.
+/// Returns all cases in order. In a grid the last parameter varies fastest. Throws SceneError if there are more than a
+/// million cases, or if two parameters have the same name or set the same place.
 Cases cases_of(const SweepFile& sweep);
 
-/// PLACE=VALUE for `skerry run --set`, in the order of execution.
+/// Returns the assignments PLACE=VALUE of a case in the order of execution, for `skerry run --set`.
 std::vector<std::string> assignments_of(const SweepFile& sweep, const Cases& cases, int index);
 
-/// Returns, for example, "mu=0.3, E=1e5".
+/// Describes the parameter values of a case, for example "mu=0.3, E=1e5".
 std::string case_text(const Cases& cases, int index);
 
-/// Columns that every table has in addition to the parameters. No parameter may have one of these names.
+/// Headings of the columns that a table may have besides the columns of parameters. No parameter may have one of these
+/// names.
 inline constexpr std::string_view case_column = "case", status_column = "status", message_column = "message",
                                   warnings_column = "warnings_text", hash_column = "state_hash";
 

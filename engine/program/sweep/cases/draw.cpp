@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Rounds to 12 significant digits: 0.3 instead of 0.30000000000000004, without differences in the last bits.
+/// Rounds to 12 significant digits. This gives 0.3 instead of 0.30000000000000004, and hides differences in the last
+/// bits.
 double rounded(double value) {
     char text[40];
     std::snprintf(text, sizeof text, "%.12g", value);
@@ -25,7 +26,8 @@ double natural_log(double x) {
         mantissa *= 2;
         --exponent;
     }
-    // log m = 2 artanh s; s^2 is at most 0.0295, so the last term is below 1e-19
+    // With s = (m - 1) / (m + 1), log m = 2 artanh s = 2 s (1 + s^2 / 3 + s^4 / 5 + ...). Since s^2 is at most 0.0295,
+    // the last term of the sum is below 1e-19.
     const double s = (mantissa - 1) / (mantissa + 1), square = s * s;
     double sum = 0;
     for (int k = 25; k >= 1; k -= 2) sum = sum * square + 1.0 / k;
@@ -34,7 +36,7 @@ double natural_log(double x) {
 
 double exponential(double x) {
     const double turns = std::floor(x / std::numbers::ln2 + 0.5);
-    const double rest = x - turns * std::numbers::ln2;  // absolute value at most 0.35
+    const double rest = x - turns * std::numbers::ln2;  // remainder, between -0.35 and 0.35
     double sum = 1;
     for (int k = 18; k >= 1; --k) sum = 1 + sum * rest / k;
     return std::ldexp(sum, static_cast<int>(turns));

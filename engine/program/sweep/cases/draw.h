@@ -1,4 +1,4 @@
-// Random and equally spaced numbers, bitwise identical on every machine.
+// Random numbers and equally spaced numbers that are bitwise identical on every machine.
 #pragma once
 
 #include <cstdint>
@@ -8,28 +8,30 @@
 
 namespace skerry {
 
-/// The standard prescribes the numbers of its random engine. Its distributions, and the last bits of exp and log,
-/// differ between libraries. This class therefore computes them itself.
+/// Random numbers from a seed. The C++ standard prescribes the numbers of its random engine, but its distributions, exp
+/// and log differ between libraries. This class therefore has its own distributions.
 class Draws {
 public:
     explicit Draws(std::uint32_t seed) : engine_(seed) {}
-    /// Uniform in [0, 1), from the upper 53 bits of one draw.
+    /// Returns a number uniformly distributed in [0, 1), from the upper 53 bits of one number of the engine.
     double uniform();
-    /// Normal with mean 0 and standard deviation 1 (Marsaglia's polar method; its second number is discarded).
+    /// Returns a normally distributed number with mean 0 and standard deviation 1 (Marsaglia's polar method). The
+    /// second number of the method is discarded.
     double normal();
-    /// Draws a value of the parameter, rounded to 12 digits.
+    /// Returns a random value of a parameter. Unless it is an integer, it is rounded to 12 significant digits.
     double draw(const DrawnEntry& entry);
 
 private:
     std::mt19937_64 engine_;
 };
 
-/// Value `index` of `count` values from `from` to `to`, inclusive and exact; others are rounded to 12 digits. For
-/// logarithmic spacing both ends are above 0.
+/// Returns value number `index` of `count` spaced values. The first value is exactly `from` and the last exactly `to`;
+/// the others are rounded to 12 significant digits. For logarithmic spacing `from` and `to` must be above 0.
 double spaced(double from, double to, int count, int index, Spacing spacing);
 
-/// Logarithm of a finite number above 0, and exponential function, in plain arithmetic. Accurate to 1e-15, relative to
-/// the larger of 1 and the argument.
+/// Natural logarithm of a finite number above 0, and exponential function. Both use only basic arithmetic, so that the
+/// results are the same on every machine. The error of the logarithm is below 1e-15 times the larger of 1 and its
+/// absolute value. The relative error of the exponential function is below 1e-15 times the larger of 1 and |x|.
 double natural_log(double x);
 double exponential(double x);
 

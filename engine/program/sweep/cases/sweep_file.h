@@ -1,4 +1,4 @@
-// Content of a file of cases, key by key.
+// Content of a file of cases, which describes a sweep. The members of the structs are the JSON keys.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,11 @@
 
 namespace skerry {
 
-/// Each case has a file. A folder can hold this many; a larger count is more likely a typing mistake.
+/// Largest number of cases. Each case has a result file, and a folder can hold this many files. A larger number is
+/// probably a typing error.
 inline constexpr int most_cases = 1000000;
 
-/// Any JSON value. The scene checks later whether it fits its place.
+/// A JSON value of any type. The reader of the scene checks whether the value fits the place to which it is assigned.
 struct AnyValue {
     Json json;
 };
@@ -42,7 +43,7 @@ struct EnumNames<Distribution> {
     }};
 };
 
-/// A parameter of a grid: a list of values, or a range from one number to another.
+/// A parameter of a grid. Its values are either the list `values`, or `count` numbers between `from` and `to`.
 struct GridEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -53,7 +54,7 @@ struct GridEntry {
     Place place;
 };
 
-/// A parameter with random values.
+/// A parameter with a random value in each case.
 struct DrawnEntry {
     std::string name;
     OneOrMore<std::string> set;
@@ -70,21 +71,22 @@ struct RandomEntry {
 };
 
 struct SweepFile {
-    std::string schema;  // used by editors only
+    std::string schema;  // address of the JSON schema, which only editors use
     std::string name;
     std::string description;
     FilePath scene;
-    Named<AnyValue> set;  // assignments of every case
+    // Values by place in the scene. They are set in every case, before the parameters of the case.
+    Named<AnyValue> set;
     std::vector<GridEntry> grid;
     std::vector<Named<AnyValue>> list;
     std::optional<RandomEntry> random;
     Place place;
 };
 
-/// Reads a file of cases. Throws SceneError.
+/// Reads a file of cases. Throws SceneError if the file is invalid.
 SweepFile read_sweep_file(const std::filesystem::path& file);
 
-/// The JSON schema of files of cases.
+/// Returns the JSON schema for files of cases.
 std::string sweep_schema();
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Keys of a file of cases.
+// JSON keys of a file of cases, with their meaning and their checks.
 #include <cmath>
 
 #include "engine/program/sweep/cases/sweep_file.h"
@@ -14,7 +14,7 @@ const KeyDoc set_doc{.meaning = "the place in the scene, as `skerry run --set` t
                      .required = true};
 const KeyDoc name_doc{.meaning = "of the column in tables; by default the place"};
 
-/// All whole numbers up to this one are exact as doubles.
+/// Doubles represent all whole numbers up to this number exactly.
 constexpr Real most_whole = 9007199254740992.0;  // 2^53
 
 void check_ends(const Place& place, Real from, Real to, bool log) {

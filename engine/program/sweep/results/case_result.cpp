@@ -21,7 +21,7 @@ Json json_of_figures(const CaseResult& result) {
     return figures;
 }
 
-/// Throws nlohmann's exceptions for documents that write_case has not written.
+/// Reads a result from the document of a result file. Throws an exception if write_case has not written the document.
 CaseResult result_from(const Json& json) {
     CaseResult result;
     json.at("case").get_to(result.index);
@@ -120,7 +120,7 @@ CaseFile read_case(const std::filesystem::path& file, int index, const std::stri
             return read;
         }
         return {CaseFileState::whole, result_from(json), {}};
-    } catch (const std::exception&) {  // nlohmann's exceptions, or an invalid status
+    } catch (const std::exception&) {  // the document is no valid JSON, or lacks a key, or has an invalid status
         return read;
     }
 }

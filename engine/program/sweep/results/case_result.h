@@ -1,4 +1,4 @@
-// Result of one case, and its file.
+// Result of one case, and the file that stores it.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,10 @@
 
 namespace skerry {
 
-/// ok: simulated to its end; failed: a step could not be committed; refused: the scene is invalid or cannot be
-/// started.
+/// Outcome of a case.
+/// - ok: the case was simulated to its end.
+/// - failed: the simulation ended early with an error.
+/// - refused: the scene is invalid or cannot be started.
 enum class CaseStatus { ok, failed, refused };
 template <>
 struct EnumNames<CaseStatus> {
@@ -26,34 +28,39 @@ struct EnumNames<CaseStatus> {
 struct CaseResult {
     int index = 0;
     CaseStatus status = CaseStatus::ok;
-    std::string message;                // reason for failure or refusal
+    std::string message;                // reason why the case failed or was refused
     std::vector<std::string> warnings;  // reasons not to rely on the result, one sentence each
-    std::string state_hash;             // hash of the final state; empty if the case did not start
-    // Numbers for tables, named with their unit, such as seconds_cpu. A refused case has only this one.
+    std::string state_hash;             // hash of the final state; empty if the case was refused
+    // Numbers for tables, by name. If a number has a unit, its name ends with the unit, for example kinetic_J. A
+    // refused case has the number seconds_cpu only.
     std::vector<std::pair<std::string, double>> figures;
 };
 
-/// Content of a case's file besides its result.
+/// Data in the file of a case that do not belong to the result.
 struct CaseHead {
     std::string sweep, scene, case_hash;
-    Json parameters;                       // parameter values by name
-    std::vector<std::string> assignments;  // arguments of `skerry run --set` that run the same case
+    Json parameters;  // values of the parameters, by name
+    // Assignments with which `skerry run --set` runs the same case.
+    std::vector<std::string> assignments;
 };
 
-/// Result of a run that ended by itself. `seconds_cpu`: all CPU time that the process spent on it [s].
+/// Returns the result of a run that was not stopped by a signal. `seconds_cpu` is the CPU time of the process [s].
 CaseResult result_of(const RunResult& run, double seconds_cpu);
 
 std::filesystem::path case_file(const std::filesystem::path& folder, int index);
-/// Writes the whole file or none. `report`: document of `skerry run --stats`; null without a run.
+/// Writes the result file of a case, completely or not at all. `report` is the document of `skerry run --stats`, or
+/// null if the case was refused.
 void write_case(const std::filesystem::path& file, const CaseHead& head, const CaseResult& result, const Json& report);
 
-/// State of a case's file. whole: it has the result of this case; missing: it does not exist; other: it has the result
-/// of another case, or is not a result.
+/// State of the result file of a case.
+/// - whole: the file has the result of this case.
+/// - missing: the file does not exist.
+/// - other: the file has the result of another case, or is not a result file.
 enum class CaseFileState { whole, missing, other };
 struct CaseFile {
     CaseFileState state = CaseFileState::missing;
-    CaseResult result;  // for whole files
-    std::string found;  // for other files: a description of the content
+    CaseResult result;  // result, if the state is `whole`
+    std::string found;  // description of the content, if the state is `other`
 };
 CaseFile read_case(const std::filesystem::path& file, int index, const std::string& case_hash);
 

@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// JSON for use inside a script element, which "</" would end.
+/// Returns JSON text for use inside a script element. The text "</" would end the element and is escaped.
 std::string script_text(const Json& json) {
     std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
@@ -23,7 +23,8 @@ Json rows_json(const SweepTable& table) {
         Json values = Json::object(), figures = Json::object();
         for (std::size_t p = 0; p < table.cases.parameters.size(); ++p)
             if (table.cases.values[i][p]) values[table.cases.parameters[p].name] = *table.cases.values[i][p];
-        for (const auto& [name, value] : file.result.figures) figures[name] = value;  // null if not finite
+        // A value that is not finite becomes null.
+        for (const auto& [name, value] : file.result.figures) figures[name] = value;
         rows.push_back({{"case", i},
                         {"status", whole ? name_of(file.result.status) : "not run"},
                         {"message", file.result.message},
@@ -34,7 +35,7 @@ Json rows_json(const SweepTable& table) {
     return rows;
 }
 
-/// Replaces the first occurrence of `mark` in the text.
+/// Replaces the first occurrence of `mark` in `text` by `part`.
 void put_in(const std::string& mark, const std::string& part, std::string& text) {
     const std::size_t at = text.find(mark);
     if (at != std::string::npos) text.replace(at, mark.size(), part);
@@ -52,7 +53,9 @@ std::string table_page(const SweepTable& table) {
                        {"figures", figure_names(table)},
                        {"rows", rows_json(table)}};
     std::string page(sweep_page_html);
-    put_in("@DATA@", script_text(data), page);  // first: it follows @TITLE@, so the next search finds the mark
+    // @DATA@ is replaced first because @TITLE@ comes before it in the page. The search for @TITLE@ then cannot find a
+    // text in the data.
+    put_in("@DATA@", script_text(data), page);
     put_in("@TITLE@", escape_markup(table.sweep.name), page);
     return page;
 }

@@ -1,4 +1,4 @@
-// Page of a sweep, embedded by the build (sweep_page.html).
+// Template of the HTML page of a sweep. The build embeds sweep_page.html in the program.
 #pragma once
 
 #include <string_view>

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-constexpr int most_lines = 60;  // largest number of cases printed on the terminal
+constexpr int most_lines = 60;  // largest number of cases in the table on the terminal
 constexpr int most_messages = 10;
 
 using Cells = std::vector<std::string>;
@@ -23,7 +23,7 @@ double figure_of(const CaseResult& result, std::string_view name) {
     return found == result.figures.end() ? std::nan("") : found->second;
 }
 
-/// Figures shown in the table on the terminal.
+/// Returns the names of the numbers that the table on the terminal shows.
 std::vector<std::string> shown_figures(const SweepTable& table) {
     std::vector<std::string> shown{"seconds_simulated", "steps",         "seconds_cpu",
                                    "contacts_mean",     "penetration_m", "energy_error_share"};
@@ -107,7 +107,7 @@ std::string totals_text(const SweepTable& table) {
     return text + "; " + duration_text(cpu) + " of CPU in all\n";
 }
 
-/// Note for a sweep whose cases all ended in the same state; otherwise empty.
+/// Returns a note if all cases ended in the same state, which means that the parameters had no effect. Otherwise empty.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;
     int same = 0;
@@ -129,7 +129,7 @@ std::string csv_cell(const std::string& text) {
     return quoted + "\"";
 }
 
-/// Writes all digits; whole numbers have no decimal point.
+/// Formats a number for CSV with all digits. Whole numbers below 1e15 have no decimal point.
 std::string csv_number(double value) {
     if (!std::isfinite(value)) return {};
     constexpr double exact = 1e15;

@@ -1,4 +1,4 @@
-// All cases of a sweep side by side: as text for people, as CSV for spreadsheets and as a web page.
+// Table of all cases of a sweep: as text for people, as CSV for spreadsheets and as a web page.
 #pragma once
 
 #include <string>
@@ -12,21 +12,22 @@ namespace skerry {
 struct SweepTable {
     const SweepFile& sweep;
     const Cases& cases;
-    std::vector<CaseFile> files;  // one per case
+    std::vector<CaseFile> files;  // one file for each case
 };
 
-/// Names of all figures, in order of their first appearance.
+/// Returns the names of all numbers in CaseResult::figures, in the order of their first appearance.
 std::vector<std::string> figure_names(const SweepTable& table);
 
-/// One line for each case with the most important figures, then the reasons of failed and refused cases, and the total
-/// cost. Long lists are cut.
+/// Returns a table with one line per case and its most important numbers, then the error messages and warnings of the
+/// cases, and the total CPU time. Long lists are cut.
 std::string table_text(const SweepTable& table);
 
-/// Table as RFC 4180: parameters, status and all figures of each case. Unknown values are empty.
+/// Returns a CSV table (RFC 4180) with parameters, status, all numbers, state hash, message and warnings of each case.
+/// Cells of unknown values are empty.
 std::string table_csv(const SweepTable& table);
 
-/// Web page in one file: the table, and a plot of any figure over any parameter. The page draws without external
-/// libraries.
+/// Returns a web page with the table, and with a plot of any number over any parameter. The page is one file and needs
+/// no other files.
 std::string table_page(const SweepTable& table);
 
 }  // namespace skerry
