@@ -26,34 +26,34 @@ struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
     Real poisson_ratio = 0.4;  // > -1 and < 0.5
     Real density = 1000;       // > 0 [kg/m^3]
-    // Coulomb's friction coefficient, >= 0; default of static_friction and dynamic_friction.
+    // Coulomb's friction coefficient, >= 0. It is the default of static_friction and dynamic_friction.
     Real friction = 0.5;
     std::optional<Real> static_friction{};   // >= dynamic_friction
     std::optional<Real> dynamic_friction{};  // >= 0
     // Rebound speed over impact speed of a surface point (not of the whole body), from 0 to 1.
     Real restitution = 0;
-    // Decay rate of velocities relative to rigid motion, >= 0 [1/s]; conserves momentum.
+    // Decay rate of velocities relative to the rigid motion of the body, >= 0 [1/s]. Momentum is conserved.
     Real damping = 0;
     // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
-    // each period a free vibration loses the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05 to
-    // 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per cent
-    // shorter (docs/methods/elasticity.md 6).
+    // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
+    // to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per
+    // cent shorter (docs/methods/elasticity.md 6).
     Real loss_factor = 0.05;  // from 0 to 0.3
     // Damping ratio of volume changes of an element, at the highest natural frequency of this element.
     Real bulk_viscosity = 0.06;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };
 
-/// How a body moves. Rigid and implicit bodies do not limit the step and have no self-contact.
-/// - explicit_elastic: it deforms; the step must be stable for its stiffest element.
-/// - rigid: it moves as a whole, with the mass and the inertia of its mesh. Of its materials only density, friction and
-///   restitution count (docs/methods/rigid_bodies.md).
-/// - implicit_elastic: it deforms by backward Euler (see Settings::theta), which is stable at any step size; for stiff
-///   bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by Newton's method
-///   (docs/methods/implicit_bodies.md).
-/// - automatic: implicit if the predicted cost is less than half and the body deforms little, else explicit. This is
-///   decided when the body is added, for the step that the other bodies then allow (World::dynamics_choice;
-///   docs/methods/implicit_bodies.md 6).
+/// Kind of motion of a body. Rigid and implicit bodies do not limit the step and have no self-contact.
+/// - explicit_elastic: the body deforms, and the step must be stable for its stiffest element.
+/// - rigid: the body does not deform. It has the mass and the inertia of its mesh. From its materials it uses only
+///   density, friction and restitution (docs/methods/rigid_bodies.md).
+/// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
+///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
+///   Newton's method (docs/methods/implicit_bodies.md).
+/// - automatic: the body becomes implicit if this halves the predicted cost and the expected strain is small, else
+///   explicit. This is decided when the body is added, for the step length that the other bodies then allow
+///   (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
 template <>
 struct EnumNames<BodyDynamics> {

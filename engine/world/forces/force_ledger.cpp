@@ -204,7 +204,8 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// Ends the step of a pair. If both bodies were asleep and had no contact in this step, their mean forces since they
-/// became still are added to the call. If one was awake, only the time for which both have been still is updated.
+/// became still are added to the call. If one was awake, the time since both became still is updated; the sums restart
+/// when one of them moves.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;

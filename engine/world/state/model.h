@@ -103,7 +103,7 @@ struct Model {
     bool settled = true;      // all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
     bool forced = false;      // the world has some force element, loads included; derived: note_seams
-    // By body: sum of the bounds of all force elements (ForceElement::add_rate); empty: zero [1/s^2]. Derived:
+    // Sum of the bounds of all force elements for each body (ForceElement::add_rate); empty: zero [1/s^2]. Derived:
     // note_seams.
     Column<Real> force_rate;
     BodyLinks links;  // pairs of bodies joined by a row, such as a joint; derived: note_seams
