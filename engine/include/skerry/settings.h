@@ -51,7 +51,7 @@ struct MaterialSettings {
 /// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
 ///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
 ///   Newton's method (docs/methods/implicit_bodies.md).
-/// - automatic: the body becomes implicit if this halves the predicted cost and the expected strain is small, else
+/// - automatic: the body becomes implicit if this more than halves the predicted cost and the expected strain is small, else
 ///   explicit. This is decided when the body is added, for the step length that the other bodies then allow
 ///   (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };

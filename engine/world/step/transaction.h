@@ -87,9 +87,9 @@ class StepTransaction {
 public:
     void begin_try(const Model& model);
     void roll_back_try(Model& model) const;
-    /// By body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
+    /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// By body, nonzero if it was asleep when the attempt began or is asleep now. Such a body took no part in the
+    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. Such a body took no part in the
     /// attempt or in its end.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
