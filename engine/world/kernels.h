@@ -9,7 +9,7 @@
 namespace skerry {
 
 /// Returns the kernel set called `wanted`; if `wanted` is empty, the last set that runs on this CPU. Throws SceneError
-/// with a list of the sets if none fits.
+/// with a list of the sets if no set of this name runs here.
 const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view wanted);
 
 /// Kernels for the instruction set named by the environment variable SKERRY_INSTRUCTION_SET. Without this variable,

@@ -163,8 +163,8 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Each of the two values may be any positive number, but not every combination is possible. An invalid step would
-    // otherwise be found only when it is taken.
+    // Young's modulus and density may each be any positive number, but not every combination is possible. An invalid
+    // step would otherwise be found only when it is taken.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))

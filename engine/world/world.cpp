@@ -86,7 +86,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // the rows of their nodes have moved
+        model.clusters.clear();  // the rows of cluster nodes have moved
         model.clusters_open = true;
     }
     erase_gone_rows();

@@ -58,8 +58,8 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// Energy below which differences are rounding errors [J]. It belongs to a strain too small to show in the digits of
-/// the positions, accumulated over ten thousand steps. Bodies at rest without weight have no more energy.
+/// Energy below which differences are rounding errors [J]. It is the energy of a strain too small to show in the digits
+/// of the positions, accumulated over ten thousand steps. Bodies at rest without weight have no more energy.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;

@@ -48,7 +48,7 @@ struct WorldState {
     /// Throws SceneError if the call comes from a callback of advance().
     void require_between_steps(const char* call) const;
     /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
-    /// the changes, and updates the nodes that draw round bodies. Callers defer it, so that many changes in succession
+    /// the changes, and updates the nodes that draw round bodies. It is called late, so that many changes in succession
     /// cost it once. Functions that read all rows, return their contents or ask which bodies sleep must call it, even
     /// const functions. Finding a single row does not need it.
     void settle();

@@ -51,7 +51,8 @@ struct MaterialSettings {
 /// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
 ///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
 ///   Newton's method (docs/methods/implicit_bodies.md).
-/// - automatic: the body becomes implicit if this more than halves the predicted cost and the expected strain is small, else
+/// - automatic: the body becomes implicit if this more than halves the predicted cost and the expected strain is small,
+/// else
 ///   explicit. This is decided when the body is added, for the step length that the other bodies then allow
 ///   (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
@@ -80,7 +81,8 @@ struct BodySettings {
     std::optional<Real> contact_distance{};  // >= 0; default: 2 % of the mean edge length of the surface [m]
     bool self_contact = false;
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
-    // Collision groups as bits. Two objects can touch only if the mask of each has a group of the other.
+    // Each object has a set of groups and a mask, both as bits. Two objects can touch only if the mask of each contains
+    // a group of the other.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
     ElementKind element = ElementKind::smoothed;
@@ -103,7 +105,7 @@ struct Capsule {
 };
 struct Cylinder {
     Real radius = 0.5;  // [m]
-    Real height = 1;    // along z, half of it above z = 0 [m]
+    Real height = 1;    // height along z, from -height / 2 to height / 2 [m]
 };
 /// An open cylindrical container. In its own frame the inner side of the floor lies at z = 0.
 struct Bucket {
@@ -160,8 +162,8 @@ struct Settings {
     Real theta = 1;
     // Upper bound of the step length of implicit bodies without attachments; 0: they take the steps of the other bodies
     // [s]. If the other bodies need shorter steps, an implicit body takes one step while the others take several
-    // (docs/methods/implicit_bodies.md 9). Requires symplectic_euler. Change it when implicit bodies take most of the
-    // computing time beside explicit ones.
+    // (docs/methods/implicit_bodies.md 9). Values above 0 require symplectic_euler. Change it when implicit bodies take
+    // most of the computing time beside explicit ones.
     Real implicit_step = 0;
     // Time integrator (docs/integration.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;

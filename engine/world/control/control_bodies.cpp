@@ -91,7 +91,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        origin[n] += position[n] - target[n];  // the displacement from this origin stays the same
+        origin[n] += position[n] - target[n];  // keeps the displacement of the node from this origin
         target[n] = position[n];
     }
     if (model.bodies.blocks[body].size() > 0)
@@ -103,7 +103,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     world.cache.forget_body(model, body);
     world.record.balance.close();
     model.wake(body);
-    world.edits.places.add_body(model, body);  // new place: bodies there may be touched
+    world.edits.places.add_body(model, body);  // new place: the body may touch others there
 }
 
 void World::set_positions(BodyHandle body, std::span<const Vec3> position) {

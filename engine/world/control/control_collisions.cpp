@@ -1,4 +1,4 @@
-// Which objects may touch: groups, masks and disabled pairs.
+// Rules for which objects may touch: groups, masks and disabled pairs.
 #include <algorithm>
 
 #include "engine/world/control/control.h"

@@ -180,7 +180,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     const SurfaceProperties next = surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
-    state_->edits.places.add_collider(model, row, time());  // wakes bodies that rest on it
+    state_->edits.places.add_collider(model, row, time());  // wakes bodies that rest on the collider
 }
 
 }  // namespace skerry

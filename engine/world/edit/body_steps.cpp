@@ -109,14 +109,15 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // Large bodies find mass forms in groups of elements, where they lengthen the step less.
+    // Mass forms of large bodies are verified in groups of elements, and then lengthen the step less.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
     // Smoothed elements get no frame masses. Their mass forms already allow steps near the stability limit, and closer
     // to this limit the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
-    constexpr Real least_gain = 1.1;  // least ratio of steps that is worth a second evaluation of strained bodies
+    // Least ratio of new to old step that is worth a second evaluation of strained bodies.
+    constexpr Real least_gain = 1.1;
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
     kernels().find_frame_masses(model.all_elements(), blocks, position, model.nodes.mass, products_of_frame, in_frame,

@@ -228,7 +228,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         remember_elements(model, row, body, std::move(rows.places));
     }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
-    // Computed here, the step is bitwise equal to later evaluations of the unmoved body.
+    // Evaluated last, so that later evaluations of the unmoved body give the same bits.
     bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;

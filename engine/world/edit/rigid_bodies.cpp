@@ -419,7 +419,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        set_motion(table, r, velocity, turn);  // again, with the inertia of the undeformed body
+        set_motion(table, r, velocity, turn);  // set again, with the inertia of the undeformed body
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);

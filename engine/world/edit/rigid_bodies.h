@@ -27,8 +27,7 @@ RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Ve
 /// Pose of the mesh frame of a body. For an explicit body it is the rigid pose nearest to the deformed shape.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// True if holding these nodes (local numbers) prevents all rigid motion of the body: at least three of them are not on
-/// one line.
+/// True if holding these nodes (local numbers) prevents all rigid motion of the body: they do not all lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
 /// Finds the attachments that hold rigid bodies as a whole or frames of implicit bodies, and the held poses.
 void find_holders(Model& model);

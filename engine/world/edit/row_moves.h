@@ -17,7 +17,7 @@ struct OfBodyTables {
     T bodies{}, nodes{}, node_blocks{}, blocks{}, element_nodes{}, tetrahedron_blocks{}, triangles{}, edges{},
         vertices{}, vertex_triangles{}, bvh_nodes{}, bvh_leaves{}, rigid{}, implicit{};
 
-    /// All members. This is their only list.
+    /// All members of the struct. Code that visits all tables uses this list.
     static constexpr auto members() {
         using Of = OfBodyTables;
         return std::array{&Of::bodies,        &Of::nodes,     &Of::node_blocks,        &Of::blocks,

@@ -33,7 +33,7 @@ struct StepParameters {
     // `kick` over the kick of the previous step, whose relaxed strain the elements still store; 0: they do not store
     // it.
     Real kick_over_last = 0;
-    Real longest = 0;             // upper bound of the next step, as far as known [s]
+    Real longest = 0;             // upper bound of the length of the next step, as far as known [s]
     Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;

@@ -186,7 +186,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    // Code between the stages must not depend on the floating-point state of the host either.
+    // Code between the stages must not depend on the floating-point mode of the host either.
     const ArithmeticScope arithmetic;
     settle_start();
     const AdvanceScope scope(world.advancing);

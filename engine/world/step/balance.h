@@ -14,7 +14,7 @@ struct StepScratch;
 /// run.
 struct Balance {
     bool open = false;
-    // False while a damped body is held, or an implicit element has a held node. The hold then takes up momentum,
+    // False while a damped body is held, or an implicit element has a held node. Held nodes then take up momentum,
     // through damping or through the inertia of the element, that is not measured.
     bool momentum_known = true;
     std::uint64_t steps = 0;  // since the opening

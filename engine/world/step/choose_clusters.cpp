@@ -34,7 +34,7 @@ constexpr Real least_gain = 1.5;
 /// it is 3 to 20 % of the moment.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
 constexpr std::size_t largest_cluster = 1024;  // nodes; their matrix takes 8 MB and about a second to invert
-/// Implicit elements are assumed to be stiffer by this factor, so that they may stiffen for a while.
+/// Implicit elements are assumed to be stiffer by this factor, so that steps stay stable while these elements stiffen.
 constexpr Real headroom = 4;
 constexpr Real most_lengthening = 32;  // ratio of the step with clusters to the step without
 /// Least ratio of the step with clusters to the step without. A smaller ratio could hardly save the factor least_gain.
@@ -317,7 +317,7 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    constexpr Real inversion_cost = 0.4;  // cost of a matrix inversion over the cube of its width [ns]
+    constexpr Real inversion_cost = 0.4;  // cost of inverting a matrix, over the cube of its width [ns]
     constexpr Real lasts = 128;           // number of steps until the next inversion may be due
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);

@@ -70,8 +70,8 @@ Real step_with_frame(const Model& model) {
 namespace {
 
 /// Stable step of the explicit elements of a body with clusters that is strained in a few places [s]. `stands`: a step
-/// length known to be stable. If it is at least `asked`, or if no better bound is found, it is the result. Otherwise
-/// the result is at most `asked`.
+/// length known to be stable. If `stands` is at least `asked`, or if no better bound is found, the result is `stands`.
+/// Otherwise the result is at most `asked`.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];

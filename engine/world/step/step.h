@@ -27,7 +27,7 @@ Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If all bodies are stable at any step, because they are rigid or implicit, it is the
 /// result of trusted_step.
 Real told_step(const Model& model, Index* body = nullptr);
-/// The longest step that is taken: the stable step, or the limit of the settings if it is shorter [s].
+/// The longest step that is taken: the stable step, or the limit of the settings if this limit is shorter [s].
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Longest step that would be taken if a rigid or implicit body were added [s].
 Real step_with_frame(const Model& model);

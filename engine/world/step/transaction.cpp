@@ -21,9 +21,9 @@ constexpr std::size_t inline_work = 1024;
 constexpr int tries_at_one_length = 4;
 
 /// A step in which surfaces cross is repeated with half its length, down to the stable step divided by this factor.
-/// Afterwards steps grow back. Predictions from the speed of deformation do not go below this length either. The bound
-/// applies to the length and not to the number of halvings: halvings of successive steps would add up until time stands
-/// still.
+/// Afterwards steps grow back. Limits predicted from the speed of deformation do not go below this length either. The
+/// bound applies to the length and not to the number of halvings: halvings of successive steps would add up until time
+/// stands still.
 constexpr Real most_shortening = 128;
 
 /// Factor of shortening for a step that deforms something too fast, or that an implicit body cannot solve. Material

@@ -44,8 +44,8 @@ struct Tries {
     Real longest = std::numeric_limits<Real>::infinity();
     Real slow_enough = std::numeric_limits<Real>::infinity();  // bound from the last rate of deformation [s]
     Index fastest = no_index;                                  // row of BodyTable: the body that deforms fastest
-    int with_longer_lists = 0;                                 // attempts at this step with too short lists
-    int with_crossings = 0;                                    // attempts at this length with crossings
+    int with_longer_lists = 0;                                 // attempts at this step with too short contact lists
+    int with_crossings = 0;                                    // attempts at this length in which features crossed
     bool letting_through = false;                              // the next attempt is the last one
     // Cause of the bound `longest`: the cause for which an attempt was last shortened, other than speed.
     StepLimit limit = StepLimit::inversion;
