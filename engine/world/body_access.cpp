@@ -1,4 +1,4 @@
-// Reading the state of single bodies and colliders.
+// Read access to the state of single bodies and colliders.
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/motion/move_colliders.h"

@@ -1,4 +1,4 @@
-// Stress, strain and steps of bodies, by tetrahedron or node.
+// Stress, strain and stable steps of bodies, for each tetrahedron or node.
 #include <algorithm>
 #include <limits>
 
@@ -19,8 +19,8 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// The elements of an implicit body, which are in no table, and its shape in the frame of its mesh. Its stress is
-/// computed in this frame and then rotated with it.
+/// The elements of an implicit body, which no table stores, and its node positions in the mesh frame. Stress is
+/// computed in this frame and then rotated to world axes.
 struct ImplicitElements {
     std::vector<Vec3> shape;
     ElementBlockTable table;
@@ -47,8 +47,8 @@ void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values
     for (Mat3& value : values) value = turn * value * turn.transpose();
 }
 
-/// Calls visit(elements, blocks, cover, positions, turn) for the elements of a body. turn(values) rotates the results
-/// to world axes.
+/// Calls visit(elements, blocks, cover, positions, turn) for the elements of a body. The function turn(values) rotates
+/// results to world axes.
 auto with_elements(const Model& model, std::size_t row, auto&& visit) {
     if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
         const ImplicitElements own(model, row);
@@ -79,7 +79,7 @@ Real volume_of(const Model& model, std::size_t row, std::size_t tetrahedron) {
     return model.tetrahedra.volume[first + tetrahedron / element_lanes][tetrahedron % element_lanes];
 }
 
-/// Stress of different nodes of a body, from the elements around them.
+/// Stress at the given nodes of a body, averaged over the tetrahedra around each node. No node may be given twice.
 std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
     return with_elements(
         model, row,
@@ -96,7 +96,7 @@ std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span
             for (const Index t : around.tetrahedron)
                 volume.push_back(volume_of(model, row, static_cast<std::size_t>(t)));
             std::vector<Mat3> mean = kernels().means_of_nodes(around.corners, volume, of_tetrahedra, nodes.size() + 1);
-            mean.pop_back();  // the mean of all other nodes
+            mean.pop_back();  // the last entry is the mean of all other nodes
             return mean;
         });
 }
@@ -152,7 +152,8 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
     kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // Mass shares show which elements are stiff relative to others, but their step is too short.
+        // Steps from mass shares have the right ratios between elements but are too short. They are scaled to the
+        // stable step.
         Real shortest = std::numeric_limits<Real>::infinity();
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

@@ -28,7 +28,7 @@ Index local_node(const Model& model, Index node) {
     return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
 }
 
-/// Whether contacts with a body balance forces over a kick. Implicit bodies take a whole step at once instead.
+/// True if contact forces on a body act during the kick of the step. On implicit bodies they act during the whole step.
 bool is_kicked(const Model& model, Index body) {
     return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
 }
@@ -80,7 +80,7 @@ void view_contacts(WorldState& world) {
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
     world.settle();
-    // a step that was refused: its numbers may not be finite
+    // The last step was refused, so its numbers may not be finite.
     if (world.scratch.findings.verdict.fault != StepFault::none) return {};
     view_contacts(world);
     return world.record.contact_view;

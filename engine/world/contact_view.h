@@ -1,11 +1,11 @@
-// Contacts in the form that users see: with handles, and with node numbers local to their bodies.
+// Contacts in the form that users see: objects as handles, and node numbers local to each body.
 #pragma once
 
 #include "engine/world/world_state.h"
 
 namespace skerry {
 
-/// Fills the view of the last step's contacts, unless it is up to date.
+/// Fills the contact view with the contacts of the last step, unless the view is up to date.
 void view_contacts(WorldState& world);
 
 }  // namespace skerry

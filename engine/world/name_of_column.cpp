@@ -1,4 +1,4 @@
-// The name of the column at an address in a world, used only in messages.
+// Name of the column at an address in a world. It is used only in messages.
 #include <string>
 
 #include "engine/world/world_state.h"

@@ -1,4 +1,4 @@
-// Settings of a world that tests and measurements change and users do not.
+// Settings of a world for tests and measurements. Users cannot change them.
 #pragma once
 
 #include "components/options.h"
@@ -7,30 +7,33 @@
 
 namespace skerry {
 
-/// Constants and shortcuts of the step. The defaults serve all scenes. Files save them with the settings.
+/// Constants of the step and switches of its shortcuts. The defaults suit all scenes. Saved files contain them.
 struct Tuning {
-    Real step_safety = 1;           // fraction of the stable step that is used, > 0 and <= 1
-    Real max_strain_step = 0.2;     // a step that changes F of an element by more (Frobenius norm) is repeated shorter
-    Real restitution_speed = 0.05;  // slower impacts do not bounce, whatever the restitution, >= 0 [m/s]
-    // Above 0, a body is still if all its nodes are slower than this, whatever Settings::sleep says [m/s].
+    Real step_safety = 1;  // largest step length as a fraction of the stable step, > 0 and <= 1
+    // Largest change of the deformation gradient F of an element in one step (Frobenius norm). A step that changes F by
+    // more is repeated with a shorter length.
+    Real max_strain_step = 0.2;
+    Real restitution_speed = 0.05;  // impacts slower than this do not bounce, >= 0 [m/s]
+    // If above 0, a body counts as still when all its nodes are slower than this speed, whatever Settings::sleep is
+    // [m/s].
     Real sleep_speed = 0;
-    // Skip searches of pairs that cannot have come close, and steps in which nothing moves. If off, everything is
-    // searched in every step.
+    // If true, a step searches no contacts for pairs that cannot have come close, and steps in which nothing moves are
+    // skipped. If false, every step searches all pairs.
     bool contact_budgets = true;
     WarmStart warm_start = WarmStart::on;
-    bool fixed_iterations = false;  // do exactly max_iterations sweeps
-    Real relaxation = 1;            // relaxation factor of the sweeps, > 0 and < 2; only for methods that sweep
-    // Shortcuts of the solver. Switching one off changes no result beyond the tolerance.
-    bool certify_warm_start = true;  // no sweep if the impulses of the last step still solve a region
-    bool skip_separating = true;     // no impulse in a region if none of its contacts closes
-    bool frictionless_rows = true;   // one row per contact instead of three in a region without friction
-    // regions of 2 to 12 contacts are solved eight at a time (method ags, friction cone)
+    bool fixed_iterations = false;  // the solver always makes max_iterations sweeps
+    Real relaxation = 1;            // relaxation factor of solver methods that sweep, > 0 and < 2
+    // Shortcuts of the contact solver. Switching one off changes the impulses by no more than the tolerance.
+    bool certify_warm_start = true;  // skips a region that the impulses of the last step still solve
+    bool skip_separating = true;     // sets the impulses of a region to zero if none of its contacts closes
+    bool frictionless_rows = true;   // solves one row per contact instead of three in a region without friction
+    // Solves eight regions of 2 to 12 contacts at a time (method ags, friction cone).
     bool small_regions_in_lanes = true;
 
     bool operator==(const Tuning&) const = default;
 };
 
-/// Makes a world with settings that users do not have. Throws SceneError if a value is out of range.
+/// Makes a world with the given tuning. Throws SceneError if a value is out of range.
 World tuned_world(const Settings& settings, const Tuning& tuning);
 
 }  // namespace skerry

@@ -97,7 +97,7 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
-/// Checks of a surface that do not depend on its partner in contact.
+/// Checks surface properties that do not depend on the partner in contact.
 void require_surface(const std::optional<Real>& friction, const std::optional<Real>& static_friction,
                      const std::optional<Real>& dynamic_friction, const std::optional<Real>& restitution,
                      const std::string& object) {
@@ -163,7 +163,8 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Each value may be any number, but not both together: an invalid step would only be found when it is taken.
+    // Young's modulus and density may each be any positive number, but not every combination is possible. An invalid
+    // step would otherwise be found only when it is taken.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
@@ -187,12 +188,12 @@ void validate(const MaterialSettings& material) {
 
 namespace {
 
-/// Checks that at most one tetrahedron lies on each side of a face. Otherwise tetrahedra overlap, and a face of more
-/// than one of them would be no surface that anything could touch.
+/// Checks that at most one tetrahedron lies on each side of a face. Otherwise tetrahedra would overlap, and the face
+/// could not be a part of a surface that objects touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
     for (std::size_t first = 0; first < faces.size();) {
-        std::array<Index, 2> seen{no_index, no_index};  // tetrahedra by the side that they lie on
+        std::array<Index, 2> seen{no_index, no_index};  // the tetrahedron on each side of the face
         std::size_t i = first;
         for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
             Index& on_side = seen[faces[i].turned ? 1 : 0];
@@ -286,7 +287,7 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        constexpr Real most = 1e6;  // the angle is then known to about 1e-10 [rad]
+        constexpr Real most = 1e6;  // an angle of this size is known to about 1e-10 [rad]
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a turn of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,

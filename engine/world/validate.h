@@ -1,4 +1,5 @@
-// Checks of all inputs of a world. Every error message names object, field, the value found and the expected one.
+// Checks of all inputs of a world. Every error message names the object, the field, the found value and the expected
+// value.
 #pragma once
 
 #include <span>
@@ -14,20 +15,20 @@ namespace skerry {
 void validate(const Settings& settings);
 void validate(const Tuning& tuning);
 void validate(const MaterialSettings& material);
-/// `mesh_is_known`: the mesh has already been found valid for a body.
+/// Checks a body and its mesh. `mesh_is_known`: the mesh was already found valid for another body.
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
 void validate(const Cylinder& cylinder, const BodySettings& body);
-/// Checks a body that has its rows: its stable step must be a number.
+/// Checks a body after its rows were appended: the stable step must be a number.
 void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
-/// Checks the three components of a field of `object`.
+/// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
-/// Checks local node numbers of `object`, a body with `count` nodes.
+/// Checks that local node numbers exist in `object`, a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 

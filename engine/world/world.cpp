@@ -25,7 +25,7 @@ namespace skerry {
 
 namespace {
 
-/// Material rows of the tetrahedra; empty if no label has a material of its own.
+/// Material row of each tetrahedron; empty if no label has a material of its own.
 std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
     if (body.materials.empty()) return {};
     std::map<int, Index> row_of;
@@ -42,7 +42,8 @@ void mark(Index row, std::vector<std::uint8_t>& rows) {
     rows[at] = 1;
 }
 
-/// Unique among the worlds of this process, and most probably among worlds saved by other processes.
+/// Returns a number that is unique among the worlds of this process, and most probably among worlds saved by other
+/// processes.
 std::uint32_t next_world_number() {
     static std::atomic<std::uint32_t> next = std::random_device{}();
     const std::uint32_t number = next++;
@@ -85,7 +86,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // their rows have moved
+        model.clusters.clear();  // the rows of cluster nodes have moved
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -178,7 +179,8 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// Core of a round body, as in BodyTable; its mesh only draws it. Without a core (0 nodes) the body is its mesh.
+/// Core of a round body, as in BodyTable. The mesh of such a body serves only to draw it. A body with 0 core nodes is
+/// not round.
 struct RoundCore {
     Index nodes = 0;
     Real radius = 0;  // m
@@ -312,7 +314,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    state_->cache.forget_body(model, b);  // its held nodes have stopped
+    state_->cache.forget_body(model, b);  // attaching has stopped the held nodes
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
@@ -393,7 +395,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick = parameters.kick;  // contacts of the last step can still be queried
+    const Real kick = parameters.kick;  // kept, since contacts of the last step can still be queried
     parameters = step_parameters(state_->model.settings, state_->model.tuning);
     parameters.kick = kick;
     state_->record.balance.close();

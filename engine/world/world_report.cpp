@@ -40,7 +40,7 @@ std::string short_text(Real value) {
     return text;
 }
 
-/// Counts smoothed elements that are compressed although no tetrahedron has to be.
+/// Counts smoothed elements that are strongly compressed. This can happen although no tetrahedron is compressed.
 void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real folded = 0.2;
     const Range blocks = model.bodies.blocks[body];
@@ -58,8 +58,8 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// Energy below which all is rounding [J]: that of a strain too small to show in the digits of the positions, added up
-/// over ten thousand steps in a row. Bodies at rest without weight have no more.
+/// Energy below which differences are rounding errors [J]. It is the energy of a strain too small to show in the digits
+/// of the positions, accumulated over ten thousand steps. Bodies at rest without weight have no more energy.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
@@ -68,7 +68,7 @@ Real energy_of_rounding(const Model& model) {
         Real farthest = 0;  // [m]
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
-        Real stiffness = 0;  // energy per squared strain [J]
+        Real stiffness = 0;  // elastic energy per squared strain [J]
         for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
              block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
             const auto material = static_cast<std::size_t>(model.elements.material[block]);

@@ -1,5 +1,5 @@
 // All state that a world owns. A function of engine/world takes only the parts that it may access. Functions that run a
-// whole step, or answer for the whole world, take all of it. Systems get spans of the columns.
+// whole step, or answer for the whole world, take all of it. Systems take spans of the columns.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,12 @@
 
 namespace skerry {
 
-/// Changes since the last call of WorldState::settle.
+/// Changes of a world since the last call of WorldState::settle.
 struct OpenEdits {
-    bool rows = false;                                      // bodies, colliders or attachments were added or removed
-    bool elements = false;                                  // bodies with elements were, or nodes became held or free
-    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, nonzero: gone; rows beyond the end are present
+    bool rows = false;  // bodies, colliders or attachments were added or removed
+    // Bodies with elements were added or removed, or nodes became held or free.
+    bool elements = false;
+    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, nonzero: removed; rows beyond the end stay
     ChangedPlaces places;
 };
 
@@ -41,24 +42,24 @@ struct WorldState {
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     OpenEdits edits;
-    bool advancing = false;     // true within advance(): its callbacks must not change the world
+    bool advancing = false;     // true within advance(): callbacks must not change the world
     bool drawn_behind = false;  // nodes that only draw round bodies are out of date; only within advance()
 
-    /// Throws if the call comes from a callback of advance().
+    /// Throws SceneError if the call comes from a callback of advance().
     void require_between_steps(const char* call) const;
-    /// Removes rows that are gone, computes derived columns of new rows, wakes bodies that rest beside either, and
-    /// draws round bodies. It is deferred until it is needed, so that many changes in a row cost it once. Every
-    /// function that walks all rows, returns their contents or asks which bodies rest calls it, const ones too. Finding
-    /// one row does not.
+    /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
+    /// the changes, and updates the nodes that draw round bodies. It is called late, so that many changes in succession
+    /// cost it once. Functions that read all rows, return their contents or ask which bodies sleep must call it, even
+    /// const functions. Finding a single row does not need it.
     void settle();
-    /// Updates the nodes that only draw round bodies. `resting`: some bodies came to rest in the last step.
+    /// Updates the nodes that only draw round bodies. `resting`: some bodies fell asleep in the last step.
     void draw(bool resting = false);
 
 private:
     void erase_gone_rows();
 };
 
-/// Access for code beside World: tests, and functions that read and write whole worlds.
+/// Access to the state of a world for tests, and for functions that read or write whole worlds.
 struct WorldAccess {
     static WorldState& state_of(World& world) {
         world.state_->settle();
@@ -70,7 +71,7 @@ struct WorldAccess {
     }
 };
 
-/// Name of the column or value at an address inside a WorldState, for messages: "nodes.velocity".
+/// Name of the column or value at an address inside a WorldState, such as "nodes.velocity". It is used in messages.
 std::string name_of_column(void* world, const void* place);
 
 }  // namespace skerry

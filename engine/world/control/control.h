@@ -1,4 +1,4 @@
-// Changes between steps that neither add nor remove rows.
+// Changes of a world between steps that neither add nor remove table rows.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 namespace skerry {
 
 // control_bodies.cpp
-/// Refuses node positions of a body that turn one of its tetrahedra inside out. Tetrahedra that are inside out already
-/// may stay so. Throws SceneError.
+/// Throws SceneError if the node positions turn a tetrahedron of the body inside out. Tetrahedra that are already
+/// inside out may remain so.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
                      const char* field);
-/// Moves the nodes of a body, which is checked anew for contacts, overlaps and its stable step.
+/// Moves the nodes of a body and evaluates its stable step again. The next step searches its contacts and overlaps
+/// again.
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 
 // control_collisions.cpp
-/// To be called before a slot is used again: enables all of its pairs.
+/// Enables all disabled pairs of a body or collider. Must be called before its slot is used again.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 

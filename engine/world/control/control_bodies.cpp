@@ -42,7 +42,7 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
     return edges.determinant();
 }
 
-/// Attachments hold their nodes at the present positions from now on.
+/// Makes the attachments of a body hold their nodes at the present positions.
 void hold_here(Model& model, std::size_t body, Real now) {
     AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
@@ -56,11 +56,11 @@ void hold_here(Model& model, std::size_t body, Real now) {
     }
 }
 
-/// Moves a rigid body. Refuses positions that are no pose of it.
+/// Moves a rigid body to the given node positions. Throws SceneError if no rigid motion of the body leads to them.
 void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
     const RigidFit fit = fit_rigid_body(model, body, position);
-    constexpr Real rounding = 1e-6;  // fraction of an edge
+    constexpr Real rounding = 1e-6;  // fraction of the mean edge length
     if (fit.misfit > rounding * model.bodies.mean_edge[body]) {
         char misfit[32];
         std::snprintf(misfit, sizeof misfit, "%g", fit.misfit);
@@ -87,11 +87,11 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
-    world.edits.places.add_body(model, body);  // for bodies that lay on it
+    world.edits.places.add_body(model, body);  // old place: bodies there may lose their support
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        origin[n] += position[n] - target[n];  // its displacement by steps stays the same
+        origin[n] += position[n] - target[n];  // keeps the displacement of the node from this origin
         target[n] = position[n];
     }
     if (model.bodies.blocks[body].size() > 0)
@@ -103,7 +103,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     world.cache.forget_body(model, body);
     world.record.balance.close();
     model.wake(body);
-    world.edits.places.add_body(model, body);  // for bodies at its new place
+    world.edits.places.add_body(model, body);  // new place: the body may touch others there
 }
 
 void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
@@ -140,7 +140,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     const std::span<Vec3> target = rows_of(model.nodes.velocity, nodes);
     bool changed = false;
     for (std::size_t n = 0; n < velocity.size(); ++n) {
-        // held nodes keep the motion of their attachments
+        // Held nodes keep the velocities of their attachments.
         const bool free = model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0;
         if (!free || target[n] == velocity[n]) continue;
         target[n] = velocity[n];
@@ -148,7 +148,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     }
     if (!changed) return;
     if (model.has_frame(row)) follow_node_velocities(model, row);
-    state_->cache.forget_body(model, row);  // the search relies on the speed of the last step
+    state_->cache.forget_body(model, row);  // the contact search assumed the speeds of the last step
     state_->record.balance.close();
     model.wake(row);
 }

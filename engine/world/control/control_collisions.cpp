@@ -1,4 +1,4 @@
-// Which objects may touch: groups, masks and disabled pairs.
+// Rules for which objects may touch: groups, masks and disabled pairs.
 #include <algorithm>
 
 #include "engine/world/control/control.h"
@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// A pair given by handles, as rows.
+/// Table rows of the two objects of a pair.
 struct RowPair {
     PairKind kind;
     Index first, second;
@@ -34,7 +34,7 @@ void look_for_overlaps_of_collider(Model& model, Index collider) {
     if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
 }
 
-/// Has the pairs of a body found again. Wakes it and all bodies that it touches or may touch.
+/// Makes the next step search all pairs of a body again. Wakes the body and all bodies that it touches or may touch.
 void find_pairs_of(WorldState& world, Index body) {
     const auto b = static_cast<std::size_t>(body);
     world.cache.forget_body(world.model, b);

@@ -1,4 +1,4 @@
-// Conversion of a body to another kind: explicit, implicit or rigid.
+// Conversion of a body between explicit, implicit and rigid dynamics.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
@@ -44,10 +44,10 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
         refuse(model, body, "dynamics", "a change of what has a joint", "one of a body without joints");
 }
 
-/// Motion of a free body as a whole.
+/// Centre of mass and momenta of a free body.
 struct WholeMotion {
     Vec3 center;                      // centre of mass [m]
-    Vec3 momentum, angular_momentum;  // the latter about the centre [kg m/s, kg m^2/s]
+    Vec3 momentum, angular_momentum;  // angular_momentum is about `center` [kg m/s, kg m^2/s]
 };
 
 Real mass_of_nodes(const Model& model, std::size_t body) {
@@ -73,7 +73,7 @@ WholeMotion motion_of(const Model& model, std::size_t body) {
     return {center, nodes.momentum, nodes.angular_momentum};
 }
 
-/// Adds a rigid motion to an explicit body, so that it has these momenta.
+/// Adds a rigid motion to the velocities of an explicit body, so that its momenta become `wanted`.
 void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
     const Vec3 center = center_of_nodes(model, body);
     const NodeMotion has = motion_of_nodes(model, body, center);
@@ -85,8 +85,8 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Appends the body once more as the new kind, in the shape of its mesh and at rest. If it has no valid stable step the
-/// row is removed again and SceneError is thrown.
+/// Appends a second row for a body with the dynamics `next`, undeformed and at rest. If the new row has no valid stable
+/// step, removes it again and throws SceneError.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;
@@ -127,7 +127,8 @@ void copy_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Sets the viscous strain to that of a body held in its present shape for a long time: nothing is left to relax.
+/// Sets the viscous strain of a body as if it had been held in its present shape for a long time, so that nothing is
+/// left to relax.
 void relax_fully(Model& model, std::size_t body) {
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
@@ -145,7 +146,7 @@ void relax_fully(Model& model, std::size_t body) {
     }
 }
 
-/// Gives `after` the shape, motion and loads of `before`, as far as its kind can have them.
+/// Copies shape, motion and loads of the body `before` to the body `after`, as far as the dynamics of `after` allow.
 void take_state(WorldState& world, std::size_t before, std::size_t after) {
     Model& model = world.model;
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
@@ -157,7 +158,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     note_seams(model);
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
-        return;  // its new shape may overlap something: it is checked as at a start
+        return;  // the undeformed shape may overlap other objects: checked as for a new body
     }
     model.body_records[after].settled = model.body_records[before].settled;
     copy_rows(model.nodes.position, from, to);

@@ -1,4 +1,4 @@
-// Properties that a body derives from its materials: masses, relaxation of elements and the stable step.
+// Properties of a body that follow from its materials: masses, relaxation of elements and the stable step.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,8 +20,9 @@ namespace skerry {
 
 namespace {
 
-/// Speed of waves along a thin bar, sqrt(E / rho) [m/s]. For several materials: mean density and the geometric mean of
-/// the bounds of the modulus of all mixtures, in parallel (Voigt) and in series (Reuss).
+/// Speed of longitudinal waves in a thin bar, sqrt(E / rho), with Young's modulus E and density rho [m/s]. For several
+/// materials, rho is the mean density. E is the geometric mean of the Voigt bound (materials in parallel) and the Reuss
+/// bound (materials in series).
 Real bar_speed(const Model& model, const NewBody& body, std::span<const MaterialZone> zones) {
     Real volume = 0, mass = 0, stiffness = 0, compliance = 0;
     for (const MaterialZone& zone : zones) {
@@ -39,7 +40,8 @@ Real bar_speed(const Model& model, const NewBody& body, std::span<const Material
     return std::sqrt(std::sqrt(stiffness / compliance) * volume / mass);
 }
 
-/// Sets the relaxation of the elements of a body. `step`: stable step without relaxation [s]. `speed`: bar_speed.
+/// Sets the relaxation rates of the elements of a body. `step`: stable step of the body without relaxation [s].
+/// `speed`: result of bar_speed [m/s].
 void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Real> stiffness_sum, Real speed,
                     Real step) {
     ElementBlockTable& elements = model.elements;
@@ -55,7 +57,6 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
 
 }  // namespace
 
-/// The zones are in the order in which their materials first occur in the mesh.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body) {
     std::vector<MaterialZone> zones;
     for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
@@ -89,7 +90,7 @@ RoundMass round_mass(const Model& model, const NewBody& body) {
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
-    if (body.core_nodes > 0) {  // its drawn mesh is inside it
+    if (body.core_nodes > 0) {  // the drawn mesh lies inside the round shape, so its mass is scaled
         const std::span<Real> mass = rows_of(nodes.mass, range);
         const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = round_mass(model, body).sum();
         for (Real& of_node : mass) of_node *= whole / drawn;
@@ -108,13 +109,15 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // in groups, which large bodies have, mass forms lose some of their gain
+    // Mass forms of large bodies are verified in groups of elements, and then lengthen the step less.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Smoothed elements are near the limit with mass forms. Nearer to it, energies of the highest frequencies err more.
+    // Smoothed elements get no frame masses. Their mass forms already allow steps near the stability limit, and closer
+    // to this limit the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
-    constexpr Real least_gain = 1.1;  // least gain that is worth two evaluations of a strained body
+    // Least ratio of new to old step that is worth a second evaluation of strained bodies.
+    constexpr Real least_gain = 1.1;
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
     kernels().find_frame_masses(model.all_elements(), blocks, position, model.nodes.mass, products_of_frame, in_frame,
@@ -183,7 +186,7 @@ void remember_elements(Model& model, Index row, const NewBody& body, ElementPlac
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
     if (body.kind != BodyKind::deformable || body.has_frame()) return;
-    constexpr std::size_t most_known = 64;  // each new mesh is compared with so many
+    constexpr std::size_t most_known = 64;  // limit, since each new mesh is compared with all known ones
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     KnownElements& known = model.known_elements.emplace_back();
     known.body = row;

@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-/// Box of the surface, widened by a length [m].
+/// Bounding box of the surface of a body, enlarged on all sides by the length `by` [m].
 Aabb box_of_body(const Model& model, std::size_t body, Real by) {
     Aabb box = empty_box();
     for (const Index node :

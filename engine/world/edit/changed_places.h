@@ -1,4 +1,5 @@
-// Places of additions, removals and changes. Bodies asleep there may have lost their support or may now overlap.
+// Places where objects were added, removed or changed. Sleeping bodies there may have lost their support or may now
+// overlap an object.
 #pragma once
 
 #include <vector>
@@ -8,16 +9,16 @@
 
 namespace skerry {
 
-/// Each place is recorded as it is when it is added.
+/// Places are stored as boxes and planes. They do not follow the objects that are moved later.
 class ChangedPlaces {
 public:
-    /// Adds the box of a body, or of a mesh collider.
+    /// Adds the bounding box of a body, or of the body of a mesh collider.
     void add_body(const Model& model, std::size_t body);
-    /// Adds the box or plane of a collider of any shape. `now`: present time [s].
+    /// Adds the bounding box of a collider, or the plane of a plane collider. `now`: present time [s].
     void add_collider(const Model& model, std::size_t collider, Real now);
     bool empty() const { return boxes_.empty() && planes_.empty(); }
-    /// Wakes all bodies that are nearer to a place than their mean edge plus the contact distances; this includes all
-    /// that touch it. Costs a pass over the surfaces of sleeping bodies. Clears the places.
+    /// Wakes all sleeping bodies whose distance from a place is less than their mean edge length plus the contact
+    /// distances. Costs one pass over the surfaces of sleeping bodies. Clears the places.
     void wake_near(Model& model);
 
 private:

@@ -10,21 +10,24 @@ namespace skerry {
 
 namespace {
 
-// Cost of implicit bodies by number of nodes: power laws fitted to the output of profile_implicit_factor --steps for
-// cubes of 125 to 2,197 nodes that lie on a face.
+// Cost of a step of an implicit body, as a power law of its number of nodes. The law was fitted to the output of
+// profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
-// Fraction of a step spent on contacts, which every short step needs too: half or more for a cube on a face.
+// Fraction of the cost of an implicit step that is due to contacts. Every short step needs this part too. For a cube on
+// a face it is half or more.
 constexpr Real contact_share = 0.5;
-constexpr Real factor_time = 150e6, factor_power = 2.7;  // factorisation, with the columns of whatever it touches [ns]
-constexpr Real factors_a_second = 1;                     // per second of simulated time: changes of the step length
-/// Least factor that it must save, since vibrations are damped and the estimates are rough.
+constexpr Real factor_time = 150e6, factor_power = 2.7;  // cost of a factorisation, with the columns for contacts [ns]
+// Factorisations per simulated second, after changes of the step length.
+constexpr Real factors_a_second = 1;
+/// Least ratio of explicit to implicit cost for which a body becomes implicit. It exceeds 1, since implicit steps damp
+/// vibrations and the estimates are rough.
 constexpr Real least_saving = 2;
-constexpr Real most_strain = 0.02;  // linear elasticity is invalid beyond it
-constexpr Real fall = 10;           // height that it may fall, in multiples of its size
+constexpr Real most_strain = 0.02;  // beyond this strain linear elasticity is invalid
+constexpr Real fall = 10;           // assumed height of a fall, in multiples of the size of the body
 
-/// Largest strain of its materials: under the weight of the body, and v/c as in a bar that is stopped at the initial
-/// speed or that of a fall.
+/// Largest expected strain in the materials of a body: under its own weight, or in an impact. The impact strain is v/c,
+/// as in a bar that is stopped, with wave speed c. The impact speed v combines the initial speed and a fall.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
@@ -46,7 +49,7 @@ struct ExplicitBody {
     Real elements;  // number of elements
 };
 
-/// Step and elements of the body alone in a model of its own.
+/// Stable step and number of elements of a body, found in a model that contains only this body.
 ExplicitBody as_explicit(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;

@@ -1,4 +1,4 @@
-// Adds bodies between steps. A body is a range of rows in every table.
+// Adds bodies between steps. Each body has a range of rows in every table.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -20,10 +20,10 @@ namespace skerry {
 
 namespace {
 
-// initial bound of find_inversions: nothing has been checked [m]
+// Initial value of uninverted_until: find_inversions has checked nothing yet [m].
 constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
 
-constexpr Real default_contact_distance = 0.02;  // times the mean surface edge: small against the mesh resolution
+constexpr Real default_contact_distance = 0.02;  // fraction of the mean surface edge, small against the mesh resolution
 
 Range appended(std::size_t before, std::size_t after) {
     return {static_cast<Index>(before), static_cast<Index>(after)};
@@ -52,7 +52,8 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// The common kind of all zones; if `smoothed` stands for both kinds, the one with nodes; without zones, linear.
+/// The element kind that all zones share. If `smoothed` was resolved to both of its kinds, the result is
+/// edge_node_smoothed. Without zones it is linear.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
@@ -60,10 +61,10 @@ ElementKind kind_of(std::span<const MaterialZone> zones) {
     return kind;
 }
 
-/// Sets the masses of the nodes and the initial rigid motion about the centre of mass.
+/// Sets the node masses of a body, and its initial rigid motion about the centre of mass.
 void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    if (body.kind == BodyKind::kinematic) return;  // no mass: inverse mass 0
+    if (body.kind == BodyKind::kinematic) return;  // the nodes of mesh colliders keep inverse mass 0
     const auto first = static_cast<std::size_t>(range.begin), count = static_cast<std::size_t>(range.size());
     set_masses(model, body, range);
     Vec3 center = Vec3::Zero();
@@ -94,7 +95,7 @@ Real mean_edge_length(const Model& model, Range edges) {
     return edges.size() > 0 ? sum / edges.size() : 0;
 }
 
-/// Mean edge length of triangles that only draw a body [m].
+/// Mean edge length of triangles that serve only to draw a body [m].
 Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> nodes) {
     Real sum = 0;
     for (const auto& triangle : triangles)
@@ -105,7 +106,7 @@ Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span
     return sum / static_cast<Real>(3 * triangles.size());
 }
 
-/// Smallest altitude of all tetrahedra: three times the volume over the largest face; 0 without tetrahedra [m].
+/// Smallest altitude of all tetrahedra of a body; 0 without tetrahedra [m].
 Real smallest_altitude(const NewBody& body) {
     Real smallest = std::numeric_limits<Real>::infinity();
     for (const auto& tetrahedron : body.tetrahedra)
@@ -113,7 +114,7 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// The rows of a new body in the tables, and the places of the elements of its list.
+/// The table rows of a new body, and the places of its elements in the element blocks.
 struct BodyRows {
     Index row;
     Range nodes, tetrahedra;
@@ -121,15 +122,15 @@ struct BodyRows {
     AppendedElements elements;
 };
 
-/// Appends the elements of a body at rows.places.
+/// Appends the elements of `list` to the tables, at rows.places.
 void append_elements_of(Model& model, const ElementList& list, BodyRows& rows) {
     rows.elements = append_elements(list, rows.places, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
     const Range blocks = rows.elements.blocks;
     start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
 }
 
-/// Triangles of the surface in local nodes: those that the user gave, or the boundary of the tetrahedra. The latter are
-/// among the rows of the body unless it is round.
+/// Surface triangles of a body in local node numbers: the triangles given by the user, or the boundary of the
+/// tetrahedra. The boundary is read from the surface tables, except for a round body, which has no such rows.
 std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
     if (body.core_nodes > 0) {
@@ -172,9 +173,10 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     BodyRows rows{row, nodes, {}, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
-    // rigid and implicit bodies have tetrahedra, but no elements in the tables
+    // Rigid and implicit bodies have tetrahedra, but no rows in the element tables.
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
-    // Elements are rotated last, after all data that do not depend on it: bodies of one mesh share these data.
+    // Elements are rotated last, after all data that do not depend on the rotation. Bodies with the same mesh share
+    // these data.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
@@ -226,7 +228,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         remember_elements(model, row, body, std::move(rows.places));
     }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
-    // bitwise equal to an evaluation made before the body has moved
+    // Evaluated last, so that later evaluations of the unmoved body give the same bits.
     bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;

@@ -19,7 +19,8 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
-/// Pose at time 0 of an object that is at `pose` now and moves at constant velocities: scripts start at time 0.
+/// Pose at time 0 of an object that is at `pose` at the time `now` and moves at constant velocities. Scripts start at
+/// time 0.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -41,7 +42,8 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
-/// The smallest rotation that takes the z axis to a direction; half a turn about x for the opposite direction.
+/// The smallest rotation that turns the z axis to `direction`. For the opposite direction of z it is half a turn about
+/// x.
 Mat3 turn_from_z(const Vec3& direction) {
     const Vec3 axis(-direction.y(), direction.x(), 0);
     const Real sine = axis.norm();
@@ -49,8 +51,8 @@ Mat3 turn_from_z(const Vec3& direction) {
     return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
 }
 
-/// Pose of the shape's own frame in that of the collider. A plane is given by a point and a normal; in its own frame it
-/// is z = 0.
+/// Pose of the frame of a shape relative to the frame of its collider. In its own frame a plane is z = 0; for all other
+/// shapes both frames are equal.
 RigidPose shape_frame(const Shape& shape) {
     if (const auto* plane = std::get_if<Plane>(&shape)) return {plane->point, turn_from_z(plane->normal)};
     return {Vec3::Zero(), Mat3::Identity()};
@@ -60,11 +62,11 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Appends the motion for the shape's own frame, whose rotations are not about the axes of the given motion. They are
-/// known only up to whole turns, so keyframes are added where those of the motion are far apart.
+/// Appends the motion of the frame of a shape, given the motion of its collider. Rotation vectors of the shape frame
+/// are known only up to full turns, so keyframes are added between keyframes that are far apart.
 MotionScript append_script_of_shape(const Motion& motion, const RigidPose& frame, Column<Keyframe>& keyframe) {
     if (frame.position.isZero(0) && frame.rotation == Mat3::Identity()) return append_script(motion, keyframe);
-    constexpr Real most = 2;  // between keyframes [rad]
+    constexpr Real most = 2;  // largest rotation between keyframes [rad]
     Column<Keyframe> keys;
     const MotionScript script = append_script(motion, keys);
     Motion of_shape = motion;

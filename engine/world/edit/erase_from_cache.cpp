@@ -55,7 +55,7 @@ private:
     PairTable& pairs_;
 };
 
-/// Returns the rows for which `is_gone` holds; all others are renumbered.
+/// Returns the rows for which is_gone(row) is true. Calls renumber(row) for all other rows.
 std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber) {
     std::vector<Range> gone;
     for (std::size_t row = 0; row < count; ++row) {
@@ -68,7 +68,8 @@ std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber)
     return gone;
 }
 
-/// Moves candidate lists to their new rows. Lists of removed pairs stay as memory for later ones.
+/// Moves the candidate lists of remaining pairs to their new rows. The lists of removed pairs are kept, so that later
+/// pairs can use their memory.
 void move_lists(std::span<const Range> gone, std::size_t count, PairTable& pairs) {
     if (gone.empty()) return;
     std::size_t to = static_cast<std::size_t>(gone.front().begin);

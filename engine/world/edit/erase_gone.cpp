@@ -18,7 +18,7 @@ void lower(Range& range, Index by) {
     range.end -= by;
 }
 
-/// Renumbers the rows that one body refers to; they are all its own rows.
+/// Renumbers all rows that a body refers to. They all belong to this body.
 class RowsOfBody {
 public:
     RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Index>& down)
@@ -121,14 +121,15 @@ private:
     OfBodyTables<Index> down_;
 };
 
-/// Removes records, of which there is one for each row.
+/// Removes the records of removed rows. There is one record for each row.
 template <class Record>
 void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
     std::size_t row = 0;
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Removes rows with the keyframes of their scripts. Empty ranges of other scripts may lie anywhere.
+/// Removes rows together with the keyframes of their scripts. Other scripts may have empty keyframe ranges at any
+/// position.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)
@@ -165,7 +166,8 @@ void erase_colliders(const RowMoves& moves, Model& model) {
         if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
 }
 
-/// Renumbers clusters, all of other bodies. If a body with elements is removed, all clusters are found anew.
+/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body: if a body with elements is
+/// removed, all clusters are cleared before and found again later.
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)

@@ -1,5 +1,5 @@
-// Removes the rows of erased bodies and colliders from all tables at once. Each row after the first of them is moved
-// and renumbered once, however many are gone.
+// Removes the rows of erased bodies and colliders from all tables. Each later row is moved and renumbered once, however
+// many rows are removed.
 #pragma once
 
 #include "components/contact_table.h"
@@ -9,16 +9,18 @@
 namespace skerry {
 
 // erase_from_cache.cpp
-/// Removes pairs with erased partners and their contacts at rest; other pairs keep their data. Impulses of the warm
-/// start stay, since their keys name bodies by slot. `body_of_node`: from before the removal.
+/// Removes pairs with an erased object and contacts of sleeping bodies with an erased object. Other pairs keep their
+/// data. Warm-start impulses stay, since their keys name bodies by slot. `body_of_node`: body row of each node before
+/// the removal.
 void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactCache& cache);
-/// Removes contacts of a step. Returns the rows removed.
+/// Removes the contacts of a step that touch an erased object. Returns the removed rows.
 std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
 
 // erase_gone.cpp
-/// Patches of the bodies after the first erased one are left to Model::extend_derived.
+/// Removes the rows of erased bodies and colliders from the model. Element patches from the first erased body on are
+/// removed too; Model::extend_derived builds them again.
 void erase_gone(const RowMoves& moves, Model& model);
-/// Removes rows of scripted colliders or attachments with their keyframes. `gone` is ascending.
+/// Removes rows of scripted colliders or attachments together with their keyframes. `gone` is in ascending order.
 void erase_scripted_rows(std::span<const Range> gone, ColliderTable& table);
 void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table);
 

@@ -7,7 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Bodies that each row of a table joins: calls visit(row, reference to a row of BodyTable) for each that is no world.
+/// Calls visit(row, body) for each body that a row of the table joins. `body` is a reference to the row of BodyTable in
+/// the column. For a row that joins a body to the world (no_index), only the body is visited.
 void for_each_joined_body(AnyTable table, auto&& visit) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;

@@ -1,4 +1,4 @@
-// Rows that join bodies, in the tables of Model::for_each_joining: removal and renumbering.
+// Removal and renumbering of table rows that join bodies (Model::for_each_joining).
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Removes one row and its handle.
+/// Removes one row of a table and the handle of this row.
 template <class Table, class Handle>
 void erase_joining_row(std::size_t row, Table& table, HandleMap<Handle>& map) {
     map.forget(map.handle_of_slot(table.slot[row]));
@@ -21,10 +21,10 @@ void erase_joining_row(std::size_t row, Table& table, HandleMap<Handle>& map) {
     map.rows_moved(row_now);
 }
 
-/// Removes all rows that join a body that will be removed, and wakes the bodies joined to it.
+/// Removes all rows that join a body, before this body is removed. Wakes all bodies of these rows.
 void erase_rows_joining(std::size_t body, Model& model);
 
-/// Renumbers the joined bodies after bodies were removed. `body_now`: new row of each old row of BodyTable.
+/// Renumbers the joined bodies after other bodies were removed. `body_now`: new row for each old row of BodyTable.
 void renumber_joining_rows(std::span<const Index> body_now, Model& model);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// The values of a row of MaterialTable, from the table or from settings.
+// The values of one row of MaterialTable, read from the table or computed from settings.
 #pragma once
 
 #include "components/material_table.h"
@@ -33,7 +33,7 @@ struct MaterialRow {
         table.poisson_ratio[row] = poisson_ratio;
         table.damping[row] = damping;
     }
-    /// Whether both give elements the same forces, masses and losses.
+    /// True if both materials give elements the same forces, masses and losses.
     bool same_elements(const MaterialRow& other) const {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&

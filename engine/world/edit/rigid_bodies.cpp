@@ -11,12 +11,13 @@ namespace skerry {
 
 namespace {
 
-/// Mass properties of a solid in the frame of its mesh: filled tetrahedra, or a sphere, capsule or cylinder along z.
+/// Mass properties of a solid in the frame of its mesh. The solid is a set of tetrahedra, or a sphere, capsule or
+/// cylinder along z.
 struct MassProperties {
     Real mass = 0;               // [kg]
     Vec3 center = Vec3::Zero();  // [m]
     Vec3 moments;                // principal moments of inertia [kg m^2]
-    Mat3 axes;                   // principal frame to frame of the mesh
+    Mat3 axes;                   // rotation from the principal frame to the mesh frame
 };
 
 MassProperties mass_properties(const Model& model, const NewBody& body) {
@@ -46,7 +47,9 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
         found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
     }
     found.center /= found.mass;
-    Mat3 second = Mat3::Zero();  // integral of x x^T: m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T) [kg m^2]
+    // Integral of density times x x^T, with x relative to the centre of mass. A tetrahedron of mass m and corners x_k
+    // adds m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T) [kg m^2].
+    Mat3 second = Mat3::Zero();
     for (std::size_t t = 0; t < mass.size(); ++t) {
         Mat3 squares = Mat3::Zero();
         Vec3 sum = Vec3::Zero();
@@ -89,7 +92,8 @@ Mat3 frame_of_mesh(const RigidBodyTable& table, std::size_t r) {
     return table.rotation[r] * table.axes[r].transpose();
 }
 
-/// Motion of the nodes relative to the body as a whole, in the frame of the mesh; empty for a rigid body.
+/// Displacements and velocities of the nodes relative to the rigid motion of the body, in the mesh frame; empty for a
+/// rigid body.
 struct Deformation {
     std::span<Vec3> displacement, velocity;
 
@@ -99,7 +103,8 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// To be called after the deformation was overwritten. The frame of a free body with large strain follows its shape.
+/// Must be called after the displacements of a body were overwritten. Finds whether its strain is large. The frame of a
+/// free body with large strain follows the deformed shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -166,13 +171,13 @@ void follow_weight(Model& model, std::size_t body) {
 
 namespace {
 
-/// The mesh frame in which nodes are nearest to their rest positions.
+/// The rigid motion that brings the rest positions of nodes nearest to given positions (weighted least squares).
 struct NearestFrame {
     Vec3 center, rest_center;  // [m]
     Mat3 rotation;
 };
 
-/// `weight(n)`: weight of a node of the body.
+/// Finds the best rigid motion. `weight(n)`: weight of the node with local number n.
 NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const Vec3> position, auto&& weight) {
     NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
     Real mass = 0;
@@ -193,7 +198,7 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
     return frame;
 }
 
-/// Weighted with the masses of the nodes.
+/// Finds the best rigid motion, weighted with the masses of the nodes.
 NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
     const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
     return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
@@ -210,7 +215,7 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
     Vec3 along = Vec3::Zero();
     for (const Index node : nodes)
         if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
-    constexpr Real thin = 1e-6;  // fraction of the length: below it nodes are on a line
+    constexpr Real thin = 1e-6;  // fraction of the length; nodes nearer to a line count as collinear
     for (const Index node : nodes)
         if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
     return false;
@@ -218,7 +223,8 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
 
 namespace {
 
-/// `position`: of the nodes that an attachment holds, in its order.
+/// Finds the best rigid motion of the nodes that an attachment holds. `position`: positions of these nodes, in the
+/// order of the attachment.
 NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span<const Vec3> position) {
     std::vector<Vec3> rest;
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment]))
@@ -226,7 +232,7 @@ NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span
     return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
 }
 
-/// Computes the deformation of a held body in its frame from its nodes.
+/// Computes displacements and velocities of a held body, in the frame of its attachment, from its nodes.
 void write_held_shape(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -372,8 +378,8 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
 
 namespace {
 
-/// Works as follow_node_velocities, for large strain: the angular momentum is that of the deformed solid, and nodes
-/// keep their velocities to rounding.
+/// Version of follow_node_velocities for large strain. The angular momentum is that of the deformed solid. The nodes
+/// keep their velocities up to rounding.
 void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocity) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -413,7 +419,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        set_motion(table, r, velocity, turn);  // with the inertia at rest
+        set_motion(table, r, velocity, turn);  // set again, with the inertia of the undeformed body
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
@@ -427,7 +433,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// Sums over nodes: those of a held body have momenta of their own.
+/// Energies and momenta, summed over the nodes with counts(n). A held body needs such sums, since its momenta are in
+/// its nodes and not in its frame. The elastic energy is always that of the whole body.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

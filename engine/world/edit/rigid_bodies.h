@@ -1,4 +1,4 @@
-// Creation of rigid bodies, and their update after nodes were moved by anything but a step.
+// Creation of rigid bodies, and updates of rigid and implicit bodies after changes of their nodes between steps.
 #pragma once
 
 #include <span>
@@ -9,61 +9,64 @@
 
 namespace skerry {
 
-/// Appends the row of RigidBodyTable of a body whose nodes already have rows.
+/// Appends the row of RigidBodyTable for a body whose nodes already have rows.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Recomputes mass and inertia after densities have changed; the velocities stay the same.
+/// Recomputes mass and inertia of a body after densities have changed. Its velocity and spin stay the same.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
-/// The pose of a rigid body that is nearest to given node positions. `misfit`: greatest distance of a node of this pose
-/// from its given position.
+/// The pose of a rigid body that is nearest to given node positions. `misfit`: largest distance of a node in this pose
+/// from its given position [m].
 struct RigidFit {
     Vec3 center;
-    Mat3 rotation;  // principal frame to world
+    Mat3 rotation;  // rotation from the principal frame to world axes
     Real misfit;    // m
 };
 RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position);
 
-/// Pose of the mesh frame; for a deforming body, of the nearest rigid placement.
+/// Pose of the mesh frame of a body. For an explicit body it is the rigid pose nearest to the deformed shape.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// Whether nodes (local numbers) hold a rigid body as a whole, or the frame of an implicit one: three of them must not
-/// lie on one line.
+/// True if holding these nodes (local numbers) prevents all rigid motion of the body: they do not all lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Finds the attachments that hold whole bodies or their frames, and the held poses, from the rows of attachments.
+/// Finds the attachments that hold rigid bodies as a whole or frames of implicit bodies, and the held poses.
 void find_holders(Model& model);
-/// To be called after an implicit body was attached or released, or its held nodes were moved. Its frame becomes that
-/// of its attachment, or its own. Its deformation is chosen so that all nodes keep their positions and velocities.
+/// Must be called after an implicit body was attached or released, or its held nodes were moved. The body then deforms
+/// in the frame of its attachment, or in its own frame if it is free. All nodes keep their positions and velocities.
 void follow_attachments(Model& model, std::size_t body);
 
-/// To be called after a free implicit body was weighed again: its inertia follows its shape, its spin stays the same.
+/// Must be called after the mass of a free implicit body was recomputed. Updates the inertia to the deformed shape. The
+/// velocity and spin of the body stay the same.
 void follow_weight(Model& model, std::size_t body);
 
-/// Momenta and inertia of the nodes of a body as point masses, about a centre.
+/// Momenta and inertia of the nodes of a body as point masses, about a given centre.
 struct NodeMotion {
-    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // kg m/s, kg m^2/s
+    Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // [kg m/s, kg m^2/s]
     Mat3 inertia = Mat3::Zero();                                    // kg m^2
 };
 NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& center);
-/// Sets momentum [kg m/s] and angular momentum about the centre [kg m^2/s]; the deformation stays.
+/// Sets the momentum [kg m/s] and the angular momentum about the centre of mass [kg m^2/s] of a body. The deformation
+/// does not change.
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
-/// Sets both momenta to zero.
+/// Sets the momentum and the angular momentum of a body to zero.
 void stop_rigid_body(Model& model, std::size_t body);
-/// Sets the pose of a body and moves its nodes with it. Angular momentum and velocity stay as they are.
+/// Sets the pose of a body and moves its nodes along. The momentum and the angular momentum do not change.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
-/// Gives an implicit body these node positions: its pose is the nearest one, the remainder is its deformation.
+/// Sets the node positions of an implicit body. The nearest rigid pose becomes the pose of the body, and the remainder
+/// its deformation.
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
-/// Takes the rigid motion nearest to the velocities of the nodes. The remainder becomes deformation, where possible.
+/// Sets the momenta of a body to the rigid motion nearest to its node velocities. The remainder becomes the deformation
+/// velocity of an implicit body; a rigid body loses it.
 void follow_node_velocities(Model& model, std::size_t body);
 
-/// Energies and momenta of a body with a row of RigidBodyTable; zero for other bodies.
+/// Energies and momenta of a rigid or implicit body; zero for an explicit body.
 struct RigidSums {
     Real kinetic = 0, elastic = 0;         // J
     Vec3 momentum = Vec3::Zero();          // kg m/s
     Vec3 angular_momentum = Vec3::Zero();  // about the origin [kg m^2/s]
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
-/// Energies and momenta of the free nodes of a held implicit body; `elastic` is that of the whole body.
+/// Energies and momenta of the free nodes of a held implicit body. Only `elastic` includes the whole body.
 RigidSums moving_sums(const Model& model, std::size_t body);
 /// Elastic forces on the nodes of an implicit body, by local node, in world axes [N].
 std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);

@@ -1,5 +1,5 @@
-// Rows removed with bodies and colliders, and the new places of all others. They are found in one pass over the tables
-// before any table changes, however many rows are gone.
+// Rows that are removed with bodies and colliders, and the new numbers of all other rows. They are found in one pass
+// over the tables, before any table changes.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct OfBodyTables {
     T bodies{}, nodes{}, node_blocks{}, blocks{}, element_nodes{}, tetrahedron_blocks{}, triangles{}, edges{},
         vertices{}, vertex_triangles{}, bvh_nodes{}, bvh_leaves{}, rigid{}, implicit{};
 
-    /// The only list of these members.
+    /// All members of the struct. Code that visits all tables uses this list.
     static constexpr auto members() {
         using Of = OfBodyTables;
         return std::array{&Of::bodies,        &Of::nodes,     &Of::node_blocks,        &Of::blocks,
@@ -31,17 +31,17 @@ OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 
 struct RowMoves {
     OfBodyTables<std::vector<Range>> gone;  // ascending
-    std::vector<OfBodyTables<Index>> down;  // by old row of the body: how far its rows move down
-    std::vector<Index> body_now;            // by old row; no_index: gone
+    std::vector<OfBodyTables<Index>> down;  // for each old body row: how far the rows of this body move down
+    std::vector<Index> body_now;            // new body row for each old row; no_index: removed
     std::vector<Range> colliders_gone;      // ascending
-    std::vector<Index> collider_now;        // by old row; no_index: gone
-    std::vector<Range> attachments_gone;    // attachments of the bodies that are gone
-    std::vector<Index> attachment_now;      // by old row; no_index: gone
+    std::vector<Index> collider_now;        // new collider row for each old row; no_index: removed
+    std::vector<Range> attachments_gone;    // attachments of removed bodies
+    std::vector<Index> attachment_now;      // new attachment row for each old row; no_index: removed
 
     bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
 };
 
-/// `bodies` and `colliders`: marks by row; rows with a nonzero mark are removed. Rows beyond their ends stay.
+/// `bodies` and `colliders`: marks by row. Rows with a nonzero mark are removed. Rows beyond the last mark stay.
 RowMoves row_moves(const Model& model, std::span<const std::uint8_t> bodies, std::span<const std::uint8_t> colliders);
 
 }  // namespace skerry

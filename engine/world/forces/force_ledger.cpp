@@ -38,8 +38,8 @@ bool rests(const Model& model, Index body) {
     return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
 }
 
-/// Force and moment of an attachment on the deformation of an implicit body, through the nodes that count for it [N,
-/// N m]. If the attachment holds the frame of the body, the moment on the frame is included.
+/// Elastic part of the force and moment of an attachment on an implicit body, over the nodes `held` [N, N m]. If the
+/// attachment holds the frame of the body, the moment on the frame is included.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -56,12 +56,13 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// Implicit bodies take a whole step at once (docs/methods/time_stepping.md 1.5).
+/// True for an implicit body: forces act on it during the whole step, not during a kick (docs/methods/time_stepping.md
+/// 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
 }
 
-/// Whether all bodies of the pair are implicit.
+/// True if all bodies of the pair are implicit. A collider does not count.
 bool is_implicit(const Model& model, const PairKey& key) {
     return is_implicit(model, body_row(model, key.first)) &&
            (!key.bodies || is_implicit(model, body_row(model, key.second)));
@@ -89,7 +90,8 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// Uses the forces of the last step before the bodies came to rest, as sums over one second.
+/// Starts the sums of sleeping bodies with the forces of the last step before they fell asleep, as impulses over one
+/// second.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -108,14 +110,15 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// The forces and moments of elements on held nodes follow from virtual work: the change of elastic energy when only
-/// these nodes move. `contact_force`: by node [N].
+/// Computes the forces of attachments on sleeping bodies. The elastic forces and moments on held nodes follow from
+/// virtual work: the change of elastic energy when only these nodes move. `contact_force`: by node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
     motion.assign(nodes.position.size(), Vec3::Zero());
     std::vector<std::uint8_t> taken(nodes.position.size(), 0);
-    // In reverse order of attachments, as in measure_reactions.
+    // Attachments are visited in reverse order, as in measure_reactions: a node counts for the last attachment that
+    // holds it.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Index body = model.attachments.body[a];
         if (model.attachments.slot[a] == no_slot || !rests(model, body)) continue;
@@ -200,8 +203,9 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// Ends the step of a pair. While both bodies rest, the mean sums of their still time go on. Otherwise these are
-/// updated.
+/// Ends the step of a pair. If both bodies were asleep and had no contact in this step, their mean forces since they
+/// became still are added to the call. If one was awake, the time since both became still is updated; the sums restart
+/// when one of them moves.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -280,10 +284,12 @@ void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> res
 }
 
 void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scratch) {
-    // In reverse order of attachments, as in measure_reactions.
+    // Attachments are visited in reverse order, as in measure_reactions: a node counts for the last attachment that
+    // holds it.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;  // has momenta of its own
+        // The momentum of a rigid body is not in its nodes.
+        if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);
             const Vec3 impulse = model.nodes.mass[n] * (model.nodes.velocity[n] - scratch.forces.held_velocity[n]);

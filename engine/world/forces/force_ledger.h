@@ -1,5 +1,5 @@
-// Sums of contact and attachment forces over a call of advance, while a user has requested them. No step depends on
-// them.
+// Sums of contact and attachment forces over one call of advance. They are measured only while a user requests them,
+// and no step depends on them.
 #pragma once
 
 #include <compare>
@@ -18,9 +18,10 @@ struct Model;
 struct StepScratch;
 struct ForceReport;
 
-/// Names partners by slot, as handles do, so that rows may come and go. Pairs with a collider come first.
+/// Key of a pair. It names both partners by slot, as handles do, so that it stays valid when table rows move. Pairs
+/// with a collider are sorted first.
 struct PairKey {
-    bool bodies = false;                  // the second is a body, not a collider
+    bool bodies = false;                  // the second partner is a body, not a collider
     std::uint32_t first = 0, second = 0;  // slots
 
     auto operator<=>(const PairKey&) const = default;
@@ -28,29 +29,30 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Largest force and contact counts of the steps of a call, and the sums of the present step.
+    /// Largest force and contact counts of one object or pair over the steps of a call, and its sums over the present
+    /// step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
-        // sums of the present step
+        // Sums over the present step. end_step sets them to zero.
         Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
         void add(const Vec3& more, Index of_contacts) {
             impulse += more;
             step_contacts += of_contacts;
         }
-        /// `kick`: time for which loads act in the step [s].
+        /// Ends a step. `kick`: time for which forces act in the step [s].
         void end_step(Real kick);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
         PairKey key{};
         ContactSums sums{};   // sums over the call
-        ContactSums still{};  // sums since one of the two last moved
+        ContactSums still{};  // sums since one of the two objects last moved
         Real still_seconds = 0;
-        Index still_contacts = 0;  // contacts of the last step in which one of the two was awake
+        Index still_contacts = 0;  // contacts in the last step in which one of the two objects was awake
         Peak peak{};
-        bool touched = false;  // in the present step
+        bool touched = false;  // the pair had contacts in the present step
     };
     struct AttachmentRow {
         ImpulseAndMoment sums, still;
@@ -60,22 +62,23 @@ public:
 
     bool on() const { return on_; }
     const Vec3& moment_point() const { return moment_point_; }
-    /// Time for which forces have acted in the call on the body in `row` of BodyTable [s]; no_index: on anything that
+    /// Time for which forces have acted on a body in this call [s]. `row`: row of BodyTable; no_index for anything that
     /// is not an implicit body.
     Real seconds_on(const Model& model, Index row) const;
-    /// Time for which forces have acted in the call on a pair [s]. The implicit interval counts only if all its bodies
-    /// are implicit.
+    /// Time for which forces have acted between the objects of a pair in this call [s]. It is the time for implicit
+    /// bodies only if all bodies of the pair are implicit.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
-    /// Starts measuring. Supports of bodies already at rest count with the forces of the time when they came to rest.
+    /// Starts measuring. Sleeping bodies get the contact and attachment forces of the last step before they fell
+    /// asleep.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
-    /// To be called before the first step of a call, or after a call that took no step. Stores the velocity of held
-    /// nodes.
+    /// Must be called before the first step of a call, and again after a call that took no step. Stores the velocities
+    /// of held nodes.
     void begin_call(const Model& model, StepScratch& scratch);
-    /// To be called after a committed step. `rested`: by body, whether it was at rest when the step began.
+    /// Must be called after a committed step. `rested`: by body, nonzero if it was asleep when the step began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// To be called after leapfrog has let positions drift by `seconds`, with new velocities of held nodes.
+    /// Must be called after leapfrog has drifted positions by `seconds`, when held nodes have their new velocities.
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);
@@ -98,7 +101,7 @@ private:
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]
-    // intervals in which forces acted on implicit bodies (`whole`) and on others (`kick`) [s]
+    // Time for which forces acted on implicit bodies (`whole`) and on all other objects (`kick`) [s].
     struct Seconds {
         Real whole = 0, kick = 0;
     };

@@ -1,4 +1,4 @@
-// Rays and nearest points: searches for the nearest hit on all surfaces.
+// Ray casts and nearest points: searches of all surfaces for the nearest hit.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ bool has(const std::vector<T>& list, const T& item) {
     return std::ranges::find(list, item) != list.end();
 }
 
-/// The tree of a body or a mesh collider, fitted to the present positions of its nodes.
+/// The bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes.
 SurfaceTree tree_of(WorldState& world, std::size_t body) {
     const Model& model = world.model;
     QueryTrees& trees = world.query_trees;
@@ -48,8 +48,9 @@ SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t bo
     return hit;
 }
 
-/// Visits all surfaces that the filter admits: bodies first, each kind in the order added. `of_tree` and `of_shape`
-/// return a hit within a limit, which shrinks to the best hit so far.
+/// Returns the nearest hit on all surfaces that the filter admits. Bodies are searched before colliders, both in the
+/// order in which they were added. The functions of_tree and of_shape return the nearest hit within a limit. The limit
+/// shrinks to the distance of the best hit so far.
 std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter, Real limit, auto&& of_tree,
                                    auto&& of_shape) {
     world.settle();

@@ -15,7 +15,7 @@ void expect_ascending(const Hdf5File& file, const std::string& path, const auto&
         file.complain(path, "keys in disorder", "ascending keys");
 }
 
-/// A step treats smaller numbers as zero.
+/// Checks that a step length is positive. Denormal numbers are refused too, since a step treats them as zero.
 void expect_step(const Hdf5File& file, const std::string& path, Real step) {
     if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
 }
@@ -60,7 +60,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
             file.complain("/pairs/second", at_row(second, p), "the same body");
     }
 
-    // either no rows, which starts a search, or one for each
+    // A search column may be empty, which starts a new search. Otherwise it must have one row per object.
     const SearchState& search = cache.search;
     const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
         if (found != 0) expect_size(file, path, found, expected);
@@ -77,7 +77,7 @@ bool inside(Index row, Range range) {
     return row >= range.begin && row < range.end;
 }
 
-/// Whether a candidate is a feature of body a with a part or a point of a collider.
+/// True if a candidate joins a feature of body `a` with a part or a point of a collider.
 bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
     const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
     if (is_edge_edge(candidate.feature))

@@ -34,7 +34,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
-/// Checks that each row has a handle, and each live handle a row.
+/// Checks that each row has a handle, and that each live handle has a row.
 template <class Handle>
 void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {
@@ -125,7 +125,7 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// Checks the rows of the tables in which bodies have ranges.
+/// Checks the tables in which each body has a range of rows.
 void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     const NodeBlockTable& blocks = model.node_blocks;
     const ElementBlockTable& elements = model.elements;
@@ -233,7 +233,7 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// Columns may be empty: then no stable step has been evaluated yet.
+/// Checks the data of the stable step evaluation. Empty columns mean that no stable step has been evaluated yet.
 void check_watch(const Hdf5File& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();
@@ -245,7 +245,7 @@ void check_watch(const Hdf5File& file, const Model& model) {
     expect_between(file, "/watch/progress/body", std::array{watch.body}, 0, watch.kept);
 }
 
-/// Also computes the columns that follow from the lists of nodes.
+/// Checks the clusters, and computes the columns that follow from their lists of nodes.
 void check_clusters(const Hdf5File& file, Model& model) {
     NodeClusters& clusters = model.clusters;
     const std::size_t count = clusters.body.size();
@@ -302,7 +302,7 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     }
 }
 
-/// Checks the bodies that the rows of a table join.
+/// Checks that the rows of a joining table name existing bodies.
 void check_joined_bodies(const Hdf5File& file, const Model& model, const char* name, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;

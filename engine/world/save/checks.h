@@ -1,5 +1,5 @@
-// Checks that the data of a file fit together: every row that is named exists, every range lies in its table. Errors
-// name the file and the data set.
+// Checks that the data of a saved world fit together: every named row exists, and every range lies within its table.
+// Errors name the file and the data set.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,29 @@
 
 namespace skerry {
 
-/// Checks sizes, links, ranges and handles of the model, before anything is derived from the tables.
+/// Checks sizes, links, ranges and handles of the model. Must be called before anything is derived from the tables.
 void check_model(const Hdf5File& file, Model& model);
-/// Checks pairs, warm start and search data, once surfaces have been built.
+/// Checks pairs, warm start and search data. Surfaces must have been built.
 void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache);
 void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs);
-/// Checks contacts of the last step.
+/// Checks the contacts of the last step.
 void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts);
 void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting);
-/// `kick`: that of the last step [s].
+/// Checks the clock. `kick`: time for which forces acted in the last step [s].
 void check_clock(const Hdf5File& file, const Clock& clock, Real kick);
 
-/// "5 at row 7"
+/// Returns text for messages, such as "5 at row 7".
 std::string at_row(const std::string& found, std::size_t row);
 std::string at_row(Index found, std::size_t row);
 
-/// Checks that a column is as long as its table.
+/// Checks that a column has the expected number of rows.
 void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected);
 
-/// Checks that all saved columns of a table have `rows` rows, and resizes those that are not saved. Lists in which rows
-/// have ranges may have any length.
+/// Checks that all saved columns of a table have `rows` rows, and gives the unsaved columns this size. Columns with
+/// lists, in which rows have ranges, may have any size.
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
 
-/// Every entry must be a row of a table with `count` rows. `none`: or no_index.
+/// Checks that every entry is a row number of a table with `count` rows. `none`: no_index is allowed too.
 void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none = false);
 
@@ -46,7 +46,7 @@ void expect_between(const Hdf5File& file, std::string_view path, std::span<const
 void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
                     std::uint8_t least, std::uint8_t most);
 
-/// Ranges must follow each other and cover all of `count` rows.
+/// Checks that the ranges follow each other and together cover `count` rows.
 void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
 inline std::span<const Index> part(std::span<const Index> rows, Range range) {

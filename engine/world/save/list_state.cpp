@@ -8,7 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// The columns of a table that are saved, each at `path` and its name; all but the column `left_out`.
+/// Lists the saved columns of a table, except for the column at the address `left_out`. The path of a column is `path`
+/// and its name.
 void list_table(const std::string& path, AnyTable table, Archive& archive, const void* left_out = nullptr) {
     for (const ColumnInfo& info : table.columns()) {
         if (!is_saved(info.role) || table.column(info).is(left_out)) continue;
@@ -60,16 +61,15 @@ void list_watch(StepWatch& watch, Archive& archive) {
 
 void list_model(Model& model, Archive& archive) {
     for (const AnyTable& table : model.tables()) {
-        const void* const of_meshes = &model.nodes.rest_position;  // each mesh is saved once, in its own frame
+        const void* const of_meshes = &model.nodes.rest_position;  // saved once per mesh, in the mesh frame
         list_table(std::string("/") + table.name() + "/", table, archive, of_meshes);
     }
     list_handles("/handles/materials", model.material_map, archive);
     list_handles("/handles/bodies", model.body_map, archive);
     list_handles("/handles/colliders", model.collider_map, archive);
     list_handles("/handles/attachments", model.attachment_map, archive);
-    model.for_each_joining([&](const char* name, auto&, auto& map) {
-        list_handles(std::string("/handles/") + name, map, archive);
-    });
+    model.for_each_joining(
+        [&](const char* name, auto&, auto& map) { list_handles(std::string("/handles/") + name, map, archive); });
     list_ragged("/clusters/nodes", model.clusters.nodes, archive);
     archive.column("/clusters/body", model.clusters.body);
     archive.column("/clusters/inverse", model.clusters.inverse);
@@ -119,7 +119,7 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     list_ragged("/run/start/moved_name", start.moved_name, archive);
     archive.column("/run/start/translation", start.translation);
     archive.value("/last_step/kick", world.scratch.parameters.kick);
-    const AnyTable contacts(saved.contacts);  // scratch data; those of the last step are kept for queries
+    const AnyTable contacts(saved.contacts);  // scratch data, but queries can read the contacts of the last step
     for (const ColumnInfo& info : contacts.columns())
         archive.column(std::string("/last_step/contacts/") + info.name, contacts.column(info));
 }

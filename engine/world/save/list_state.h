@@ -1,4 +1,4 @@
-// The only list of the contents of a saved world, used by the code that writes files and by the code that reads them.
+// The only list of the contents of a saved world. The code that writes files and the code that reads them both use it.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Writes or reads columns and values under their paths.
+/// Interface that writes or reads columns and values at paths in a file.
 class Archive {
 public:
     virtual void column(const std::string& path, AnyColumn column) = 0;
@@ -26,7 +26,7 @@ private:
 };
 
 void list_settings(Settings& settings, Tuning& tuning, SavedRows& saved, Archive& archive);
-/// Lists everything but the settings, which are needed to make a world.
+/// Lists all data except the settings. A world must be made from its settings before the other data are read.
 void list_state(WorldState& world, SavedRows& saved, Archive& archive);
 
 }  // namespace skerry

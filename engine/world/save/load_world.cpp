@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-/// Columns with numbers that may be infinite: bounds without a value, and unused lanes.
+/// True for columns that may contain infinite numbers, in bounds without a value or in unused lanes.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 18> paths{"/watch/step",
                                                      "/watch/look/in_frame",
@@ -43,7 +43,7 @@ bool may_be_infinite(std::string_view path) {
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 
-/// The archive that reads.
+/// The archive that reads from a file.
 class Reader final : public Archive {
 public:
     explicit Reader(const Hdf5File& file) : file_(file) {}
@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    using Place = FunctionRef<std::byte*(std::size_t)>;  // returns memory for that many rows
+    using Place = FunctionRef<std::byte*(std::size_t)>;  // returns memory for a number of rows
 
     void put_value(const std::string& path, void* value, const RowType& type) override {
         read(path, type, [&](std::size_t count) {
@@ -81,7 +81,7 @@ private:
         });
         check(path, type, rows, count);
     }
-    /// Reads members one by one. The first one allocates all rows.
+    /// Reads the members of rows one by one. The first member allocates all rows.
     void read_members(const std::string& path, const RowType& type, Place place) const {
         std::byte* rows = nullptr;
         std::size_t count = 0;
@@ -135,7 +135,7 @@ private:
     const Hdf5File& file_;
 };
 
-/// Makes a world with the settings of the saved one, except for the backend and the number of threads.
+/// Makes a world with the saved settings. The caller may replace the backend and the number of threads.
 World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
     Tuning tuning;
@@ -154,13 +154,14 @@ World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader,
     return tuned_world(settings, tuning);
 }
 
-/// Derives all data that are not saved from the saved ones.
+/// Checks the saved data, and computes all other data of the world from them.
 void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
-    // material laws without a frame leave both columns unchanged, and the step swaps them
+    // Material laws without a rotated frame write neither rotation nor rotation_next. The step swaps these two columns,
+    // so they must be equal.
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
@@ -169,7 +170,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);
-    world.cache.search.memory.sphere.resize(model.bodies.slot.size());  // memory that a broad search would allocate
+    world.cache.search.memory.sphere.resize(model.bodies.slot.size());  // otherwise allocated only by a broad search
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);
     world.scratch.contacts = saved.contacts;

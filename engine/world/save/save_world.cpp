@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-/// The archive that writes.
+/// The archive that writes to a file.
 class Writer final : public Archive {
 public:
     explicit Writer(Hdf5Image& image) : image_(image) {}

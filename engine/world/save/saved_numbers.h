@@ -1,4 +1,4 @@
-// Values of a world outside its tables, by the names of their members in a file.
+// Values of a world that are in no table, with their names in a file.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace skerry {
 
-/// All members but the columns, the look, and data found anew before each step.
+/// All members except the columns, the member `look`, and data found again before each step.
 template <>
 struct MembersOf<StepWatch> {
     static auto list() {
@@ -93,7 +93,7 @@ struct MembersOf<RunCounters> {
     }
     static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "a member is not saved");
 };
-/// All members but step_size, which may be absent.
+/// All members except step_size, which may have no value.
 template <>
 struct MembersOf<Settings> {
     static auto list() {

@@ -28,7 +28,7 @@ std::string text_of(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 
-/// All data that must be equal for two meshes to be stored once.
+/// All data of a mesh. Two meshes are stored as one only if all these data are equal.
 struct MeshParts {
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
@@ -102,7 +102,7 @@ struct SizeOf {
 
 static_assert(std::variant_size_v<Shape> == static_cast<std::size_t>(ColliderShape::mesh) + 1);
 
-/// `mesh`: used for a mesh collider.
+/// Makes a shape from its saved members `s`. `mesh`: used only for a mesh collider.
 Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMesh& mesh) {
     switch (kind) {
         case ColliderShape::plane:
@@ -141,7 +141,7 @@ void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T
                       "where each row begins, and the end");
 }
 
-/// Checks that the mesh could be added to a world.
+/// Checks that a saved mesh could be added to a world.
 void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) {
     const std::string path = "/meshes/nodes";
     const MeshParts parts = parts_of(meshes, m);
@@ -170,7 +170,7 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
     }
 }
 
-/// Checks the tetrahedra that the elements at all places of a body cover.
+/// Checks the lists of tetrahedra that the elements of a body cover.
 void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const Hdf5File& file) {
     const std::span<const Index> offset = parts.covered_offset;
     if (offset.size() != places + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
@@ -183,7 +183,7 @@ void check_cover(const MeshParts& parts, std::size_t places, const std::string& 
                           "one of its " + std::to_string(parts.tetrahedra.size()));
 }
 
-/// A null handle belongs to no world.
+/// Makes a handle from its saved parts. A null handle has no world number.
 template <class HandleType>
 HandleType handle_of(std::uint32_t slot, std::uint32_t generation, std::uint32_t world) {
     return slot == HandleType{}.slot ? HandleType{} : HandleType{slot, generation, world};
@@ -249,7 +249,7 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.limit_tries.push_back(entry.tries);
         saved.limit_seconds.push_back(entry.seconds);
     }
-    // contacts of a refused step may not be finite, and nobody sees them
+    // After a refused step the contacts may not be finite, and users cannot see them.
     if (world.scratch.findings.verdict.fault == StepFault::none) saved.contacts = world.scratch.contacts;
     return saved;
 }

@@ -1,5 +1,4 @@
-// Data that a file stores in another form than the world does: converted before the world is saved, and back after it
-// is read.
+// Data that have another form in a file than in a world. They are converted before saving and after reading.
 #pragma once
 
 #include <string>
@@ -14,7 +13,7 @@ namespace skerry {
 struct SavedMeshes {
     Column<Index> of_body;
     Ragged<Vec3> nodes;                       // rest positions [m]
-    Ragged<std::array<Index, 4>> tetrahedra;  // nodes of the mesh
+    Ragged<std::array<Index, 4>> tetrahedra;  // node numbers within the mesh
     Ragged<std::array<Index, 3>> surface;
     // parts of BodyRecord::element_tetrahedra
     Ragged<Index> covered_offset, covered_item;
@@ -22,9 +21,9 @@ struct SavedMeshes {
 
 /// Overlaps found before the first step. Handles are stored as slot and generation.
 struct SavedStart {
-    Column<std::array<std::uint32_t, 6>> overlap;  // the two bodies, the collider
+    Column<std::array<std::uint32_t, 6>> overlap;  // slot and generation of both bodies and the collider
     Column<OverlapKind> kind;
-    Column<std::array<Real, 7>> measure;  // depth, direction, place [m]
+    Column<std::array<Real, 7>> measure;  // depth [m], direction (unit vector), place [m]
     Column<std::uint8_t> resolved;
     Ragged<std::uint8_t> first_name, second_name, moved_name;
     Column<std::array<std::uint32_t, 2>> moved;
@@ -32,17 +31,17 @@ struct SavedStart {
 };
 
 struct SavedRows {
-    Real step_size = 0;  // Settings::step_size; 0: none [s]
+    Real step_size = 0;  // Settings::step_size; 0: no value [s]
     SavedMeshes meshes;
-    std::uint32_t world = 0;  // number of the world in its handles
+    std::uint32_t world = 0;  // world number in the handles of this world
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
     Column<DynamicsReason> choice_reason;           // reason of BodyRecord::choice
-    Column<std::array<Real, 7>> choice_estimate;    // other members of BodyRecord::choice in their order
+    Column<std::array<Real, 7>> choice_estimate;    // other members of BodyRecord::choice, in their order
     Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // alternative of Shape
-    Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros [m]
+    Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros
     Ragged<Candidate> candidates;                   // by pair
     Column<Real> asleep_until;                      // by candidate [m]
     Column<StepLimit> limit;
@@ -51,15 +50,16 @@ struct SavedRows {
     Column<std::uint64_t> limit_steps, limit_tries;
     Column<Real> limit_seconds;
     SavedStart start;
-    ContactTable contacts;  // those of the last step; empty if it was refused
+    ContactTable contacts;  // contacts of the last step; empty if the step was refused
 };
 
 SavedRows rows_to_save(const WorldState& world);
 
-// The functions below throw SceneError that names `file` if data do not fit the columns of the world or each other.
-/// Restores meshes and names of bodies and colliders. Their ranges in the tables must have been checked.
+// The functions below throw SceneError with the name of `file` if saved data do not fit each other or the columns of
+// the world.
+/// Restores meshes and names of bodies and colliders. The ranges of the bodies must have been checked.
 void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
-/// Restores candidates of pairs. Surfaces must have been built.
+/// Restores the contact candidates of pairs. Surfaces must have been built.
 void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
 void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
 void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);

@@ -1,4 +1,4 @@
-// Files that hold a whole world (docs/save_restore.md): a head of text followed by an HDF5 file.
+// Files that hold a whole world (docs/save_restore.md): a text that identifies the file, followed by an HDF5 part.
 #pragma once
 
 #include <filesystem>
@@ -8,20 +8,20 @@
 
 namespace skerry {
 
-/// Data that a file holds besides the world: a text of the caller.
+/// Data in a file besides the world: a text of the caller.
 struct SavedNote {
     std::string text;
 };
 
-/// Does all that World::save does. The world does not change.
+/// Does the work of World::save. The world does not change.
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file);
 
 struct LoadedWorld {
     World world;
     SavedNote note;
 };
-/// Reads a file as World::load does. `compare_hash`: refuse a world whose hash differs from the saved one. Without it
-/// any values that fit together are accepted, for tests of the code that reads them.
+/// Reads a file as World::load does. `compare_hash`: refuse a world whose hash differs from the saved hash. Tests of
+/// the reading code pass false, so that all consistent values are accepted.
 LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings, bool compare_hash = true);
 
 }  // namespace skerry

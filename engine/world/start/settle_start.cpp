@@ -1,4 +1,5 @@
-// Finds overlaps before the first step after something was added; they are resolved, refused or left.
+// Finds overlaps before the first step after objects were added. The overlaps are resolved, refused or left, as the
+// settings say.
 #include <algorithm>
 #include <map>
 
@@ -33,7 +34,8 @@ StartOverlap report_of(const Model& model, const PairOverlap& found) {
     return report;
 }
 
-/// Moves bodies apart in rounds. Each round searches for overlaps and then satisfies all gaps found so far at once.
+/// Moves overlapping bodies apart in rounds. Each round moves bodies until all gaps required so far are open, and then
+/// searches for overlaps again.
 class MoveApart {
 public:
     MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
@@ -60,7 +62,8 @@ public:
     }
 
 private:
-    /// A required gap: least shift of the first body of a pair minus that of the second, along a direction.
+    /// A gap required between the bodies of a pair. `least`: least shift of the first body relative to the second,
+    /// along `direction`.
     struct Gap {
         Vec3 direction;  // unit vector
         Real least;      // [m]
@@ -70,7 +73,8 @@ private:
         refuse_overlap(report_of(model_, found), others_, why);
     }
 
-    /// Inverse mass; 0 for immovable partners: held bodies, bodies that have made a step, mesh colliders [1/kg].
+    /// Inverse mass of a body [1/kg]. It is 0 for bodies that must not move: held bodies, bodies that have made a step,
+    /// and mesh colliders.
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
         const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.bodies.pinned_count[b] > 0 ||
@@ -79,8 +83,8 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Greatest depth at which the way out is certain. If a body is half through, the shorter way out is a matter of
-    /// chance.
+    /// Greatest depth of an overlap for which the way out is certain [m]. If one body is half through the other, the
+    /// shorter way out depends on chance.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
         if (!pair.is_analytic && search_.has_inside(pair.second))
@@ -117,7 +121,8 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// Adds a required gap. In a corner a pair has several; a new one replaces those of nearly the same direction.
+    /// Adds a required gap to a pair. A pair in a corner has several gaps; a new gap replaces gaps of nearly the same
+    /// direction.
     void ask_for(const PairOverlap& found) {
         constexpr Real about_the_same = 0.9;  // cosine
         const Vec3& direction = found.overlap.direction;
@@ -127,11 +132,11 @@ private:
         gaps.push_back(gap);
     }
 
-    /// Sweeps over the pairs until none has to move by more than a fraction of its margin. The common centre of mass of
-    /// a pair stays in place.
+    /// Moves pairs of bodies in sweeps, until no gap is short by more than a fraction of its margin. The common centre
+    /// of mass of a moved pair stays in place.
     void satisfy() {
         constexpr int most_sweeps = 1000;
-        constexpr Real slack = 0.1;  // fraction of the margin
+        constexpr Real slack = 0.1;  // allowed shortfall of a gap, as a fraction of the margin
         bool moving = true;
         for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
             moving = false;
@@ -150,7 +155,7 @@ private:
     const Model& model_;
     StartSearch& search_;
     std::map<StartPair, std::vector<Gap>> gaps_;  // sorted by rows
-    std::size_t others_ = 0;                      // overlaps besides the reported one
+    std::size_t others_ = 0;                      // number of overlaps besides the reported one
 };
 
 std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {

@@ -1,4 +1,4 @@
-// Messages about overlaps at the start, and their refusal.
+// Messages about overlaps at the start, and the error that refuses an overlap.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,8 @@
 
 namespace skerry {
 
-/// Throws SceneError. It names the partners of an overlap, the number of other overlaps, and the reason `why` it stays.
+/// Throws SceneError. The message names the partners of the overlap, the number of other overlaps, and the reason `why`
+/// this overlap is not resolved.
 [[noreturn]] void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::string& why);
 
 }  // namespace skerry

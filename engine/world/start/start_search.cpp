@@ -14,10 +14,11 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the mean edge. A larger contact distance measures neither touch nor the distance to move bodies apart.
+// Largest margin between bodies, as a fraction of the mean edge length. A larger contact distance is no measure of
+// touch, nor of the distance to move bodies apart.
 constexpr Real largest_margin = 0.02;
 
-/// Whether a box reaches behind a plane.
+/// True if a part of the box lies behind the plane.
 bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
@@ -92,7 +93,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
-    // a smaller depth counts as touch in a step, too
+    // A step also treats an overlap of so small a depth as touch.
     if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
     return overlap;
 }
@@ -111,7 +112,8 @@ std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
         second->motion.position += shift(pair.second);
         return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // a round body and one with faces: uses the faces that draw the round one; smaller overlaps are left to the steps
+    // A round body and a body with faces: the search uses the triangles that draw the round body. Smaller overlaps are
+    // left to the steps.
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }

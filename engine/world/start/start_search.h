@@ -1,4 +1,4 @@
-// Search for overlaps before anything moves (docs/decisions/0017-start-overlaps.md).
+// Search for overlaps before the first step (docs/decisions/0017-start-overlaps.md).
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace skerry {
 
-/// A body with another body, with the body of a mesh collider, or with an analytic collider.
+/// A pair to search: a body, and a second body, the body of a mesh collider or an analytic collider.
 struct StartPair {
-    Index first;       // row of BodyTable, deformable
-    Index second;      // row of BodyTable, or of ColliderTable
+    Index first;       // row of BodyTable with the kind `deformable`
+    Index second;      // row of BodyTable; for an analytic collider, row of ColliderTable
     bool is_analytic;  // `second` is a row of ColliderTable
 
     auto operator<=>(const StartPair&) const = default;
@@ -25,26 +25,30 @@ struct PairOverlap {
     Overlap overlap;
 };
 
-/// Searches a world in its present state, with bodies shifted by `move`; the world stays as it is.
+/// Finds overlaps in the present state of a world, with bodies shifted by move(). The world itself does not change.
 class StartSearch {
 public:
-    /// Colliders are at the poses that their motion gives for `now` [s].
+    /// `now`: present time, for which scripts give the poses of colliders [s].
     StartSearch(const Model& model, Real now);
 
-    /// All overlapping pairs with at least one partner that is not settled, in the order of their rows.
+    /// Finds all overlapping pairs, sorted by their rows. Pairs of two settled objects, which were checked before, are
+    /// left out.
     std::vector<PairOverlap> find_all();
-    /// Pairs whose boxes overlap, with a partner that is not settled and one that is marked (by row of BodyTable).
+    /// Finds pairs whose bounding boxes overlap. At least one object of a pair is marked, and at least one is not
+    /// settled (was not checked before). `marked`: by row of BodyTable.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> look_at(const StartPair& pair);
 
     void move(Index body, const Vec3& by) { shift_[static_cast<std::size_t>(body)] += by; }
     std::span<const Vec3> shifts() const { return shift_; }
     const Vec3& shift(Index body) const { return shift_[static_cast<std::size_t>(body)]; }
-    /// Extent of the box of a body [m].
+    /// Edge lengths of the bounding box of a body [m].
     Vec3 extent(Index body) const;
-    /// Gap left between two bodies that are moved apart: their contact distance, unless that is disproportionate [m].
+    /// Gap that remains between the two objects of a pair that is moved apart: their contact distance, but at most a
+    /// fraction of the mean edge length [m].
     Real margin(const StartPair& pair) const;
-    /// Whether it has a closed surface or tetrahedra. A body pushed half through it may come out on the other side.
+    /// True if a body has a closed surface or tetrahedra. Another body pushed half through it may come out on the wrong
+    /// side.
     bool has_inside(Index body) { return solid(body).closed; }
 
 private:
@@ -53,9 +57,9 @@ private:
     bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
-    /// Depth below which an overlap cannot be told from contact [m].
+    /// Depth below which an overlap cannot be distinguished from contact, because of rounding [m].
     Real rounding(const StartPair& pair) const;
-    /// The body at its shifted place if it is a sphere or capsule.
+    /// The shape of a sphere or capsule at its shifted position; nullopt for all other bodies.
     std::optional<RoundSolid> round(Index body) const;
     std::optional<Overlap> look_at_bodies(const StartPair& pair);
     std::optional<Overlap> look_at_collider(const StartPair& pair);
@@ -63,9 +67,9 @@ private:
 
     const Model& model_;
     std::vector<RigidMotion> collider_;  // their poses
-    std::vector<Aabb> box_;              // of bodies, before their shifts
+    std::vector<Aabb> box_;              // bounding boxes of bodies before their shifts [m]
     std::vector<Vec3> shift_;
-    std::vector<std::unique_ptr<Solid>> solid_;  // of bodies that were checked so far
+    std::vector<std::unique_ptr<Solid>> solid_;  // by body; null until the body is searched
 };
 
 }  // namespace skerry

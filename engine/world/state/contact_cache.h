@@ -1,4 +1,4 @@
-// Contact data that outlive a step: impulses for the warm start, contacts of resting bodies, close pairs and their
+// Contact data that outlive a step: warm-start impulses, contacts of sleeping bodies, close pairs and their contact
 // candidates.
 #pragma once
 
@@ -16,11 +16,11 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Forgets all known distances of a body that was moved by hand (to others and within itself), or of a collider.
-    /// All its pairs are found and searched again in the next step, and no others.
+    /// Deletes the known distances of a body that was moved between steps, or of a collider. The distances within the
+    /// body are deleted too. The next step searches all pairs of this object again, and no other pairs.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
-    /// Adds rows for new bodies and colliders, about which nothing is known.
+    /// Adds rows for new bodies and colliders. Their distances are unknown.
     void extend(const Model& model);
 };
 

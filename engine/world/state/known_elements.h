@@ -1,5 +1,5 @@
-// Data shared by the explicit elements of all bodies with one mesh and material: those that are slower to find than to
-// copy.
+// Results for the explicit elements of a body that later bodies with the same mesh and materials copy, since copying is
+// faster than computing them.
 #pragma once
 
 #include "components/column.h"
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// Order of the elements of a body, their mass shares and relaxation, and their stable step in the shape of the mesh.
-/// All of it is a function of mesh, materials and `element` alone. Kept from the time the body is added until the world
-/// is settled or rows of bodies move.
+/// Order, mass shares and relaxation of the elements of a body, and the stable step of its mesh. These data depend only
+/// on mesh, materials and element kind. They are stored from the time the body is added until the world is settled or
+/// body rows move.
 struct KnownElements {
-    Index body;           // row of the body that has the mesh and the materials
-    ElementKind element;  // the kind that was requested
+    Index body;           // row of the body with this mesh and these materials
+    ElementKind element;  // the kind requested by the user
 
     ElementPlaces places;
     Column<ElementLane> mass_share, relaxation_rate, own_frequency;
@@ -24,7 +24,7 @@ struct KnownElements {
     Column<Real> frame_bound, relaxing_share;
     Real rest_step;  // stable step at rest [s]
 
-    /// Calls `visit` with each known column and its column of the model.
+    /// Calls visit(stored column, column of the model) for each stored column.
     static void for_each_column(auto& known, auto& elements, auto&& visit) {
         visit(known.mass_share, elements.mass_share);
         visit(known.relaxation_rate, elements.relaxation_rate);

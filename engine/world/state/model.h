@@ -1,4 +1,4 @@
-// The simulated objects in their present state: bodies, colliders, attachments, materials and gravity.
+// The simulated objects in their present state: bodies, colliders, attachments, joints and materials.
 #pragma once
 
 #include <array>
@@ -38,27 +38,28 @@
 
 namespace skerry {
 
-/// Slot of an attachment that belongs to a mesh collider: users have no handle to it.
+/// Slot of the attachment of a mesh collider. Users have no handle to this attachment.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
-/// Data of a body that only users and files read.
+/// Data of a body for users and files.
 struct BodyRecord {
     std::string name;
-    ElementKind element;  // never `smoothed`, but one of the two kinds that it stands for
-    ElementKind asked;    // the kind requested by the user; used again where the dynamics change
+    ElementKind element;  // the resolved kind, never `smoothed`
+    ElementKind asked;    // the kind requested by the user; used again when the dynamics change
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
-    std::vector<Index> tetrahedron_material;       // rows of MaterialTable; empty: the material of the body
-    // the tetrahedra covered by the element at each place of its blocks; none in an unused lane
+    // Row of MaterialTable by tetrahedron; empty: the material of the body.
+    std::vector<Index> tetrahedron_material;
+    // Tetrahedra covered by the element at each place of the element blocks of the body; none in an unused lane.
     Ragged<Index> element_tetrahedra;
-    bool settled = false;       // it was checked for overlaps
-    DynamicsEstimate choice{};  // estimate of BodyDynamics::automatic
+    bool settled = false;       // the body was checked for overlaps
+    DynamicsEstimate choice{};  // estimate made for BodyDynamics::automatic
 };
 
 struct ColliderRecord {
     std::string name;
     Shape shape;
-    bool settled = false;  // it was checked for overlaps
+    bool settled = false;  // the collider was checked for overlaps
 };
 
 struct Model {
@@ -71,7 +72,8 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     ElementPatches patches;  // derived: extend_derived
-    // Clusters of the implicit elements. State: matrices of elements that have stiffened were updated, not made anew.
+    // Clusters of the implicit elements. They are state, not derived data: their matrices are updated when elements
+    // stiffen.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
     ImplicitNodeTable implicit_nodes;
@@ -93,19 +95,22 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
-    std::vector<KnownElements> known_elements;     // one for each mesh added since the world was settled
+    std::vector<KnownElements> known_elements;     // one for each different mesh added since the world was settled
 
-    Column<Real> body_mass;  // mass of all nodes of a body, including held ones [kg]; derived: extend_derived
-    // bodies, colliders or settings have changed since the implicit elements were last chosen
+    Column<Real> body_mass;  // by body: mass of all nodes, including held ones [kg]; derived: extend_derived
+    // Bodies, colliders or settings have changed since the implicit elements were last chosen.
     bool clusters_open = true;
-    bool settled = true;      // true if all bodies and colliders are settled
+    bool settled = true;      // all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
     bool forced = false;      // the world has some force element, loads included; derived: note_seams
-    Column<Real> force_rate;  // by body: see ForceElement::add_rate; empty: zero [1/s^2]; derived: note_seams
-    BodyLinks links;          // by rows of the tables of for_each_joining; derived: note_seams
-    bool any_asleep = false;  // some body rests; derived: note_rest. If false, no stage tests for rest
+    // Sum of the bounds of all force elements for each body (ForceElement::add_rate); empty: zero [1/s^2]. Derived:
+    // note_seams.
+    Column<Real> force_rate;
+    BodyLinks links;  // pairs of bodies joined by a row, such as a joint; derived: note_seams
+    // True if a body is asleep. If false, no stage tests for sleeping bodies. Derived: note_rest.
+    bool any_asleep = false;
 
-    /// Sets the world number that its handles carry.
+    /// Sets the world number that is a part of all handles of this world.
     void set_world(std::uint32_t number);
 
     Index row(BodyHandle body, const char* call) const;
@@ -114,30 +119,32 @@ struct Model {
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
 
-    /// All elements, including those that do nothing in the present step.
+    /// All elements, including elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
-    /// The elements of bodies that are neither asleep nor unstrained.
+    /// The elements of all bodies that are neither asleep nor unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
-    /// Number of a tetrahedron in the mesh that the user gave. `place`: its place in the table.
+    /// Number of a tetrahedron in the mesh that the user gave. `place`: place of the tetrahedron in the table, counted
+    /// in lanes.
     Index user_tetrahedron(std::size_t body, Index place) const;
 
-    /// Wakes one body, or all.
+    /// Wakes one body, or all bodies.
     void wake(std::size_t body);
     void wake_all();
-    /// Before a step: notes whether any body is asleep. Returns the mass of all others [kg].
+    /// Must be called before a step: sets any_asleep. Returns the mass of all bodies that are awake [kg].
     Real note_rest();
-    /// After loads of one body were set. `before`: it had loads before.
+    /// Must be called after the loads of a body were set: updates loaded_bodies. `before`: whether the body had loads
+    /// before.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    /// Shape and pose of a round body, in the form of a collider.
+    /// Shape and pose of a round body, in the form used for colliders.
     struct RoundShape {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
     };
-    /// nullopt: the body is not round but has faces.
+    /// Returns nullopt for a body that has faces and is not round.
     std::optional<RoundShape> round_shape(std::size_t body) const;
-    /// "sphere", "capsule" or "cylinder", for a round body.
+    /// Name of the shape of a round body: "sphere", "capsule" or "cylinder".
     const char* round_name(std::size_t body) const;
     bool is_rigid(std::size_t body) const { return dynamics_of(body) == BodyDynamics::rigid; }
     BodyDynamics dynamics_of(std::size_t body) const {
@@ -145,42 +152,45 @@ struct Model {
                : bodies.implicit[body].size() == 0 ? BodyDynamics::rigid
                                                    : BodyDynamics::implicit_elastic;
     }
-    /// Whether it has a row of rigid_bodies: that row holds its momentum, its nodes do not, and it has no elements.
+    /// True for rigid and implicit bodies: they have a row of rigid_bodies, which holds their momentum, and no rows of
+    /// elements.
     bool has_frame(std::size_t body) const { return bodies.rigid[body].size() > 0; }
-    /// Whether an attachment holds a rigid body as a whole.
+    /// True if an attachment holds a rigid body as a whole, or the frame of an implicit body.
     bool is_held(std::size_t body) const {
         return has_frame(body) && rigid_bodies.holder[static_cast<std::size_t>(bodies.rigid[body].begin)] != no_index;
     }
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }
-    /// The elements of an implicit body, which are in no table. Its nodes are numbered from zero.
+    /// The elements of an implicit body, which no table stores. Their node numbers are local to the body.
     ElementList elements_of_implicit(std::size_t body) const;
-    /// Computes stiff_bodies of an implicit body from its record, masses and materials.
+    /// Computes the entry of an implicit body in stiff_bodies from its record, masses and materials.
     void stiffen(std::size_t body);
     /// Computes the derived columns of newly appended rows. Existing rows are unchanged.
     void extend_derived();
-    /// Computes the derived columns of all rows, of loads, and the next velocities of bodies that a step skips.
+    /// Computes the derived columns of all rows, counts the bodies with loads, and sets velocities that a step may
+    /// leave unchanged to zero.
     void derive_all();
-    /// After elements became implicit or explicit: rebuilds the clusters of all bodies, or of those with a mark.
+    /// Rebuilds the clusters of all bodies, or of marked bodies, after elements became implicit or explicit.
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
-    /// Whether a body has exactly this mesh (bitwise).
+    /// True if a body has exactly this mesh (bitwise).
     bool has_mesh(std::size_t body, const RestMesh& mesh) const;
-    /// The last of a few bodies before row `end` that has this mesh, or no_index.
+    /// Searches a few bodies before row `end` for this mesh. Returns the last of them that has it, or no_index.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
-    /// Builds the surface and the tree of one body from its record and its rest shape. The body must be the last with
-    /// rows in these tables. Data of the body just before it with the same mesh are reused.
+    /// Builds the surface and the bounding volume hierarchy of one body from its record and its rest shape. The body
+    /// must be the last one in these tables. If one of the bodies just before it has the same mesh, its data are
+    /// copied.
     void append_outline(std::size_t body);
-    /// Copies surface and tree of a body just before it with the same mesh. Returns false, and does nothing, without
-    /// one.
+    /// Copies surface and hierarchy from a body just before this one with the same mesh. Returns false, and does
+    /// nothing, if there is no such body.
     bool append_outline_again(std::size_t body);
-    /// Rebuilds surfaces and trees of all bodies.
+    /// Rebuilds the surfaces and bounding volume hierarchies of all bodies.
     void rebuild_outlines();
 
-    /// The tables that for_each_table visits.
+    /// All tables that for_each_table visits.
     std::vector<AnyTable> tables();
     void for_each_table(auto&& visit) {
         visit("nodes", nodes);
@@ -200,8 +210,9 @@ struct Model {
         visit("joints", joints);
         visit("disabled_pairs", disabled_pairs);
     }
-    /// Tables whose rows join bodies, each with its handles. They need no code of their own to be saved, checked,
-    /// hashed, renumbered, or erased with a body: the role `body` of a column says which bodies a row joins.
+    /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns with
+    /// the joined bodies. So these tables are saved, checked, hashed, renumbered and erased with a body without code of
+    /// their own.
     void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
 };
 

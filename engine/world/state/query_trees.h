@@ -1,5 +1,5 @@
-// Trees around the present surfaces, for queries between steps. The boxes of BvhTable belong to the step: they are
-// those of the last search of each body.
+// Bounding volume hierarchies around the present surfaces, for queries between steps. BvhTable has other boxes: those
+// of the last contact search of each body.
 #pragma once
 
 #include "components/bvh_table.h"
@@ -8,10 +8,10 @@
 namespace skerry {
 
 struct QueryTrees {
-    Column<Aabb> box;             // by row of BvhTable [m]
-    Column<std::uint8_t> fitted;  // by body, whether its boxes are fitted; empty: none is
+    Column<Aabb> box;             // bounding box for each row of BvhTable [m]
+    Column<std::uint8_t> fitted;  // by body, nonzero if its boxes fit its present surface; empty: no boxes do
 
-    /// To be called after nodes or rows have moved.
+    /// Must be called after nodes or table rows have moved.
     void forget() { fitted.clear(); }
 };
 

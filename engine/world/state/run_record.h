@@ -1,4 +1,4 @@
-// Records of a run about itself. No step depends on any of them.
+// Records of a run for users. No step depends on these records.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// Subscription to contact problems. Without a subscriber it costs one skipped stage.
+/// Subscription to contact problems. Without a subscriber it costs only a skipped stage.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;
     std::uint64_t every = 1;
@@ -24,7 +24,7 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
-    std::vector<StartOverlap> start_overlaps;  // found by the last check
+    std::vector<StartOverlap> start_overlaps;  // found by the last check for overlaps
     std::vector<StartMove> start_moves;
     StepLimits limits;
     Balance balance;
@@ -34,9 +34,9 @@ struct RunRecord {
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // the result of contacts()
-    Column<Index> contact_rows;         // from merge_contacts: the contact behind each entry of the view
+    Column<Index> contact_rows;         // from merge_contacts: row of the contact behind each entry of the view
     bool contact_view_is_current = false;
-    bool balance_of_rest = false;  // the last check of the balance was made since all motion stopped
+    bool balance_of_rest = false;  // the last check of the balance was made after all motion had stopped
 };
 
 }  // namespace skerry

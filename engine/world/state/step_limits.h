@@ -1,4 +1,4 @@
-// Causes that kept the steps of a run from being longer.
+// Causes that limited the length of the steps of a run.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace skerry {
 
-/// Counts by cause and body. A known pair of the two costs no allocation.
+/// Counts of steps and attempts by cause and body. Counting for a known cause and body allocates no memory.
 class StepLimits {
 public:
-    /// Counts a committed step of `h` seconds.
+    /// Counts a committed step of length `h` [s].
     void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
-    /// Counts a try that was given up.
+    /// Counts an attempt at a step that was given up.
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
-    /// Entries sorted by steps, most first.
+    /// All entries, those with the most steps first.
     std::vector<StepLimitReport> report() const;
-    /// Entries in the order in which they were first seen.
+    /// All entries, in the order of their first occurrence.
     const std::vector<StepLimitReport>& entries() const { return entries_; }
     void restore(std::vector<StepLimitReport> entries) { entries_ = std::move(entries); }
 

@@ -1,5 +1,6 @@
-// Data that the stages of one step pass to each other, and their working memory. Nothing here outlives the step, except
-// contacts and regions, readable until the next one, and the data for estimates of the solver's cost.
+// Data that the stages of one step pass to each other, and their working memory. Nothing here outlives the step, with
+// two exceptions: contacts and regions can be read until the next step, and data for estimates of the solver's cost
+// stay.
 #pragma once
 
 #include "components/contact_table.h"
@@ -25,13 +26,14 @@
 
 namespace skerry {
 
-/// Inputs of a step. Written before its stages start; no stage writes them.
+/// Inputs of a step. They are set before its stages start, and no stage writes them.
 struct StepParameters {
-    Real h = 0;     // time by which positions move [s]
-    Real kick = 0;  // time for which forces act: from the velocities before the step to those after it [s]
-    // `kick` over that of the step before, whose relaxed strain the elements still know; 0: they do not
+    Real h = 0;     // step length: time by which positions move [s]
+    Real kick = 0;  // time for which forces act on velocities in this step [s]
+    // `kick` over the kick of the previous step, whose relaxed strain the elements still store; 0: they do not store
+    // it.
     Real kick_over_last = 0;
-    Real longest = 0;             // upper bound of the next step, as far as known [s]
+    Real longest = 0;             // upper bound of the length of the next step, as far as known [s]
     Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
@@ -42,19 +44,20 @@ struct StepParameters {
     LongStepTimes long_step;
     bool takes_long_steps = false;  // implicit bodies may take long steps
     SleepSettings sleep;
-    bool let_invert = false;           // elements may turn inside out in this try
-    bool forces_known = false;         // the previous try of this step, with the same length, left valid forces
-    bool problem_wanted = false;       // the contact problem of this step was requested
-    bool forces_wanted = false;        // forces of contacts and attachments were requested
-    Vec3 moment_point = Vec3::Zero();  // reference point of their moments [m]
-    bool draws_late = false;           // nodes that only draw round bodies are placed on demand
+    bool let_invert = false;  // elements may turn inside out in this attempt at the step
+    // The previous attempt at this step had the same length and left valid forces.
+    bool forces_known = false;
+    bool problem_wanted = false;       // a user requested the contact problem of this step
+    bool forces_wanted = false;        // a user requested forces of contacts and attachments
+    Vec3 moment_point = Vec3::Zero();  // reference point of the requested moments [m]
+    bool draws_late = false;           // nodes that only draw round bodies are updated on demand
 };
 
-/// Results of the stages.
+/// Results of the stages of a step.
 struct StepFindings {
     StepVerdict verdict;
     Inversions inversions;
-    Index crossings = 0;  // features that would pass through each other; if not zero, the step is tried again
+    Index crossings = 0;  // number of features that would cross; if not zero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
@@ -63,43 +66,45 @@ struct StepFindings {
     Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
     Real damped = 0;       // energy dissipated by damping in this step [J]
-    // energy brought in before this try by clusters that follow stiffened elements [J]
+    // Energy added before this attempt, when clusters were updated to stiffened elements [J].
     Real stiffened = 0;
-    StrainFindings strained;  // results of the implicit steps of bodies
+    StrainFindings strained;  // results of the deformation of implicit bodies
 };
 
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
     return inversions.first && !parameters.let_invert;
 }
-/// Whether a step can be committed.
+/// True if a step can be committed.
 inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inversions& inversions,
                          const StepParameters& parameters) {
     return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);
 }
 
-/// State that a step overwrites and that its contact problem consists of.
+/// Copy of the state that defines the contact problem of a step and that the step overwrites.
 struct KeptVelocities {
-    Column<Vec3> velocity;          // at the start of the step [m/s]
-    Column<Vec3> velocity_next;     // predicted [m/s]
-    Column<Vec3> position, center;  // places of nodes and rigid bodies at the start; only if any is rigid [m]
+    Column<Vec3> velocity;       // at the start of the step [m/s]
+    Column<Vec3> velocity_next;  // predicted [m/s]
+    // Positions of nodes and rigid bodies at the start of the step; only if a body has a frame [m].
+    Column<Vec3> position, center;
     Column<Mat3> rotation;          // orientation of rigid bodies at the start of the step
-    Column<Vec3> angular_momentum;  // of rigid bodies at the start of the step [kg m^2/s]
-    Column<Vec3> deforming, deforming_before;  // implicit bodies: after the kick, at the start of the step [m/s]
+    Column<Vec3> angular_momentum;  // angular momentum of rigid bodies at the start of the step [kg m^2/s]
+    // Deformation velocities of implicit bodies: after the kick, and at the start of the step [m/s].
+    Column<Vec3> deforming, deforming_before;
 };
 
 /// Impulses of contacts and attachments in one step.
 struct ForceScratch {
-    Column<PairSums> pairs;              // from sum_contact_impulses
-    Column<Vec3> held_impulse;           // by node, from sum_contact_impulses [N s]
-    Column<Vec3> node_impulse;           // from measure_reactions
-    Column<ImpulseAndMoment> reactions;  // by attachment, from measure_reactions
+    Column<PairSums> pairs;              // result of sum_contact_impulses
+    Column<Vec3> held_impulse;           // by node; result of sum_contact_impulses [N s]
+    Column<Vec3> node_impulse;           // result of measure_reactions
+    Column<ImpulseAndMoment> reactions;  // by attachment; result of measure_reactions
     Column<Vec3> held_velocity;          // by node: velocity of held nodes after the previous step [m/s]
 };
 
-/// Contact solver settings of a world. Their defaults are those of Settings and Tuning.
+/// Contact solver settings of a world, taken from `settings` and `tuning`.
 SolverSettings solver_settings(const Settings& settings, const Tuning& tuning);
 
-/// Parameters that the settings determine for every step.
+/// Step parameters that follow from the settings alone.
 StepParameters step_parameters(const Settings& settings, const Tuning& tuning);
 
 struct StepScratch {
@@ -108,8 +113,8 @@ struct StepScratch {
     ContactTable contacts;
     JointBlockTable joints;
     RegionTable regions;
-    Real awake_mass = 0;      // mass of bodies not asleep at the start of the step [kg]
-    bool ran_inline = false;  // the stages ran on the calling thread alone
+    Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
+    bool ran_inline = false;  // all stages ran on the calling thread
     bool left_out = false;    // no stage ran, since nothing moves
 
     SeparationMemory separation_memory;
@@ -117,13 +122,13 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Real> stiffness_sum;        // by node, used by stable_step
-    Column<std::uint8_t> beside_fast;  // by node, used by check_state
+    Column<Real> stiffness_sum;        // by node; working memory of stable_step
+    Column<std::uint8_t> beside_fast;  // by node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters
     Column<Real> cluster_work;         // used by kick_clusters
     ImplicitCoupling coupling;         // used by couple_implicit_bodies
     Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
-    Column<std::uint8_t> pressed;      // marks by body: sleeping bodies pressed by a contact in this step
+    Column<std::uint8_t> pressed;      // by body, nonzero if it is asleep and a contact presses on it in this step
     Column<ExternalWork> work_parts;   // used by measure_work
     InversionMemory inversions;        // used by find_inversions
     Column<WatchPart> watch_parts;     // used by watch_stable_steps

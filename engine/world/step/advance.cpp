@@ -14,25 +14,26 @@ namespace skerry {
 
 namespace {
 
-/// Number of steps in which the stable step of every body is evaluated once, since it changes with deformation. The
-/// bound that a step relies on is never older than two rounds. With clusters steps are several times longer, and the
-/// explicit elements beside them deform more in each.
+/// Number of steps in a round. In each round the stable step of every body is evaluated once, since it changes with
+/// deformation. The stable step in use is never older than two rounds. With clusters the rounds are shorter: steps are
+/// then several times longer, and explicit elements deform more in each step.
 std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() ? 128u : 64u;
 }
 
-/// Keeps the evaluation of stable steps going. Returns true when the energies are due for a check, too.
+/// Counts a step of the present round. At the end of a round, replaces the stable steps by the newly evaluated ones.
+/// Returns true if the energy balance is due for a check, too.
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
-    world.record.balance.work += follow_stiffening(world.model);  // the stable steps depend on it
+    world.record.balance.work += follow_stiffening(world.model);  // first, since the stable steps depend on it
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
 }
 
-/// Limits of the first step of a call, from the motion at its start.
+/// Limits of the first attempt at a step in a call, from the velocities at its start.
 Tries first_tries(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
@@ -115,7 +116,7 @@ void note_inversions(WorldState& world, StepReport& report) {
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
 }
 
-/// Records that the requested step was too long for a body.
+/// Records in the report that Settings::step_size was too long for a body.
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
@@ -127,7 +128,8 @@ void note_limit(WorldState& world, StepReport& report) {
     report.limited_by = world.model.body_records[static_cast<std::size_t>(body)].name;
 }
 
-/// Refuses a call with too many steps: they are counted with an int, and a step too small to advance time never ends.
+/// Throws SceneError if a call would need too many steps. Steps are counted with an int, and a call with a step too
+/// small to advance time would never end.
 void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
@@ -148,7 +150,7 @@ void require_countable(const Model& model, Real dt) {
         .raise();
 }
 
-/// Marks the world as advancing for as long as it exists, also when an exception is thrown.
+/// Marks the world as advancing during the lifetime of this object, also when an exception is thrown.
 class AdvanceScope {
 public:
     explicit AdvanceScope(bool& advancing) : advancing_(advancing) { advancing_ = true; }
@@ -163,7 +165,8 @@ private:
 }  // namespace
 
 Real lag_between_steps(const WorldState& world) {
-    if (world.model.settings.integrator == Integrator::leapfrog) return 0;  // positions have drifted back by as much
+    // The drift at the end of the call removes the lag.
+    if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
     return (before > 0 ? before : trusted_step(world.model)) / 2;
 }
@@ -183,7 +186,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    const ArithmeticScope arithmetic;  // code between the stages must not depend on the host either
+    // Code between the stages must not depend on the floating-point mode of the host either.
+    const ArithmeticScope arithmetic;
     settle_start();
     const AdvanceScope scope(world.advancing);
     Model& model = world.model;
@@ -197,13 +201,14 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    world.cache.crossings.row.clear();  // rows of an abandoned step: bodies may have changed since
+    world.cache.crossings.row.clear();  // rows of an abandoned step; bodies may have changed since
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
-    world.scratch.parameters.draws_late = !model.forced;  // forces need all nodes in every step
-    Real stiffened = 0;                                   // energy brought in by clusters since the last step [J]
-    bool look_at_end = false;  // with leapfrog, all energies belong to one time only between calls
-    // exception thrown by a callback: the call still ends between two steps
+    world.scratch.parameters.draws_late = !model.forced;  // force elements read all nodes in every step
+    Real stiffened = 0;                                   // energy added by clusters since the last committed step [J]
+    // Leapfrog checks the balance at the end of the call, since only then all energies belong to one time.
+    bool look_at_end = false;
+    // Exception thrown by a callback. The call still ends between two steps and then throws it again.
     std::exception_ptr thrown;
     const auto call_back = [&thrown](auto&& call) {
         try {
@@ -241,7 +246,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
-        stiffened += world.scratch.findings.stiffened;  // for every outcome of the try
+        stiffened += world.scratch.findings.stiffened;  // added for every outcome of the attempt
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -272,15 +277,15 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
-    clock.long_step = {};                // implicit bodies have reached this time
-    world.cache.search.end_step(false);  // has an effect only if the call ends with an abandoned step
+    clock.long_step = {};                // implicit bodies have reached the present time
+    world.cache.search.end_step(false);  // this has an effect only if the call ends with an abandoned step
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
-        stiffened += follow_stiffening(model);  // else some try of the next call would have to do it first
+        stiffened += follow_stiffening(model);  // otherwise the first attempt of the next call would do this
         world.record.balance.work += stiffened;
     }
     world.draw();

@@ -16,7 +16,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;                        // sum of m |v| [kg m/s]
+    Real momentum_size = 0;                        // sum of the magnitudes of all momenta [kg m/s]
 };
 
 Present measure(const Model& model, Real lag) {
@@ -30,8 +30,9 @@ Present measure(const Model& model, Real lag) {
         now.momentum += momentum;
         now.momentum_size += momentum.norm();
     }
-    Real implicit = 0;           // [J]
-    Vec3 kicked = now.momentum;  // momentum of kicked bodies; nodes in held frames take theta steps [kg m/s]
+    Real implicit = 0;  // [J]
+    // Momentum of nodes and bodies that get kicks. Nodes of held implicit bodies take theta steps instead [kg m/s].
+    Vec3 kicked = now.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
         if (model.is_held(b) && model.is_rigid(b)) continue;
@@ -43,13 +44,14 @@ Present measure(const Model& model, Real lag) {
         if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
-    // Half of the next kick to first order, without its contact part. With the velocities v and v' before and after a
-    // kick, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
+    // Adds the change of kinetic energy in half of the next kick, to first order and without contacts. Let v and v' be
+    // the velocities before and after a kick, and m the mass. Elastic bodies conserve m v.v' / 2 plus their elastic
+    // energy, as leapfrog does.
     if (lag != 0) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // work is added up with the forces of the last step
+        if (model.forced)  // balance.work also uses the forces of the last step
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);
@@ -67,7 +69,8 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// Whether an implicit element has a held node: its inertia lets moving nodes pull at the held one.
+/// True if an implicit element has a held node. The added inertia of the element then lets moving nodes pull at the
+/// held node.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();
@@ -100,7 +103,7 @@ void add_step(const StepScratch& step, Balance& balance) {
                       contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
-    // impulses that cancel each other, as weight and support do, have been exchanged as well
+    // Impulses that cancel each other, such as those of weight and support, also count as exchanged.
     Vec3 impulse = Vec3::Zero();
     for (const Vec3& part : impulses) {
         impulse += part;
@@ -125,8 +128,8 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
         balance.steps = 0;
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
-    balance.momentum_known &= !holds_implicit_element(model);  // elements become implicit while a run goes on
-    // the height of a weight has no meaning by itself, only its change
+    balance.momentum_known &= !holds_implicit_element(model);  // elements may become implicit during a run
+    // Only the change of the potential energy counts, since its zero point is arbitrary.
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
     balance.energy_scale = std::max(balance.energy_scale, exchanged);

@@ -1,4 +1,4 @@
-// Choice of the implicit elements: those that would make the steps of all bodies much shorter
+// Choice of the implicit elements: the few elements that would make the steps of all bodies much shorter
 // (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
@@ -23,22 +23,24 @@ namespace skerry {
 
 namespace {
 
-// Cost of an entry of a cluster's matrix in a step [ns]. On a busy core six thrown meshes took 100 ns per element and
-// 1.5 ns per entry; only the ratio of the costs matters.
+// Cost of one entry of a cluster matrix in a step [ns]. On a busy core six thrown meshes took 100 ns per element and
+// 1.5 ns per entry. Only the ratio to element_cost matters.
 constexpr Real entry_cost = 0.7;
-/// Least factor by which clusters must reduce the cost of a simulated second, since results differ a little.
+/// Least factor by which clusters must reduce the cost of a simulated second. It exceeds 1, since clusters change
+/// results a little.
 constexpr Real least_gain = 1.5;
-/// Clusters may increase the least moment of inertia of a body by the fraction most_moment, or by the fraction
-/// of_lumping of the increase due to lumped masses, whichever is larger: 3 to 20 % in typical meshes.
+/// Largest increase of the smallest moment of inertia of a body by clusters. It is the larger of two bounds: the
+/// fraction most_moment of this moment, and the fraction of_lumping of its increase by lumped masses. In typical meshes
+/// it is 3 to 20 % of the moment.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
-constexpr std::size_t largest_cluster = 1024;  // nodes: 8 MB, about a second to invert
-/// Implicit elements are assumed to be stiffer by this factor, so that they may deform for a while.
+constexpr std::size_t largest_cluster = 1024;  // nodes; their matrix takes 8 MB and about a second to invert
+/// Implicit elements are assumed to be stiffer by this factor, so that steps stay stable while these elements stiffen.
 constexpr Real headroom = 4;
-constexpr Real most_lengthening = 32;  // ratio of steps with clusters to steps without
-/// Smaller ratios could hardly save least_gain.
+constexpr Real most_lengthening = 32;  // ratio of the step with clusters to the step without
+/// Least ratio of the step with clusters to the step without. A smaller ratio could hardly save the factor least_gain.
 constexpr Real least_lengthening = 1.68;
-/// Ratio of the stable steps of explicit elements with mass forms and with mass shares, on which the search is based;
-/// 1.27 to 1.34 for four meshes.
+/// Ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. The search is
+/// based on mass shares. The ratio was 1.27 to 1.34 for four meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
@@ -51,7 +53,7 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
         .step;
 }
 
-/// Copy of shares, forms and moduli of a body, to restore them.
+/// Copy of mass shares, mass forms, frame masses and implicit moduli of a body, to restore them.
 struct Kept {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
@@ -78,7 +80,8 @@ struct Kept {
     }
 };
 
-/// Updates all data that depend on implicit elements: inversion barriers, leeway of tetrahedra, viscosity.
+/// Updates all data of a body that depend on its implicit elements: inversion barriers, leeway of tetrahedra and
+/// viscosity.
 void note_implicit(Model& model, std::size_t b) {
     const Range of_body = model.bodies.blocks[b];
     arm_guards(model.all_elements(), of_body, model.nodes.inverse_mass,
@@ -92,7 +95,7 @@ void note_implicit(Model& model, std::size_t b) {
     model.patches.resize_viscous(model.elements.first.size());
 }
 
-/// Limit of the moment that clusters add to the least moment of inertia of a body, as a fraction of it.
+/// Largest allowed increase of the smallest moment of inertia of a body by clusters, as a fraction of this moment.
 Real most_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
@@ -101,8 +104,8 @@ Real most_moment_of(const Model& model, std::size_t b) {
 }
 
 struct Found {
-    bool possible = false;  // neither too many elements nor too heavy clusters
-    Real moment = 0;        // moment that clusters add to the least of the body, over its limit
+    bool possible = false;  // neither too many implicit elements nor too heavy clusters
+    Real moment = 0;        // moment of inertia that clusters add, over its limit
     ClusterSizes sizes{};
 };
 
@@ -119,7 +122,7 @@ ImplicitOutputs outputs_of(Model& model, Range blocks) {
     return {rows_of(model.elements.mass_share, blocks), rows_of(model.elements.implicit_modulus, blocks)};
 }
 
-/// Finds the implicit elements of bodies at rest for trial steps. Equal bodies share one search.
+/// Finds the implicit elements of bodies at rest for trial step lengths. Equal bodies share one search.
 class Searches {
 public:
     Searches(Model& model, std::span<Real> stiffness_sum)
@@ -127,7 +130,8 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// Finds the implicit elements of a body. Its rows are written whether the result is possible or not.
+    /// Finds the implicit elements of a body for a step length [s]. Writes the element columns of the body even if the
+    /// result is not possible.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         for (const Result& known : twins.known) {
@@ -160,17 +164,17 @@ private:
     };
     struct OfTwins {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;                    // limit of the search
-        std::optional<ImplicitSearch> search{};  // made at the first use
+        Real most_moment = 0;                    // limit of the added moment of inertia, as a fraction
+        std::optional<ImplicitSearch> search{};  // made when first used
         std::vector<Result> known{};
     };
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
-    std::vector<OfTwins> of_first_;  // by the first of a set of equal bodies
+    std::vector<OfTwins> of_first_;  // by row of the first of several equal bodies
 };
 
-/// Makes every element explicit again, with the masses shared as for a new body.
+/// Makes every element of a body explicit again, with mass shares as for a new body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> share = rows_of(model.elements.mass_share, blocks);
@@ -185,7 +189,7 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
 
-/// Cost of a simulated second with steps of length `step` [ns].
+/// Computing time of a simulated second with steps of length `step` [ns].
 Real cost_of(const Model& model, std::size_t entries, Real step) {
     const Real elements = static_cast<Real>(model.elements.first.size() * element_lanes);
     return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
@@ -193,17 +197,17 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // moment that clusters add to the least of the body, over its limit
+    Real moment;    // moment of inertia that clusters add, over its limit
     Kept elements;  // its planned elements
 };
 
-/// The implicit elements of all bodies for a step.
+/// A choice of the implicit elements of all bodies, for one step length.
 struct Plan {
-    Real step = 0;  // 0: none, every element is explicit [s]
-    Real cost = 0;  // cost of a simulated second [ns]
+    Real step = 0;  // step length; 0: every element is explicit [s]
+    Real cost = 0;  // computing time of a simulated second [ns]
     bool possible = true;
     std::size_t entries = 0;
-    std::vector<PlannedBody> body;  // bodies with implicit elements
+    std::vector<PlannedBody> body;  // the bodies with implicit elements
 };
 
 Plan plan_for(Model& model, Real step, Searches& searches) {
@@ -221,21 +225,23 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     return plan;
 }
 
-/// Gives a body its implicit elements, and the others their mass forms. Returns the stable step of the latter [s].
+/// Makes the planned elements of a body implicit, and chooses mass forms for the other elements. Returns the stable
+/// step of the explicit elements [s].
 Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffness_sum) {
     planned.elements.put_back(model, planned.row);
     choose_mass_forms(model, static_cast<Index>(planned.row), stiffness_sum);
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// Sets the step for which the clusters of a body are made. `stands`: stable step of its explicit elements [s].
+/// Sets the step length for which the clusters of a body are made. `stands`: stable step of its explicit elements [s].
 void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
     model.bodies.rest_step[b] = std::min(step, stands);
 }
 
-/// Longest step at which clusters made for `step` are not too heavy. `moment`: added moment over its limit [s].
+/// Longest step at which clusters planned for the length `step` are not too heavy [s]. `moment`: moment of inertia that
+/// the clusters add at this length, over its limit.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
 }
@@ -244,13 +250,13 @@ Real longest_step(const Model& model) {
     return model.settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / model.tuning.step_safety;
 }
 
-/// Gives all bodies the elements of a plan. Their mass forms then determine how long the step may be.
+/// Makes the planned elements of all bodies implicit. The stable steps with mass forms then limit the step length.
 void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model);
-    std::vector<Real> stands(twin.size());  // stable steps by body; 0 for those without clusters [s]
+    std::vector<Real> stands(twin.size());  // stable step of explicit elements by body; 0: no clusters [s]
     for (const PlannedBody& body : plan.body) {
-        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have the same plan
+        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have equal plans
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
@@ -270,7 +276,7 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
 }
 
-/// The shortest stable step at rest of all bodies with elements [s].
+/// Shortest stable step at rest of all bodies with elements [s].
 Real shortest_step(const Model& model) {
     Real shortest = std::numeric_limits<Real>::infinity();
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
@@ -278,8 +284,8 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Tries 2, 4, ... times the shortest stable step, then some steps between the best of them and the next. Returns the
-/// plan of least cost; its step is 0 if none is worth its clusters.
+/// Makes plans for 2, 4, ... times the shortest stable step, then for some steps between the best of these and the
+/// next. Returns the plan of least cost. Its step is 0 if clusters do not pay.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};
@@ -311,15 +317,15 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    constexpr Real inversion_cost = 0.4;  // per cube of the matrix width [ns]
-    constexpr Real lasts = 128;           // number of steps until an inversion may be due again
+    constexpr Real inversion_cost = 0.4;  // cost of inverting a matrix, over the cube of its width [ns]
+    constexpr Real lasts = 128;           // number of steps until the next inversion may be due
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
-    // the search uses mass shares, which follow a deformation
+    // The search needs mass shares, which can follow a deformation.
     forget_mass_forms(model, blocks);
     const Real most = most_moment_of(model, body);
     const Found found =

@@ -1,4 +1,4 @@
-// Adds a committed step to the sums of the run.
+// Adds a committed step to the counters of the run.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -7,7 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Written without branches: shortcuts of regions are unpredictable, and all cores wait here.
+/// Counts the shortcuts of all regions. The loop has no branches, since shortcuts are unpredictable and all cores wait
+/// for its end.
 void count_shortcuts(const RegionTable& regions, RunCounters& counters) {
     std::uint64_t closed_form = 0, certified = 0, separating = 0, frictionless = 0, in_lanes = 0, swept = 0;
     std::uint64_t iterations = 0, unconverged = 0, contact_steps = 0;

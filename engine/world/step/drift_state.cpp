@@ -1,6 +1,6 @@
-// The drift of leapfrog before its first and after its last kick. Positions drift by half a step, so that kicks lie in
-// the middle of their steps while the state at both ends of a call belongs to one time. Each step is symmetric in time,
-// whatever its length.
+// The drift of leapfrog before the first kick and after the last kick of a call. Positions drift by half a step. Kicks
+// then lie in the middle of their steps, and the state at both ends of a call belongs to one time. Each step is
+// symmetric in time, whatever its length.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -40,7 +40,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
-    const bool pushed = false;  // contacts push nodes in another part of the step
+    const bool pushed = false;  // contacts push positions only in a step
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
@@ -69,14 +69,14 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
             n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
             model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, 0, search);  // frames keep their present places
+    measure_displacement_of(executor, model, 0, search);  // after a drift of 0 s the frames keep their places
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const RigidMotion& motion = colliders.motion[c];
-        // The far points of a turning shape are the fastest. All parts near a body lie within the extent that the
-        // search has noted.
+        // The points farthest from the axis of a rotating shape are the fastest. All parts near a body lie within the
+        // extent that the contact search has recorded.
         const Real turning = motion.angular_velocity.norm();
         const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
         colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);

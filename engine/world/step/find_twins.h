@@ -1,4 +1,4 @@
-// Bodies with one mesh and equal elements: results for one of them hold for all.
+// Search for equal bodies, with the same mesh and elements. Results for one of them hold for all.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// For each body the first body (row) with the same elements, materials, masses and held nodes at rest; itself if no
-/// earlier one has them. They must agree bitwise and in order.
+/// Returns for each body the row of the first body with equal rest shape, elements, materials, masses and held nodes;
+/// the row of the body itself if no earlier body is equal. Equal means bitwise and in the same order.
 std::vector<std::size_t> find_twins(const Model& model);
 
 }  // namespace skerry

@@ -1,4 +1,5 @@
-// Steps in which all bodies rest and nothing moves: no stage would change anything (docs/methods/skipping.md 3.2).
+// Steps that are skipped because all bodies sleep and nothing moves. No stage would change anything
+// (docs/methods/skipping.md 3.2).
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -11,18 +12,18 @@ namespace {
 bool all_bodies_rest(const BodyTable& bodies) {
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         if (bodies.kind[b] == BodyKind::deformable && !bodies.asleep[b]) return false;
-        if (bodies.max_speed[b] != 0) return false;  // the stages have not yet noted that it rests
+        if (bodies.max_speed[b] != 0) return false;  // the stages have not yet set the speed to zero
     }
     return true;
 }
 
-/// Sets the motion of this step. Returns whether nothing moves.
+/// Computes the motion of all rows of a table in this step. Returns true if no row moves.
 bool all_stand_still(auto& table, Real time, Real h) {
     move_colliders(ColliderMotionInputs::bind({}, table), time, h, table.motion);
     return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
 }
 
-/// Whether an evaluation of a stable step is due for a body that rests now but moved when its shape was kept.
+/// True if a stable step must still be evaluated for a body that is asleep now but moved when its shape was stored.
 bool looks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_looked_at) return true;
@@ -50,7 +51,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
 
 void look_at_balance(WorldState& world) {
     Balance& balance = world.record.balance;
-    // the energies are those of the last check, which saw this same state
+    // the last check saw this same state
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
     check_balance(world.model, lag_between_steps(world), balance);
     world.record.balance_of_rest = world.scratch.left_out;

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Adds a link between the first body of each row and each other body that the row joins to it.
+/// For each row, links the first joined body to each other body that the row joins.
 void add_links(AnyTable table, BodyLinks& links) {
     std::span<const Index> first;
     for (const ColumnInfo& info : table.columns()) {

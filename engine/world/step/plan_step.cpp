@@ -1,4 +1,4 @@
-// The length of the next step, and its place within a long step of implicit bodies (docs/step_length.md).
+// The length of the next step, and its position within a long step of implicit bodies (docs/step_length.md).
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     StepPlan plan;
     plan.stable = trusted_step(model, &plan.stiffest);
     const Real longest = std::min(plan.stable, fast_limit);
-    // A remainder of rounding size joins the last step.
+    // A remainder of the size of rounding errors belongs to the last step.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
     plan.h = left / plan.steps;
     return plan;
@@ -19,7 +19,7 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
     if (clock.length == 0) {
-        // a remainder of rounding size joins the last long step
+        // A remainder of the size of rounding errors belongs to the last long step.
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
         clock.length = clock.left = left / count;
     }
@@ -28,7 +28,7 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
     const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
-    return times.starts && times.ends ? LongStepTimes{} : times;  // as long as the steps of all others
+    return times.starts && times.ends ? LongStepTimes{} : times;  // the long step equals one step of the other bodies
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {

@@ -1,4 +1,4 @@
-// Stable steps of bodies and the limits of the step length.
+// Stable steps of bodies, and limits of the step length.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,20 +19,21 @@ namespace skerry {
 
 namespace {
 
-// Longest step in worlds with rigid or implicit bodies, if the settings give none [s]. Contacts that close within a
-// step, and those of turning faces, are only as accurate as the step is short.
+// Longest step in worlds with rigid or implicit bodies, unless the settings give a step [s]. The errors of contacts
+// that close within a step, and of contacts with rotating faces, grow with the step length.
 constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
 }  // namespace
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
-    // The largest eigenvalue of a sum of symmetric matrices is at most the sum of theirs.
+    // The largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
     if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
         step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
-    // Damping keeps the fraction `kept` of a velocity in this step: a mode is stable for omega h < sqrt(2 (1 + kept)).
+    // Damping reduces a velocity to the fraction `kept` in this step. A mode of the circular frequency omega is then
+    // stable for steps h with omega h < sqrt(2 (1 + kept)).
     return damping > 0 && std::isfinite(step) ? step * std::sqrt((1 + std::exp(-damping * step)) / 2) : step;
 }
 
@@ -68,9 +69,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Stable step of the explicit elements of a body with clusters, for strain in a few places [s]. `stands`: a step known
-/// to be stable. It is returned if it is not below `asked` or there is no better bound; else the result is at most
-/// `asked`.
+/// Stable step of the explicit elements of a body with clusters that is strained in a few places [s]. `stands`: a step
+/// length known to be stable. If `stands` is at least `asked`, or if no better bound is found, the result is `stands`.
+/// Otherwise the result is at most `asked`.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -83,7 +84,7 @@ Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3
                                                     {asked, stands}, memory.span()));
 }
 
-/// Stable step of the explicit elements of a body in this shape [s].
+/// Stable step of the explicit elements of a body for the given node positions [s].
 Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> position, Column<Real>& stiffness_sum) {
     stiffness_sum.resize(position.size());
     const Real step =
@@ -93,7 +94,8 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
     return strained_step_of(model, body, position, model.bodies.rest_step[body], step, stiffness_sum);
 }
 
-/// Stable step of a body whose explicit elements have the stable step `step` [s]. NaN for an invalid shape.
+/// Stable step of a body with its clusters, given the stable step `step` of its explicit elements [s]. NaN for an
+/// invalid shape.
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -112,7 +114,7 @@ Real look_at_stable_step(const Model& model, std::size_t body, std::span<const V
 
 namespace {
 
-/// Takes over evaluated stable steps, body by body.
+/// Stores newly evaluated stable steps, body by body, and adds clusters where they help.
 class LooksTaken {
 public:
     LooksTaken(Model& model, Column<Real>& stiffness_sum) : model_(model), stiffness_sum_(stiffness_sum) {
@@ -122,9 +124,10 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // A body gets clusters when its strain shortens steps by the factor worth_clusters; `reserve` keeps it stable
-        // until the next evaluation. A body with clusters is tolerated for longer: its stable step recovers as soon as
-        // it is less strained, while implicit elements stay.
+        // A body gets clusters when strain makes its stable step shorter than goal_ by the factor worth_clusters. The
+        // factor `reserve` keeps it stable until the next evaluation. A body that has clusters may shorten the steps
+        // further before it gets more of them. Its stable step recovers as soon as the strain decreases, but its
+        // implicit elements stay implicit.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -142,7 +145,7 @@ public:
         bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
-    /// Energy that clusters have brought into the balance [J].
+    /// Energy that the inertia of new clusters has added to the balance [J].
     Real end() {
         if (changed_.empty()) return 0;
         model_.rebuild_clusters(changed_);
@@ -154,7 +157,7 @@ private:
     Column<Real>& stiffness_sum_;
     Real goal_ = std::numeric_limits<Real>::infinity();  // shortest stable step of all bodies at rest [s]
     Real energy_before_ = 0;                             // J
-    std::vector<std::uint8_t> changed_;  // by body, whether its implicit elements have changed; empty: none have
+    std::vector<std::uint8_t> changed_;  // by body, nonzero if its implicit elements have changed; empty: no changes
 };
 
 }  // namespace
@@ -186,8 +189,8 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     const auto pieces_of = [&](Index row) {
         return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
     };
-    // Counted in parallel: no step can begin before, and the first elements of each body are at another place in
-    // memory.
+    // Counted in parallel: a step cannot begin before the count is known, and the first elements of bodies are
+    // scattered in memory.
     constexpr std::size_t bodies_per_block = 64;
     const WatchPieces all = reduce(
         executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
@@ -208,7 +211,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
-    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // a saved world has all rows
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // one row per node, as in a saved world
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);

@@ -1,7 +1,7 @@
 // The step on one page: a list of stages in phases. The task graph derives the order of the stages from the data that
-// they read and write. So forces and contact search run side by side, and the solve of one region beside that of others
-// (docs/figures/step_graph.svg). A stage is named folder/function. The bind() of a struct of inputs lists the columns
-// that it reads.
+// they read and write. So forces and contact search run in parallel, and so do the solves of different regions
+// (docs/figures/step_graph.svg). A stage is named folder/function. The function bind() of an input struct lists the
+// columns that the stage reads.
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
@@ -86,7 +86,7 @@ void build_step(WorldState& w) {
 
 namespace {
 
-/// Scripts set the motion of colliders and held nodes during this step.
+/// Lists the stages that set the motion of colliders and held nodes in this step, according to their scripts.
 void move_as_scripted(WorldState& w, TaskGraph& g) {
     ColliderTable& c = w.model.colliders;
     AttachmentTable& a = w.model.attachments;
@@ -100,7 +100,7 @@ void move_as_scripted(WorldState& w, TaskGraph& g) {
             write(n.velocity));
 }
 
-/// Evaluates stable steps beside all other stages.
+/// Lists the stage that evaluates stable steps, in parallel with all other stages.
 void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
@@ -108,7 +108,8 @@ void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
             make(w.scratch.watch_parts), make(m.watch));
 }
 
-/// Contacts that share a moving block of degrees of freedom belong to one region.
+/// Lists the stages that divide contacts into regions. Contacts that share a moving block of degrees of freedom belong
+/// to one region.
 void separate(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
@@ -136,7 +137,7 @@ void solve(WorldState& w, TaskGraph& g) {
             outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints));
 }
 
-/// Sums of contact and attachment forces, if requested.
+/// Lists the stages that sum contact and attachment forces, if a user requested them.
 void measure_forces(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ForceScratch& f = w.scratch.forces;
@@ -151,7 +152,8 @@ void measure_forces(WorldState& w, TaskGraph& g) {
             value(p.kick), value(p.moment_point), make(f.node_impulse), make(f.reactions), if_wanted);
 }
 
-/// Checks that all motion models share: finite, slow enough, within the strain of a step; and the work from outside.
+/// Lists the checks that all motion models share: velocities are finite and slow enough, and no element deforms too
+/// much in one step. Also lists the measurement of external work.
 void check_end(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;
@@ -183,7 +185,7 @@ void wake(WorldState& w, TaskGraph& g) {
             if_sleepy(w));
 }
 
-/// Travel of bodies since the last search for contact candidates.
+/// Lists the stage that measures the travel of bodies since the last search for contact candidates.
 void measure_travel(WorldState& w, TaskGraph& g) {
     NodeTable& n = w.model.nodes;
     BodyTable& b = w.model.bodies;

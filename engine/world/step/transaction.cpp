@@ -12,38 +12,40 @@ namespace skerry {
 
 namespace {
 
-/// Below this total of elements and contacts a step takes less time than it takes to wake the workers
-/// (profiling/step measures it).
+/// Total number of elements and contacts below which the stages run on the calling thread. Waking the workers would
+/// take longer than such a step (profiling/step measures it).
 constexpr std::size_t inline_work = 1024;
 
-/// Number of tries of one length, each with the crossings of the earlier ones as contacts, before a step is shortened.
+/// Number of attempts with the same step length before a step is shortened. Each attempt has the crossings found by the
+/// earlier ones as contacts.
 constexpr int tries_at_one_length = 4;
 
-/// A step in which something crosses is tried again at half its length, down to the stable step over this factor; then
-/// steps grow back. Limits predicted from the speed of deformation do not go below this length either. The bound is on
-/// the length, because halvings counted step by step would add up until time stands still.
+/// A step in which surfaces cross is repeated with half its length, down to the stable step divided by this factor.
+/// Afterwards steps grow back. Limits predicted from the speed of deformation do not go below this length either. The
+/// bound applies to the length and not to the number of halvings: halvings of successive steps would add up until time
+/// stands still.
 constexpr Real most_shortening = 128;
 
-/// The factor for a step that deforms something too fast, or that an implicit body cannot solve. Material squeezed
-/// between a rigid body and held nodes comes out at some hundred times the speed of the body that presses it. Steps
+/// Factor of shortening for a step that deforms something too fast, or that an implicit body cannot solve. Material
+/// squeezed between a rigid body and held nodes is ejected at some hundred times the speed of the rigid body. Steps
 /// this short must remain the exception.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// The factor for a step that turns elements inside out. In thrown meshes a third of them stay upright in a step half
-/// as long. Where elements are pressed over, and not thrown, shorter steps do not help. But they conserve the energy of
-/// crushed bodies: with 2 instead of 4 a ball shot at a wall gains a third more energy, as it does if steps grow back
-/// faster.
+/// Factor of shortening for a step that turns elements inside out. In thrown meshes, half the step length saves a third
+/// of these elements from inversion. Where elements are squeezed and not thrown, shorter steps do not prevent
+/// inversion, but they conserve the energy of crushed bodies. With the factor 2 instead of 4, or with faster growth of
+/// the steps, a ball shot at a wall gains a third more energy.
 constexpr Real most_shortening_against_inversion = 4;
 
-/// Growth of the step bound from step to step after an inversion or a crossing.
+/// Factor by which the step bound grows in each step after an inversion or a crossing.
 constexpr Real step_growth = 1.2;
 
-/// Greatest growth from step to step while the speed of deformation limits the steps.
+/// Largest factor of growth between steps while the speed of deformation limits the steps.
 constexpr Real fast_growth = 1.5;
 
-/// Reserve for faster deformation in the next step than in this one; it suffices most of the time.
+/// Safety factor for faster deformation in the next step than in this one. It suffices most of the time.
 constexpr Real strain_margin = 0.9;
-/// A step that is too fast is shortened by a factor between these two.
+/// The factor by which a too fast step is shortened lies between these two values.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -51,7 +53,7 @@ void copy(std::span<const Real> from, Column<Real>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Resets velocities that a contact may have given to sleeping bodies in a try that is not committed.
+/// Resets the velocities that a contact may have given to sleeping bodies in an attempt that is not committed.
 void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
         const Range nodes = bodies.nodes[b];
@@ -60,28 +62,29 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
-/// Time for which forces act in a step of length h [s]. Symplectic Euler is leapfrog with velocities half a step before
-/// the positions of their forces: it kicks from the middle of the last step to the middle of this one
-/// (docs/methods/time_stepping.md 1.5). Leapfrog kicks at the time of the velocities, for the step itself.
+/// Kick of a step: time for which forces act [s]. Symplectic Euler is leapfrog with velocities half a step behind the
+/// positions. Its kick lasts from the middle of the last step to the middle of this step (docs/methods/time_stepping.md
+/// 1.5). With leapfrog the kick lasts as long as the step.
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
-    // A body with a stable step much below the last step is new or was softer then; that step's kick would throw it.
+    // If the last step was much longer than the present stable step, a body is new or has become stiffer. A kick from
+    // the middle of the last step would then be too long for it.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.tuning.step_safety * stable_step(model));
     return (before + plan.h) / 2;
 }
 
-/// Ratio of two kicks. 1 if they differ only by rounding, as equal shares of a call do. 0: the last one is not known.
+/// Ratio of two kicks: 1 if they differ only by rounding, 0 if the last kick is not known.
 Real kick_over_last(Real kick, Real last) {
     constexpr Real rounding = 1e-12;
     if (!(last > 0)) return 0;
     return std::abs(kick - last) <= rounding * last ? 1 : kick / last;
 }
 
-/// Runs the stages, unless they have nothing to do; their results are in world.scratch. Returns false if a check before
-/// them has already refused the step.
+/// Runs the stages, unless nothing moves. Their results are in world.scratch. Returns false if a check before the
+/// stages refuses the step.
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
@@ -119,7 +122,8 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Stores the element state of this step for the next one. For unstrained bodies both columns are equal.
+/// Stores the element rotations and viscous strains of this step for the next step. Unstrained bodies have equal old
+/// and new values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -128,12 +132,12 @@ void keep_frames(WorldState& world) {
         return;
     }
     ElementInputs awake = world.model.awake_elements();
-    // A body that this step wakes has no element rotations from this step.
+    // No stage has computed element rotations of a body that this step wakes.
     awake.body_asleep = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Contacts have moved nodes further than their velocities do, so no body counts as unstrained.
+/// Marks all bodies as strained, because contacts have moved nodes further than their velocities would.
 void forget_unstrained(BodyTable& bodies) {
     std::ranges::fill(bodies.unstrained, std::uint16_t{0});
 }
@@ -156,7 +160,7 @@ void commit(WorldState& world) {
     world.clock.kick_before = parameters.kick;
 }
 
-/// A body is strained if its stable step is less than this fraction of the one at rest.
+/// A body counts as strained if its stable step is less than this fraction of its stable step at rest.
 constexpr Real as_at_rest = 0.9;
 
 struct Blamed {
@@ -168,12 +172,12 @@ Blamed blamed(const Model& model, Index body) {
     static const std::string nobody;
     if (body == no_index) return {{}, nobody};
     const auto b = static_cast<std::size_t>(body);
-    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // other bodies belong to a collider
+    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // other bodies are meshes of colliders
     return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
             model.body_records[b].name};
 }
 
-/// Counts the cause that limited a step that is taken: earlier tries, the settings or the stiffest body.
+/// Counts the cause that limited the length of a committed step: earlier attempts, the settings or the stiffest body.
 void note_step(const Model& model, const StepPlan& plan, const Tries& tries, StepLimits& limits) {
     const bool fast = tries.slow_enough < tries.longest;
     StepLimit limit = fast ? StepLimit::speed : tries.limit;
@@ -191,7 +195,7 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     limits.count_step(limit, handle, name, plan.h);
 }
 
-/// Reason why a try is given up for a shorter one.
+/// Reason why an attempt is given up for a shorter step.
 StepLimit shortened_by(const StepFindings& found) {
     return found.crossings > 0                          ? StepLimit::crossing
            : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
@@ -199,8 +203,8 @@ StepLimit shortened_by(const StepFindings& found) {
                                                         : StepLimit::inversion;
 }
 
-/// Limits of the try after one that is given up for a shorter one. The rate of deformation determines how long a step
-/// may be. For all other causes it is only known that half the length may do.
+/// Limits of the next attempt, after an attempt that is given up for a shorter step. If the deformation was too fast,
+/// its rate determines the new length. For all other causes the length is halved.
 Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& tries) {
     const StepFindings& found = world.scratch.findings;
     const StrainRate& fastest = found.verdict.fastest;
@@ -226,8 +230,8 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
     return next;
 }
 
-/// Limits of the first try after a step that was taken. It is as long as the fastest deformation allows, but at most
-/// fast_growth times as long as that step if that was short.
+/// Limits of the first attempt at the next step, after a committed step. The fastest deformation limits the length.
+/// After a short step, the length grows by no more than the factor fast_growth.
 Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& tries) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
     Tries next{.longest = tries.longest * step_growth,
@@ -236,13 +240,13 @@ Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& 
                .limit = tries.limit,
                .body = tries.body};
     if (fastest.body == no_index && scratch.parameters.longest < plan.stable && tries.slow_enough < tries.longest) {
-        next.slow_enough = fast_growth * plan.h;  // the check searched no further
+        next.slow_enough = fast_growth * plan.h;  // the check finds only deformation too fast for `longest`
         next.fastest = tries.fastest;
     }
     return next;
 }
 
-/// Counts a try that is given up.
+/// Counts an attempt that is given up.
 void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits) {
     const StepFindings& found = scratch.findings;
     const StepLimit limit = shortened_by(found);
@@ -253,7 +257,7 @@ void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits
     limits.count_try(limit, handle, name);
 }
 
-/// Implements the table of StepOutcome.
+/// Finds the outcome of an attempt, as in the table of StepOutcome.
 StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
     if (beyond_lists) {
@@ -296,7 +300,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
-    // One retry would do, if forces could not change the next try and a list could be made for every motion.
+    // One repetition would suffice if forces could not change the next attempt and the lists could cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -311,7 +315,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // an inversion says nothing about crossings found in the tries before
+            // an inversion does not invalidate the crossings found in earlier attempts
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
             tries = shorter_tries(world, plan, tries);
@@ -324,7 +328,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     }
     if (ran) {
         world.transaction.roll_back_try(world.model);
-        world.clock.kick_before = 0;  // elements have overwritten their memory of the step before
+        world.clock.kick_before = 0;  // elements have overwritten the strain of the previous step
     }
     return outcome;
 }

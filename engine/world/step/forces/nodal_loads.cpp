@@ -1,4 +1,5 @@
-// Force element of loads on nodes. It comes first in the list: its stage sets the applied forces that others add to.
+// Force element of loads on nodes. It is the first force element: its stage sets applied_force, and the stages of other
+// force elements add to it.
 #include "systems/forces/add_nodal_loads.h"
 
 #include "engine/world/step/seams.h"

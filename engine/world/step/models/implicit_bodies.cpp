@@ -29,7 +29,7 @@ void list_coupling(WorldState& w, TaskGraph& g) {
             make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
-/// The bodies deform, and react on their supports.
+/// Lists the stage in which implicit bodies deform and push on their supports.
 void list_strain(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;
