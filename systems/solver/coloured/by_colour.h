@@ -40,7 +40,6 @@ inline std::size_t block_count(const ColouredOrder& order) {
 
 class ByColour {
 public:
-    static constexpr bool one_thread = false;
     static constexpr bool own_masses = true;
 
     /// `partial`: block_count(order) rows.

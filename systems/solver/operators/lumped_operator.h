@@ -9,21 +9,25 @@
 
 #include "components/options.h"
 #include "systems/solver/local/lumped_contact.h"
+#include "systems/solver/local/push_contact.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/in_order.h"
 
 namespace skerry {
 
-/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk.
-struct LumpedMemory {
+/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk. Most regions have one
+/// velocity per node; regions with rigid bodies also have two per body.
+struct ContactMemory {
     std::span<const LumpedContact> contact;
-    std::span<Vec4> impulse;              // [N s]
-    std::span<Vec4> velocity;             // velocities of the region's nodes, including the effect of the impulse [m/s]
-    std::span<const Index> node;          // rows of NodeTable
-    std::span<const Vec3> free_velocity;  // by row of NodeTable [m/s]
-    // by node of the region: previous velocities, or velocities of a product
-    std::span<Vec4> scratch;
+    std::span<Vec4> impulse;      // [N s]
+    std::span<Vec4> velocity;     // includes the effect of the impulse [m/s, rad/s]
+    std::span<const Index> node;  // by velocity: row of NodeTable, or no_index for that of a rigid body
+    std::span<Vec4> scratch;      // by velocity: previous velocities, or those of a product
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
+};
+
+struct LumpedMemory : ContactMemory {
+    std::span<const Vec3> free_velocity;  // by row of NodeTable [m/s]
 };
 
 /// For a given order of the contacts the bits of the impulses do not depend on the walk; those of sums do.
@@ -76,6 +80,15 @@ public:
     Real mobility(Index i) const { return memory_.contact[i].node_count > 0 ? memory_.contact[i].diagonal : 0; }
     Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
+
+    /// Velocity of a contact [m/s]
+    Vec4 velocity(Index i) const { return contact_velocity(memory_.contact[i], memory_.velocity.data()); }
+    /// Energy that stops a contact at this normal speed [J]
+    Real push_size(Index i, Real speed) const { return memory_.contact[i].inverse_diagonal * speed * speed; }
+    /// One contact step of the split impulse (push_contact.h). Returns the size of the change [J]
+    Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
+        return push_contact(memory_.contact[i], bias, velocity, impulse, apply_by(walk_));
+    }
 
 private:
     /// Applies an extrapolation of the impulses that was postponed to the next sweep.

@@ -1,7 +1,10 @@
 // Loss of distance by the rotation of capsules and cylinders within the step (docs/methods/rigid_bodies.md 6.2).
 #pragma once
 
-#include "systems/solver/regions/life_cycle.h"
+#include <algorithm>
+#include <span>
+
+#include "systems/solver/regions/region_stage.h"
 
 namespace skerry {
 

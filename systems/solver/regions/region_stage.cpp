@@ -1,4 +1,7 @@
-#include "systems/solver/regions/life_cycle.h"
+#include "systems/solver/regions/region_stage.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace skerry {
 
@@ -48,22 +51,17 @@ Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
     return all ? settings.still_tolerance : settings.tolerance;
 }
 
-LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node) {
-    return memory_from(stage, base, count, node, 4 * static_cast<std::size_t>(base));
-}
-
-LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node,
-                         std::size_t first_node) {
+ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::size_t first_node,
+                          std::span<const Index> node, std::size_t slots) {
     RegionMemory& data = stage.memory;
     const std::size_t first = static_cast<std::size_t>(base);
-    LumpedMemory memory{.contact = data.contact.span().subspan(first, count),
-                        .impulse = data.impulse.span().subspan(first, count),
-                        .velocity = data.velocity.span().subspan(first_node, node.size()),
-                        .node = node,
-                        .free_velocity = stage.out.velocity_next,
-                        .scratch = data.scratch.span().subspan(first_node, node.size()),
-                        .workspace = {}};
-    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
+    ContactMemory memory{.contact = data.contact.span().subspan(first, count),
+                         .impulse = data.impulse.span().subspan(first, count),
+                         .velocity = data.velocity.span().subspan(first_node, node.size()),
+                         .node = node,
+                         .scratch = data.scratch.span().subspan(first_node, node.size()),
+                         .workspace = {}};
+    for (std::size_t slot = 0; slot < slots; ++slot)
         memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
     return memory;
 }
@@ -86,7 +84,7 @@ Real dissipated_by(const RegionStage& stage, Index row) {
     return -0.5 * impulse.dot(twice_mean);
 }
 
-Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity) {
+Real push_work(const RegionStage& stage, const ContactMemory& memory, std::span<const Vec4> push_velocity) {
     Real work = 0;
     for (std::size_t i = 0; i < memory.contact.size(); ++i)
         work += memory.impulse[i].dot(add_node_velocities(memory.contact[i], push_velocity.data(), Vec4::Zero()));
@@ -97,8 +95,8 @@ Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<c
     return work;
 }
 
-Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
-                                std::span<const Vec4> push_velocity, std::size_t first_node) {
+Real push_work_through_clusters(const RegionStage& stage, const ContactMemory& memory,
+                                std::span<const Vec4> push_velocity) {
     const auto cluster_of = [&](Index node) {
         return stage.inputs.clustered() ? stage.inputs.clusters->cluster(node) : no_index;
     };
@@ -109,8 +107,10 @@ Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& me
             if (cluster_of(memory.node[contact.node[a]]) == no_index)
                 work += contact.weight[a] * memory.impulse[i].dot(push_velocity[contact.node[a]]);
     }
-    for (std::size_t n = first_node; n < memory.node.size(); ++n) {
-        const Index node = memory.node[n], cluster = cluster_of(node);
+    for (std::size_t n = 0; n < memory.node.size(); ++n) {
+        const Index node = memory.node[n];
+        if (node == no_index) continue;
+        const Index cluster = cluster_of(node);
         const Vec3 push = push_velocity[n].head<3>();
         if (cluster == no_index)
             work -= (memory.velocity[n].head<3>() - stage.inputs.velocity[node]).dot(push) /
