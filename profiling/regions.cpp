@@ -53,8 +53,7 @@ struct Problem {
         const RegionStage of_pressed{pressed, settings, stage.h, out, data};
         const LumpedRegion<Walk> region{
             .row = row, .walk = walk, .memory = memory, .scale = scale, .tolerance = settings.tolerance};
-        solve_push(of_pressed, region, operator_of(of_pressed, region),
-                   push_memory(stage, 0, row.size(), memory.scratch));
+        solve_push(of_pressed, region, operator_of(of_pressed, region));
     }
 
     std::vector<Vec3> velocity_next, impulse_out, push_out;

@@ -25,7 +25,7 @@ void RegionSolver::solve(Executor& executor, const RegionInputs& contacts, const
         const Index base = regions.contacts.offset[r];
         RegionOutcome outcome;
         if (row.size() == 1 && !own.fixed_iterations) {
-            outcome = solve_single(stage, row[0]);
+            outcome = solve_single(stage, row[0], base);
         } else if (is_large(stage, regions, number)) {
             team_.gather(executor, [&] {
                 order_region(contacts, row, team_, memory_.place.span(), coloured_);

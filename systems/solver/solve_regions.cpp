@@ -29,7 +29,7 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         } else if (touches_cluster(stage.memory, number)) {
             outcome = solve_clustered(stage, row, number, base);
         } else if (row.size() == 1 && !stage.settings.fixed_iterations) {
-            outcome = solve_single(stage, row[0]);
+            outcome = solve_single(stage, row[0], base);
         } else {
             const RegionInOrder region = load_region(stage, row, base);
             LumpedOperator op = operator_of(stage, region);

@@ -88,6 +88,8 @@ private:
 
 using ColouredOperator = LumpedOperatorBy<ByColour>;
 static_assert(ContactOperator<ColouredOperator>);
-extern template class LumpedOperatorBy<ByColour>;  // compiled once, in by_colour.cpp
+// compiled once, in by_colour.cpp
+extern template class RegionOperatorBase<ColouredOperator, ByColour, LumpedMemory>;
+extern template class LumpedOperatorBy<ByColour>;
 
 }  // namespace skerry

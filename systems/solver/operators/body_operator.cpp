@@ -6,6 +6,7 @@
 namespace skerry {
 
 static_assert(ContactOperator<BodyOperator>);
+template class RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;
 
 namespace {
 
@@ -97,36 +98,20 @@ SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
     return sum;
 }
 
-void BodyOperator::remember() {
-    std::ranges::copy(memory_.impulse, memory_.workspace[1].begin());
-    std::ranges::copy(memory_.velocity, memory_.scratch.begin());
-}
-
 void BodyOperator::extrapolate(Real factor) {
     extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.workspace[1]);
     extrapolate_range(0, memory_.velocity.size(), factor, memory_.velocity, memory_.scratch);
 }
 
-Real BodyOperator::error() const {
-    Real sum = 0;
-    for (Index i = 0; i < size(); ++i) {
-        if (!(mobility(i) > 0)) continue;
-        const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
-        if (const JointLaw* law = joint(i)) {
-            const Columns3& frame = part(i).frame;
-            sum += mobility(i) * law->natural_map(in_frame(frame, impulse).head<3>(),
-                                                  in_frame(frame, velocity(i)).head<3>(), mobility(i))
-                                     .squaredNorm();
-            continue;
-        }
-        sum += contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
-    }
-    return sum == 0 ? 0 : std::sqrt(sum) / scale_;
-}
-
-void BodyOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
-    std::ranges::copy(memory_.free_velocity, velocity.begin());
-    add_response(impulse, velocity);
+Real BodyOperator::squared_residual(Index i) const {
+    const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
+    const JointLaw* const law = joint(i);
+    if (law == nullptr)
+        return contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
+    const Columns3& frame = part(i).frame;
+    return mobility(i) *
+           law->natural_map(in_frame(frame, impulse).head<3>(), in_frame(frame, velocity(i)).head<3>(), mobility(i))
+               .squaredNorm();
 }
 
 void BodyOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
@@ -141,17 +126,6 @@ void BodyOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4> v
         apply_to_rigid(part(i), of, velocity.data());
     }
     if (runs_) runs_->spread_sums(walk_, velocity.data());
-}
-
-void BodyOperator::residual(std::span<Vec4> out) const {
-    for (Index i = 0; i < size(); ++i)
-        out[static_cast<std::size_t>(i)] = mobility(i) > 0 ? Vec4(-velocity(i)) : Vec4(Vec4::Zero());
-}
-
-void BodyOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) const {
-    std::ranges::fill(memory_.scratch, Vec4::Zero());
-    add_response(in, memory_.scratch);
-    for (Index i = 0; i < size(); ++i) out[static_cast<std::size_t>(i)] = velocity_at(i, memory_.scratch.data());
 }
 
 void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {

@@ -29,49 +29,28 @@ struct BodyMemory : ContactMemory {
 using NewtonPool = Pool<NewtonEquations>;
 using RunPool = Pool<ContactRuns>;
 
-class BodyOperator {
-public:
-    using Number = Real;
+class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory> {
+    using Base = RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;
+    friend Base;
 
+public:
     /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse. `pool`: memory for Newton steps.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
                  RunPool& runs)
-        : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {
+        : Base(memory, friction, scale, walk), pool_(&pool) {
         if (!walk.any_deforms()) return;
         runs_ = runs.lease();
         runs_->start();
     }
 
-    Index size() const { return static_cast<Index>(memory_.contact.size()); }
-    std::span<Vec4> impulse() { return memory_.impulse; }
-    std::span<Vec4> workspace(Index slot) { return memory_.workspace[static_cast<std::size_t>(slot)]; }
-    void refresh() { refresh(memory_.impulse, memory_.velocity); }
-    void refresh_all() {
-        refresh();
-        refresh(memory_.workspace[1], memory_.scratch);
-    }
-    void remember();
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
     SweepChange accelerated_sweep(Real relaxation);
-    /// e_nat of docs/methods/errors.md 2, with a third of the trace of W_ii as D.
-    Real error() const;
-    bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
-    void residual(std::span<Vec4> out) const;
-    void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
     Vec4 project(Index i, const Vec4& impulse) const {
         if (joint(i) != nullptr) return impulse;  // joints are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
-    Vec4 feasible(Index i, const Vec4& residual) const {
-        return feasible_direction(residual, memory_.impulse[static_cast<std::size_t>(i)], contact(i).normal,
-                                  contact(i).friction, friction_);
-    }
-    Vec4 normal(Index i) const { return contact(i).normal; }
-    FrictionLimits limits(Index i) const { return contact(i).friction; }
-    Real mobility(Index i) const { return contact(i).inverse_diagonal > 0 ? contact(i).diagonal : 0; }
-    Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
     /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse with this error: at most `limit` steps; the
@@ -122,7 +101,14 @@ public:
     }
 
 private:
-    const LumpedContact& contact(Index i) const { return memory_.contact[static_cast<std::size_t>(i)]; }
+    // Functions that the base class calls.
+    bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
+    Real squared_residual(Index i) const;  // with a third of the trace of W_ii as D
+    const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
+    /// Impulses on implicit bodies are first summed up by node, because each of them moves all touched nodes of its
+    /// body.
+    void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
+
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
     // Functions for Newton steps.
     BodyEquations& newton_memory();
@@ -161,20 +147,14 @@ private:
     void list_runs() const;
     /// Applies an impulse within a sweep. On implicit bodies it moves only the nodes of the contact's run.
     void apply(Index i, const Vec4& impulse);
-    void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
-    /// Adds the effect of impulses to the velocities. Impulses on implicit bodies are first summed up by node, because
-    /// each of them moves all touched nodes of its body.
-    void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
-    BodyMemory memory_;
-    Friction friction_;
-    Real scale_;
-    ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
     RunPool::Lease runs_;  // leased if contacts of the step touch implicit bodies
     bool own_are_listed_ = false, rigid_modes_are_listed_ = false;
     bool inertia_is_known_ = false;  // the equations have it after the first Newton steps
 };
+
+extern template class RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;  // compiled in body_operator.cpp
 
 }  // namespace skerry

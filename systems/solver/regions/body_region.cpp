@@ -83,21 +83,21 @@ void BodyRegion::write_joints(const RegionStage& stage) const {
     }
 }
 
-void BodyRegion::write_body_push(const RegionStage& stage, std::span<const Vec4> velocity) const {
+void BodyRegion::write_body_push(const RegionStage& stage) const {
     for (std::size_t k = 0; k < rigid.size(); ++k) {
         const auto r = static_cast<std::size_t>(rigid[k]);
-        stage.out.push_velocity[r] = velocity[2 * k].head<3>();
-        stage.out.push_spin[r] = velocity[2 * k + 1].head<3>();
+        stage.out.push_velocity[r] = memory.scratch[2 * k].head<3>();
+        stage.out.push_spin[r] = memory.scratch[2 * k + 1].head<3>();
     }
 }
 
-Real BodyRegion::push_work(const RegionStage& stage, std::span<const Vec4> velocity) const {
+Real BodyRegion::push_work(const RegionStage& stage) const {
     const RigidInputs& bodies = stage.inputs.rigid;
-    Real work = push_work_through_clusters(stage, memory, velocity);
+    Real work = push_work_of_nodes(stage, memory, false);
     for (std::size_t k = 0; k < rigid.size(); ++k) {
         const auto r = static_cast<std::size_t>(rigid[k]);
-        work -= bodies.kick[r].dot(velocity[2 * k].head<3>()) +
-                bodies.spins.moment_kick[r].dot(velocity[2 * k + 1].head<3>());
+        work -= bodies.kick[r].dot(memory.scratch[2 * k].head<3>()) +
+                bodies.spins.moment_kick[r].dot(memory.scratch[2 * k + 1].head<3>());
     }
     return work;
 }

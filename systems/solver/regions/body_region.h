@@ -29,11 +29,11 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
     void write_contact(const RegionStage& stage, std::size_t i) const;
     void write_joints(const RegionStage& stage) const;
-    void write_body_push(const RegionStage& stage, std::span<const Vec4> velocity) const;
+    void write_body_push(const RegionStage& stage) const;
     PushedBodies pushed(const RegionStage& stage, const BodyOperator& op) const {
-        return {{stage, rigid, memory.velocity}, memory, row, op};
+        return {stage, row, rigid, memory, op};
     }
-    Real push_work(const RegionStage& stage, std::span<const Vec4> velocity) const;
+    Real push_work(const RegionStage& stage) const;
 
     JointPlaceInRegion joint_place(const RegionStage& stage, std::size_t k) const {
         RegionMemory& data = stage.memory;

@@ -37,14 +37,11 @@ struct LoadedRegion {
     /// Writes the impulses of joints.
     void write_joints(const RegionStage&) const {}
     /// Writes pseudo velocities of bodies.
-    void write_body_push(const RegionStage&, std::span<const Vec4>) const {}
+    void write_body_push(const RegionStage&) const {}
     /// What the push moves beside contacts.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
     /// Work of the push against the forces of the step [J]
-    Real push_work(const RegionStage& stage, std::span<const Vec4> velocity) const {
-        return Walk::own_masses ? skerry::push_work(stage, memory, velocity)
-                                : push_work_through_clusters(stage, memory, velocity);
-    }
+    Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }
 };
 
 /// Lists the nodes of a region in the order of their first appearance, with their velocities. RegionMemory::place
@@ -120,27 +117,8 @@ void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
     op.refresh();
 }
 
-/// Evaluates the warm start. Returns true, with the outcome, if its error is within the tolerance: no sweep is needed.
-/// If its error is large and zero impulses have a smaller one, starts from zero.
-template <ContactOperator Op>
-bool start_from_warm_impulse(Op& op, const SolverSettings& settings, Real tolerance, RegionOutcome& outcome) {
-    const Real error = op.error();
-    if (error <= tolerance && settings.certify_warm_start) {
-        outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
-        return true;
-    }
-    if (error <= suspicious_start) return false;
-    // workspace 0 keeps the warm start while zero impulses are evaluated
-    BestIterate<Op> better(op);
-    better.offer(error);
-    std::ranges::fill(op.impulse(), Vec4::Zero());
-    op.refresh();
-    if (error < op.error()) better.restore();
-    return false;
-}
-
 /// Start: takes the warm start, or zero impulses if those are clearly better. Returns true, with the outcome, if the
-/// region is solved.
+/// region is solved: zero impulses or the warm start have an error within the tolerance.
 template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
@@ -157,7 +135,19 @@ bool start_region(const RegionStage& stage, const Region& region, Op& op, Region
     }
     if (settings.warm_start == WarmStart::off) return false;
     take_warm_start(stage, region, op);
-    return start_from_warm_impulse(op, settings, region.tolerance, outcome);
+    const Real error = op.error();
+    if (error <= region.tolerance && settings.certify_warm_start) {
+        outcome = {.error = error, .status = RegionStatus::certified, .shortcut = shortcut_certified};
+        return true;
+    }
+    if (error <= suspicious_start) return false;
+    // workspace 0 keeps the warm start while zero impulses are evaluated
+    BestIterate<Op> better(op);
+    better.offer(error);
+    std::ranges::fill(op.impulse(), Vec4::Zero());
+    op.refresh();
+    if (error < op.error()) better.restore();
+    return false;
 }
 
 /// Sweep: runs the method of the region from the present impulse.
@@ -200,19 +190,14 @@ template <class Region>
 /// Finish: writes back, pushes out, and records the dissipated energy.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline void finish_region(const RegionStage& stage, const Region& region, const Op& op,
-                                                 const PushMemory& memory, RegionOutcome& outcome) {
+                                                 RegionOutcome& outcome) {
     outcome.dissipated = write_back(stage, region);
     if (outcome.status == RegionStatus::not_finite) return;
-    if (!solve_push(stage, region, op, memory)) return;
-    write_nodes(stage, region, memory.velocity, stage.out.push_out);
-    region.write_body_push(stage, memory.velocity);
-    outcome.push_work = region.push_work(stage, memory.velocity);
+    if (!solve_push(stage, region, op)) return;
+    write_nodes(stage, region, region.memory.scratch, stage.out.push_out);
+    region.write_body_push(stage);
+    outcome.push_work = region.push_work(stage);
     stage.memory.pushed.store(true, std::memory_order_relaxed);
-}
-template <class Region, RegionOperator Op>
-void finish_region(const RegionStage& stage, const Region& region, const Op& op, RegionOutcome& outcome) {
-    finish_region(stage, region, op, push_memory(stage, region.base, region.row.size(), region.memory.scratch),
-                  outcome);
 }
 
 /// Solves a loaded region. `sweep(op)` returns the outcome of the sweeps.

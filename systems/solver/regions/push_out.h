@@ -34,12 +34,13 @@ struct PushedContacts {
 template <class Region, RegionOperator Op, class Others>
 class Push {
 public:
-    Push(const RegionStage& stage, const Region& region, const Op& op, Others others, const PushMemory& memory)
+    Push(const RegionStage& stage, const Region& region, const Op& op, Others others)
         : stage_(stage),
           region_(region),
           op_(op),
           others_(std::move(others)),
-          memory_(memory),
+          memory_(push_memory(stage, region.base, region.row.size())),
+          velocity_(region.memory.scratch),
           slop_(push_slop(stage.inputs.gravity, stage.h)) {}
 
     /// Writes the pseudo velocities. Returns false if there are none. `pressed`: some contact is pressed in.
@@ -61,8 +62,8 @@ private:
     };
 
     void clear() {
-        region_.walk.nodes(memory_.velocity.size(), [this](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) memory_.velocity[n].setZero();
+        region_.walk.nodes(velocity_.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) velocity_[n].setZero();
         });
         region_.walk.contacts(region_.row.size(), [this](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) memory_.impulse[i] = 0;
@@ -79,7 +80,7 @@ private:
                 const Real gap = stage_.inputs.gap[region_.row_at(i)];
                 Real& bias = memory_.bias[i];
                 bias = push_bias(along, gap, slop_, stage_.settings, stage_.inputs.gravity, stage_.h);
-                if (const Real loss = others_.loss(i, memory_.velocity); loss < 0) {
+                if (const Real loss = others_.loss(i, velocity_); loss < 0) {
                     bias = push_bias_turned(bias, along, gap, slop_, loss, stage_.h);
                     by_turns = by_turns || bias < 0;
                 }
@@ -93,13 +94,12 @@ private:
     void sweep(Real asked) {
         const Real small = region_.tolerance * region_.tolerance * asked;
         for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
-            const Real of_joints = others_.sweep_joints(memory_.velocity);
+            const Real of_joints = others_.sweep_joints(velocity_);
             const Real change =
                 region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
                     Real size = begin == 0 ? of_joints : 0;
                     for (std::size_t i = begin; i < end; ++i)
-                        size += op_.push(static_cast<Index>(i), memory_.bias[i], memory_.velocity.data(),
-                                         memory_.impulse[i]);
+                        size += op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
                     return size;
                 });
             if (change <= small && !stage_.settings.fixed_iterations) break;
@@ -111,20 +111,21 @@ private:
     const Op& op_;
     const Others others_;
     const PushMemory memory_;
+    const std::span<Vec4> velocity_;
     const Real slop_;
 };
 
 /// Finds frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed), further limited by
 /// push_speed, where the gap is below the slop. Elsewhere they allow no approach that the velocity solve would not
-/// allow. The solution must be written to `stage.out` already. Returns false if nothing is pushed.
+/// allow. The solution must be written to `stage.out` already. The result is in region.memory.scratch. Returns false if
+/// nothing is pushed.
 template <class Region, RegionOperator Op>
-[[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op,
-                                              const PushMemory& memory) {
+[[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);
     const bool pressed = std::ranges::any_of(region.row, [&](Index i) { return stage.inputs.gap[i] < -slop; });
     auto others = region.pushed(stage, op);
     if (!pressed && !others.any_turns()) return false;
-    return Push(stage, region, op, std::move(others), memory).run(pressed);
+    return Push(stage, region, op, std::move(others)).run(pressed);
 }
 
 }  // namespace skerry

@@ -1,16 +1,72 @@
 #include "systems/solver/regions/pushed_bodies.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+
+#include "systems/geometry/free_turn.h"
+#include "systems/geometry/rotation.h"
 
 namespace skerry {
+namespace {
 
-PushedBodies::PushedBodies(const TurnedAxes& axes, const BodyMemory& memory, std::span<const Index> row,
-                           const BodyOperator& op)
-    : axes_(axes), memory_(memory), row_(row), op_(op) {
+/// Height along the normal of a point on a cylinder after the axis has turned, without rotation about the axis. For the
+/// lowest point of a rim: the height of the point that is lowest then, because the lowest point moves around the rim
+/// [m]
+Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
+    constexpr Real lowest = 1e-9, least_tilt = 1e-4;  // of the radius; [rad], below it many rim points are lowest
+    const Real up = axis.dot(place), radius = (place - up * axis).norm();
+    const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
+    if (axis.cross(normal).norm() > least_tilt && normal.dot(place) <= lowest_of_rim(axis) + lowest * radius)
+        return lowest_of_rim(axis_then);
+    const Vec3 about = axis.cross(axis_then);
+    const Real sine = about.norm();
+    if (!(sine > 0)) return normal.dot(place);
+    return normal.dot(rotation_matrix(std::atan2(sine, axis.dot(axis_then)) / sine * about) * place);
+}
+
+}  // namespace
+
+PushedBodies::PushedBodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> rigid,
+                           const BodyMemory& memory, const BodyOperator& op)
+    : stage_(stage), row_(row), memory_(memory), op_(op), any_turns_(std::ranges::any_of(rigid, [&](Index r) {
+          return stage.inputs.rigid.is_capsule(r) || stage.inputs.rigid.is_cylinder(r);
+      })) {
     for (std::size_t at = row.size(); at < memory.contact.size(); ++at) memory.workspace[0][at].setZero();
 }
 
-Real PushedBodies::sweep_joints(std::span<Vec4> push_velocity) const {
+Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
+    if (!any_turns_) return 0;
+    constexpr Real rounding = 1e-12;  // as in push_slop [m]
+    const RigidInputs& rigid = stage_.inputs.rigid;
+    const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];
+    Real along = 0;  // [m]
+    for (const RigidTerm& term : memory_.part[i].terms()) {
+        const auto r = static_cast<std::size_t>(term.row);
+        const bool cylinder = rigid.is_cylinder(term.row);
+        if (!cylinder && !rigid.is_capsule(term.row)) continue;
+        // Point relative to the centre; for a capsule on its axis.
+        const Vec3 place =
+            cylinder ? Vec3(term.arm.head<3>()) : Vec3(term.arm.head<3>() + rigid.radius(term.row) * normal);
+        const Vec3 angular_momentum =
+            rigid.spins.angular_momentum[r] + (rigid.spins.moment_kick[r] + stage_.out.contact_moment[r]);
+        const Vec3 spin = memory_.velocity[static_cast<std::size_t>(term.slot) + 1].head<3>(),
+                   push_spin = push[static_cast<std::size_t>(term.slot) + 1].head<3>();
+        const Mat3 turned = turned_freely(rigid.rotation[r], rigid.moments[r], angular_momentum, stage_.h);
+        const Mat3 pushed = rotation_matrix(stage_.h * push_spin);
+        const Vec3 straight = stage_.h * (spin + push_spin).cross(place);
+        if (cylinder) {
+            along += height_after(place, rigid.rotation[r].col(2), pushed * turned.col(2), normal) -
+                     normal.dot(place + straight);
+            continue;
+        }
+        const Vec3 there = pushed * (turned * (rigid.rotation[r].transpose() * place));
+        along += normal.dot(there - place - straight);
+    }
+    return along < -rounding ? along / stage_.h : 0;
+}
+
+Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
     const std::span<Vec4> impulse = memory_.workspace[0];
     Real size = 0;
     for (std::size_t at = row_.size(); at < memory_.contact.size(); ++at) {
@@ -19,11 +75,11 @@ Real PushedBodies::sweep_joints(std::span<Vec4> push_velocity) const {
         const JointLaw& law = *op_.joint(i);
         const Mat3 frame = matrix_of(part.frame);
         const Vec3 r = frame.transpose() * impulse[at].head<3>();
-        const Vec3 u = frame.transpose() * op_.velocity_at(i, push_velocity.data()).head<3>();
+        const Vec3 u = frame.transpose() * op_.velocity_at(i, push.data()).head<3>();
         const Vec4 next = padded(frame * law.answer(bounds(at, law), u - law.block * r));
         const Vec4 change = next - impulse[at];
         if (change.isZero(0)) continue;
-        op_.apply_undeformed(i, change, push_velocity.data());
+        op_.apply_undeformed(i, change, push.data());
         impulse[at] = next;
         size += op_.inner(i, change, change);
     }

@@ -4,32 +4,38 @@
 #include <span>
 
 #include "systems/solver/operators/body_operator.h"
-#include "systems/solver/regions/turned_axes.h"
+#include "systems/solver/regions/region_stage.h"
 
 namespace skerry {
 
-/// Joints during the push: locked rows hold, and axes stay within their limits for push and step together. The impulses
-/// of the push use a workspace that the method no longer needs.
+/// Contacts are solved for straight motion of their points. Points on the axis of a capsule or the surface of a
+/// cylinder deviate from it: a spinning capsule that is pressed turns its ends further towards the touched surface.
+/// This loss in each step would use up the contact distance (docs/methods/rigid_bodies.md 6.2). In joints, locked rows
+/// hold during the push, and axes stay within their limits for push and step together. The impulses of the push on
+/// joints use a workspace that the method no longer needs.
 class PushedBodies {
 public:
-    /// `row`: rows of ContactTable of the region.
-    PushedBodies(const TurnedAxes& axes, const BodyMemory& memory, std::span<const Index> row, const BodyOperator& op);
+    /// `row`, `rigid`: contacts and rigid bodies of the region. The impulses on the bodies must be written to
+    /// `stage.out` already.
+    PushedBodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> rigid,
+                 const BodyMemory& memory, const BodyOperator& op);
 
-    bool any_turns() const { return axes_.any(); }
-    /// Speed at which a contact loses distance by turning bodies, at most 0 (docs/methods/rigid_bodies.md 6.2) [m/s]
-    Real loss(std::size_t i, std::span<const Vec4> push_velocity) const {
-        return axes_.any() ? axes_.loss(row_[i], memory_.part[i], push_velocity) : 0;
-    }
+    /// True if the region has a capsule or a cylinder.
+    bool any_turns() const { return any_turns_; }
+    /// Speed along the normal at which a contact loses distance by rotation, beyond the approach by the velocities and
+    /// pseudo velocities. At most 0; 0 below rounding [m/s]
+    Real loss(std::size_t i, std::span<const Vec4> push) const;
     /// One sweep over the joints. Returns the size of the change [J]
-    Real sweep_joints(std::span<Vec4> push_velocity) const;
+    Real sweep_joints(std::span<Vec4> push) const;
 
 private:
     AxisBounds bounds(std::size_t at, const JointLaw& law) const;
 
-    TurnedAxes axes_;
-    const BodyMemory& memory_;
+    const RegionStage& stage_;
     std::span<const Index> row_;
+    const BodyMemory& memory_;
     const BodyOperator& op_;
+    bool any_turns_;
 };
 
 }  // namespace skerry

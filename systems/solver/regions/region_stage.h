@@ -48,18 +48,16 @@ ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t coun
 inline Vec4 free_velocity_of(const RegionStage& stage, Index node) {
     return padded(stage.out.velocity_next[node]);
 }
-/// Memory of the split impulse. `velocity` receives the result, by velocity of the region.
-PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::span<Vec4> velocity);
+/// Memory of the split impulse of `count` contacts starting at `base`.
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 
 /// Energy that a contact dissipates; its impulse and velocities must be written already (docs/methods/time_stepping.md
 /// 2.6) [J]
 Real dissipated_by(const RegionStage& stage, Index row);
 
-/// Work of moving positions by h p against the forces of the step without contacts. h times the force on a node is its
-/// change of momentum minus the impulses of its contacts. First order in h p [J]
-Real push_work(const RegionStage& stage, const ContactMemory& memory, std::span<const Vec4> push_velocity);
-/// Variant for nodes whose mass is coupled in clusters: it uses their known force impulses. Rigid bodies are left out.
-Real push_work_through_clusters(const RegionStage& stage, const ContactMemory& memory,
-                                std::span<const Vec4> push_velocity);
+/// Work of moving nodes by h p against the forces of the step without contacts; p is in memory.scratch. h times the
+/// force on a node is its change of momentum minus the impulses of its contacts. For nodes of clusters it is known.
+/// First order in h p. `own_masses`: the region has no clusters and bodies [J]
+Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

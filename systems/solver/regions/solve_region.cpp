@@ -10,7 +10,7 @@ namespace {
 
 /// Sweeps on the normal impulses only.
 SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region) {
-    const PushMemory memory = push_memory(stage, region.base, region.row.size(), {});
+    const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
     if (result.converged || !std::isfinite(result.error)) rows.keep();  // otherwise the best ones are there
@@ -36,7 +36,7 @@ RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& regi
     return outcome;
 }
 
-RegionOutcome solve_single(const RegionStage& stage, Index row) {
+RegionOutcome solve_single(const RegionStage& stage, Index row, Index base) {
     std::array<Index, 4> node;
     std::array<Vec4, 4> velocity, push_velocity;
     std::size_t node_count = 0;
@@ -56,17 +56,19 @@ RegionOutcome solve_single(const RegionStage& stage, Index row) {
         outcome.status = RegionStatus::not_finite;
         outcome.error = size;
     }
-    const RegionInOrder region{
-        .row = {&row, 1},
-        .memory = {{{&contact, 1}, {&impulse, 1}, {velocity.data(), node_count}, {node.data(), node_count}, {}, {}},
-                   {}}};
-    Real push_impulse, push_bias;
-    finish_region(stage, region, operator_of(stage, region),
-                  {{&push_impulse, 1}, {&push_bias, 1}, {push_velocity.data(), node_count}}, outcome);
+    const RegionInOrder region{.row = {&row, 1},
+                               .base = base,
+                               .memory = {{.contact = {&contact, 1},
+                                           .impulse = {&impulse, 1},
+                                           .velocity = {velocity.data(), node_count},
+                                           .node = {node.data(), node_count},
+                                           .scratch = {push_velocity.data(), node_count},
+                                           .workspace = {}},
+                                          {}}};
+    finish_region(stage, region, operator_of(stage, region), outcome);
     return outcome;
 }
 
 template bool start_region(const RegionStage&, const RegionInOrder&, LumpedOperator&, RegionOutcome&);
-template void finish_region(const RegionStage&, const RegionInOrder&, const LumpedOperator&, RegionOutcome&);
 
 }  // namespace skerry

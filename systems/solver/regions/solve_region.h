@@ -16,12 +16,11 @@ RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, 
 RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& region, LumpedOperator& op);
 
 /// Closed-form solution of a region with one contact: one contact step from zero.
-RegionOutcome solve_single(const RegionStage& stage, Index row);
+RegionOutcome solve_single(const RegionStage& stage, Index row, Index base);
 
 /// Solves a region whose contacts touch clusters of nodes but no rigid body (docs/methods/clusters.md 4).
 RegionOutcome solve_clustered(const RegionStage& stage, std::span<const Index> row, Index number, Index base);
 
 extern template bool start_region(const RegionStage&, const RegionInOrder&, LumpedOperator&, RegionOutcome&);
-extern template void finish_region(const RegionStage&, const RegionInOrder&, const LumpedOperator&, RegionOutcome&);
 
 }  // namespace skerry
