@@ -76,7 +76,7 @@ public:
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
-    /// Energy that stops a contact at this normal speed [J]
+    /// Size of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const {
         return part(i).along_normal > 0 ? speed * speed / part(i).along_normal : 0;
     }

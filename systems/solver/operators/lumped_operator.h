@@ -36,7 +36,7 @@ public:
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact_velocity(contact(i), memory_.velocity.data()); }
-    /// Energy that stops a contact at this normal speed [J]
+    /// Size of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const { return contact(i).inverse_diagonal * speed * speed; }
     /// One contact step of the split impulse (push_contact.h). Returns the size of the change [J]
     Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {

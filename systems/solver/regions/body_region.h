@@ -14,7 +14,7 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> rigid;  // rows of RigidBodyTable
 
-    // Functions of the life cycle.
+    // Functions of the life cycle. They hide those of LoadedRegion.
     bool moves_node(const RegionStage& stage, std::size_t n) const {
         return memory.node[n] != no_index && stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) ==
                                                  no_index;  // otherwise its frame moves it, too

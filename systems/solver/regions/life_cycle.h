@@ -38,7 +38,7 @@ struct LoadedRegion {
     void write_joints(const RegionStage&) const {}
     /// Writes pseudo velocities of bodies.
     void write_body_push(const RegionStage&) const {}
-    /// What the push moves beside contacts.
+    /// Parts of the push beside contacts.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
     /// Work of the push against the forces of the step [J]
     Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }

@@ -17,7 +17,8 @@ LumpedOperatorBy<Walk> operator_of(const RegionStage& stage, const LumpedRegion<
     return {region.memory, stage.settings.friction, region.scale, region.walk};
 }
 
-/// A region that is not loaded yet. `node`: rows of NodeTable, at places from `first_node` on in the columns by node.
+/// Returns a region that is not loaded yet. `node`: rows of NodeTable, at places from `first_node` on in the columns by
+/// node.
 template <RegionWalk Walk>
 LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index> row, Index base,
                                  std::size_t first_node, std::span<const Index> node, const Walk& walk) {
@@ -33,7 +34,7 @@ LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index
 /// of that row must be set by then.
 template <RegionWalk Walk, class Numbering>
 void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Walk>& region, Numbering&& numbering) {
-    // lanes need it
+    // Lanes need the velocities without impulses.
     const bool keep_free_velocity = std::is_same_v<Walk, InOrder> && workspace_slots(stage.settings.method) > 1;
     const std::size_t first = static_cast<std::size_t>(region.base);
     const Vec4* velocity = region.memory.velocity.data();

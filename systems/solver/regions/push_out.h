@@ -16,11 +16,11 @@ template <class Op>
 concept RegionOperator = ContactOperator<Op> &&
     requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
     { op.velocity(i) } -> std::same_as<Vec4>;           // u of the present impulse
-    { op.push_size(i, number) } -> std::same_as<Real>;  // energy that stops the contact at a normal speed [J]
+    { op.push_size(i, number) } -> std::same_as<Real>;  // size of a push that changes the normal speed [J]
     { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;  // one contact step on the pseudo velocities
 };
 
-/// Push of a region with contacts only. Regions with joints, or with bodies that turn, have their own version.
+/// Parts of a push beside contacts. Regions of lumped masses have none; PushedBodies has joints and turning bodies.
 struct PushedContacts {
     /// True if contacts may lose distance by rotation.
     bool any_turns() const { return false; }

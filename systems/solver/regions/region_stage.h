@@ -56,8 +56,8 @@ PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 Real dissipated_by(const RegionStage& stage, Index row);
 
 /// Work of moving nodes by h p against the forces of the step without contacts; p is in memory.scratch. h times the
-/// force on a node is its change of momentum minus the impulses of its contacts. For nodes of clusters it is known.
-/// First order in h p. `own_masses`: the region has no clusters and bodies [J]
+/// force on a node is its change of momentum minus the impulses of its contacts; nodes of clusters have it in the
+/// inputs. First order in h p. `own_masses`: the region has neither clusters nor bodies [J]
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry
