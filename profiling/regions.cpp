@@ -50,9 +50,10 @@ struct Problem {
     void push(const Walk& walk) {
         RegionInputs pressed = inputs;
         pressed.gap = gap;
-        solve_push<Walk>({pressed, settings, stage.h, out, data}, walk,
-                         {row, memory.contact, memory.velocity, settings.tolerance},
-                         push_memory(stage, 0, row.size(), memory.scratch));
+        const RegionStage of_pressed{pressed, settings, stage.h, out, data};
+        const LumpedRegion<Walk> region{
+            .row = row, .walk = walk, .memory = memory, .scale = scale, .tolerance = settings.tolerance};
+        solve_push(of_pressed, region, operator_of(of_pressed, region));
     }
 
     std::vector<Vec3> velocity_next, impulse_out, push_out;

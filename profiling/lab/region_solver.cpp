@@ -6,20 +6,6 @@
 #include "systems/solver/regions/solve_region.h"
 
 namespace skerry::lab {
-namespace {
-
-template <RegionWalk Walk>
-RegionOutcome solve_loaded(const RegionStage& stage, const LoadedRegion<Walk>& region, Method method) {
-    RegionOutcome outcome;
-    if (!start_region(stage, region, outcome)) {
-        LumpedOperatorBy<Walk> op = operator_of(stage, region);
-        outcome = outcome_of(run(method, op, limits_of(stage.settings, region.tolerance)), stage.settings);
-    }
-    finish_region(stage, region, outcome);
-    return outcome;
-}
-
-}  // namespace
 
 void RegionSolver::solve(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings,
                          Method method, Real h, RegionTable& regions, const RegionOutputs& out) {
@@ -29,20 +15,24 @@ void RegionSolver::solve(Executor& executor, const RegionInputs& contacts, const
     const std::size_t region_nodes = find_region_blocks(contacts, regions, memory_);
     memory_.make_room_for(memory_.rows, region_nodes, contacts.inverse_mass.size(), own);
     const RegionStage stage{contacts, own, h, out, memory_};
+    const auto solve = [&](const auto& region) {
+        const SolveLimits limits = limits_of(own, region.tolerance);
+        return solve_loaded(stage, region, [&](auto& op) { return outcome_of(run(method, op, limits), own); });
+    };
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const auto number = static_cast<Index>(r);
         const std::span<const Index> row = regions.contacts[r];
         const Index base = regions.contacts.offset[r];
         RegionOutcome outcome;
         if (row.size() == 1 && !own.fixed_iterations) {
-            outcome = solve_single(stage, row[0]);
+            outcome = solve_single(stage, row[0], base);
         } else if (is_large(stage, regions, number)) {
             team_.gather(executor, [&] {
                 order_region(contacts, row, team_, memory_.place.span(), coloured_);
-                outcome = solve_loaded(stage, load_by_colour(stage, row, base, team_, coloured_), method);
+                outcome = solve(load_by_colour(stage, row, base, team_, coloured_));
             });
         } else {
-            outcome = solve_loaded(stage, load_region(stage, row, base), method);
+            outcome = solve(load_region(stage, row, base));
         }
         write_outcome(outcome, number, regions);
     }

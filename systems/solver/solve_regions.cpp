@@ -4,10 +4,9 @@
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
+#include "systems/solver/regions/body_region.h"
 #include "systems/solver/regions/lane_queue.h"
 #include "systems/solver/regions/region_blocks.h"
-#include "systems/solver/regions/solve_clustered.h"
-#include "systems/solver/regions/solve_freedom.h"
 #include "systems/solver/regions/solve_large_regions.h"
 #include "systems/solver/schedule_regions.h"
 
@@ -20,30 +19,29 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
     LaneQueue queue(stage, regions);
     for (Index k = task.begin; k < task.end; ++k) {
         const Index number = regions.order[k];
-        const std::span<const Index> row = regions.contacts[number];
         if (is_large(stage, regions, number)) continue;
+        const std::span<const Index> row = regions.contacts[number];
+        const Index base = regions.contacts.offset[number];
+        RegionOutcome outcome;
         if (touches_rigid(stage.memory, number)) {
             const std::span<const Index> joints = regions.joints_of(static_cast<std::size_t>(number));
-            write_outcome(solve_freedom(stage, row, joints, number, regions.contacts.offset[number]), number, regions);
-            continue;
+            outcome = solve_bodies(stage, row, joints, number, base);
+        } else if (touches_cluster(stage.memory, number)) {
+            outcome = solve_clustered(stage, row, number, base);
+        } else if (row.size() == 1 && !stage.settings.fixed_iterations) {
+            outcome = solve_single(stage, row[0], base);
+        } else {
+            const RegionInOrder region = load_region(stage, row, base);
+            LumpedOperator op = operator_of(stage, region);
+            if (!start_region(stage, region, op, outcome)) {
+                if (lanes && queue.takes(region)) {
+                    queue.push(number, region);
+                    continue;
+                }
+                outcome = sweep_in_order(stage, region, op);
+            }
+            finish_region(stage, region, op, outcome);
         }
-        if (touches_cluster(stage.memory, number)) {
-            write_outcome(solve_clustered(stage, row, number, regions.contacts.offset[number]), number, regions);
-            continue;
-        }
-        if (row.size() == 1 && !stage.settings.fixed_iterations) {
-            write_outcome(solve_single(stage, row[0]), number, regions);
-            continue;
-        }
-        RegionInOrder region = load_region(stage, row, regions.contacts.offset[number]);
-        RegionOutcome outcome;
-        const bool done = start_region(stage, region, outcome);
-        if (!done && lanes && queue.takes(region)) {
-            queue.push(number, region);
-            continue;
-        }
-        if (!done) outcome = sweep_region(stage, region);
-        finish_region(stage, region, outcome);
         write_outcome(outcome, number, regions);
     }
     queue.flush();

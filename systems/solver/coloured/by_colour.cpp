@@ -2,6 +2,7 @@
 
 namespace skerry {
 
+template class RegionOperatorBase<ColouredOperator, ByColour, LumpedMemory>;
 template class LumpedOperatorBy<ByColour>;
 
 }  // namespace skerry

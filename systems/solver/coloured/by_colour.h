@@ -40,7 +40,6 @@ inline std::size_t block_count(const ColouredOrder& order) {
 
 class ByColour {
 public:
-    static constexpr bool one_thread = false;
     static constexpr bool own_masses = true;
 
     /// `partial`: block_count(order) rows.
@@ -89,6 +88,8 @@ private:
 
 using ColouredOperator = LumpedOperatorBy<ByColour>;
 static_assert(ContactOperator<ColouredOperator>);
-extern template class LumpedOperatorBy<ByColour>;  // compiled once, in by_colour.cpp
+// compiled once, in by_colour.cpp
+extern template class RegionOperatorBase<ColouredOperator, ByColour, LumpedMemory>;
+extern template class LumpedOperatorBy<ByColour>;
 
 }  // namespace skerry

@@ -71,9 +71,9 @@ public:
     /// Begins a round (fixed multipliers): no sliding directions are known, no contact is to stop.
     void start_round();
 
-    Real softness = 0;    // compliance of contacts in a round, as a fraction of D
-    bool wholes = false;  // true: deformable bodies move as rigid bodies
-    Column<Vec3> offset;  // by contact: part of its velocity that is not J v [m/s]
+    Real softness = 0;         // compliance of contacts in a round, as a fraction of D
+    bool rigid_modes = false;  // true: deformable bodies move as rigid bodies
+    Column<Vec3> offset;       // by contact: part of its velocity that is not J v [m/s]
 
     // Vectors by number: the motion sought, the motion made by its impulses, their difference, the Newton step, and the
     // motion before the step [m/s, rad/s]
@@ -96,7 +96,7 @@ private:
 
 /// Equations of Newton steps: with bodies as they are, and with all of them as rigid bodies.
 struct NewtonEquations {
-    BodyEquations own, wholes;
+    BodyEquations own, rigid_modes;
 };
 
 }  // namespace skerry

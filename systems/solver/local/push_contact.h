@@ -60,7 +60,6 @@ inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity
 
 struct PushMemory {
     std::span<Real> impulse, bias;  // by contact
-    std::span<Vec4> velocity;       // result, by node of the region [m/s]
 };
 
 }  // namespace skerry

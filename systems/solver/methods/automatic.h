@@ -33,8 +33,8 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
     { op.newton_step_cost() } -> std::same_as<Real>;
     { op.sweep_cost() } -> std::same_as<Real>;
-    { op.take_rounds_of_wholes(number, number, limit) } -> std::same_as<SolveResult>;
-    { op.moves_wholes() } -> std::same_as<bool>;
+    { op.correct_rigid_modes(number, number, limit) } -> std::same_as<SolveResult>;
+    { op.corrects_rigid_modes() } -> std::same_as<bool>;
 };
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
@@ -62,8 +62,8 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
 /// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as these gain. Adds the Newton steps
 /// taken to `steps`.
 template <HasNewtonSteps Op>
-SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps, const SolveLimits& limits,
-                        Index& steps) {
+SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps,
+                                       const SolveLimits& limits, Index& steps) {
     constexpr Index most_times = 8, few = 4;
     constexpr Real gain = 0.5;
     const auto result = [&](const SolveResult& of) {
@@ -74,7 +74,7 @@ SolveResult move_wholes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& swee
         if (sweeps.run_to(std::min(sweeps.iterations() + few, left))) break;
         if (sweeps.iterations() >= left) break;
         const Real error = test.result().error;
-        const SolveResult rounds = op.take_rounds_of_wholes(error, limits.tolerance, left - sweeps.iterations());
+        const SolveResult rounds = op.correct_rigid_modes(error, limits.tolerance, left - sweeps.iterations());
         steps += rounds.iterations;
         if (rounds.converged) return result(rounds);
         test.offer(rounds.error);
@@ -100,8 +100,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     Real error_before = 1;
     Index iteration_before = 0, newton_steps = 0;
     if constexpr (HasNewtonSteps<Op>)
-        if (op.moves_wholes()) {
-            const SolveResult result = move_wholes(op, test, sweeps, limits, newton_steps);
+        if (op.corrects_rigid_modes()) {
+            const SolveResult result = alternate_with_rigid_modes(op, test, sweeps, limits, newton_steps);
             if (result.converged || !std::isfinite(result.error)) return result;
         }
     while (true) {

@@ -1,6 +1,6 @@
 // Interface of a contact problem for the methods: the Delassus operator W = J M^-1 J^T, formed only where necessary,
 // and the friction law of each contact. J maps node velocities to contact velocities, M is the lumped mass. Models:
-// LumpedOperator (carries node velocities along; used in a step of the engine), FreedomOperator (rigid bodies) and
+// LumpedOperator (carries node velocities along; used in a step of the engine), BodyOperator (rigid bodies) and
 // BlockOperator (blocks of W; problems from files). NormalRows supports accelerated sweeps only.
 #pragma once
 

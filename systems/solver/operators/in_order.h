@@ -14,24 +14,25 @@ namespace skerry {
 /// `body` is called with ranges [begin, end) that together cover all places. Contacts that share a node are never
 /// visited concurrently, and always in the same order.
 template <class W>
-concept RegionWalk = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
-                              Real (*part)(std::size_t, std::size_t), const LumpedContact& contact, const Vec4& impulse,
-                              Vec4* velocity) {
-    { W::one_thread } -> std::convertible_to<bool>;
-    { W::own_masses } -> std::convertible_to<bool>;  // J M^-1 J^T of one contact equals its LumpedContact::diagonal
+concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
+                               Real (*part)(std::size_t, std::size_t)) {
     { walk.number_of(count) } -> std::convertible_to<std::size_t>;  // number in the region of the contact at a place
     walk.contacts(count, body);
     walk.nodes(count, body);
     { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // sum over the contacts, always in the same order
-    walk.apply(contact, impulse, velocity);                     // velocities of the region's nodes += M^-1 J^T impulse
+};
+
+/// An order together with the effect of impulses on nodes.
+template <class W>
+concept RegionWalk = RegionOrder<W> &&
+    requires(const W walk, const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
+    { W::own_masses } -> std::convertible_to<bool>;  // J M^-1 J^T of one contact equals its LumpedContact::diagonal
+    walk.apply(contact, impulse, velocity);          // velocities of the region's nodes += M^-1 J^T impulse
     { walk.coupling(contact, contact) } -> std::same_as<Real>;  // J M^-1 J^T of two contacts [1/kg]
 };
 
-/// One thread, in the order of the contacts; every node has its own mass.
-struct InOrder {
-    static constexpr bool one_thread = true;
-    static constexpr bool own_masses = true;
-
+/// One thread, in the order of the contacts.
+struct OneThread {
     std::size_t number_of(std::size_t place) const { return place; }
     template <class Body>
     void contacts(std::size_t count, Body&& body) const {
@@ -45,6 +46,14 @@ struct InOrder {
     Sum sum(std::size_t count, Part&& part) const {
         return part(std::size_t{0}, count);
     }
+};
+
+static_assert(RegionOrder<OneThread>);
+
+/// One thread, in the order of the contacts; every node has its own mass.
+struct InOrder : OneThread {
+    static constexpr bool own_masses = true;
+
     void apply(const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) const {
         apply_impulse(contact, impulse, velocity);
     }

@@ -2,6 +2,7 @@
 
 namespace skerry {
 
+template class RegionOperatorBase<LumpedOperator, InOrder, LumpedMemory>;
 template class LumpedOperatorBy<InOrder>;
 
 }  // namespace skerry

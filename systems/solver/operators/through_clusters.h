@@ -11,7 +11,7 @@ namespace skerry {
 
 /// One thread, in the order of the contacts. All nodes of a cluster must be consecutive rows of the region, in the
 /// order of the cluster, even if no contact has them.
-class ThroughClusters : public InOrder {
+class ThroughClusters : public OneThread {
 public:
     static constexpr bool own_masses = false;
 

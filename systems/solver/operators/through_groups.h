@@ -13,7 +13,7 @@ namespace skerry {
 
 /// One thread, in the order of the contacts. The touched nodes of an implicit body must be consecutive rows of the
 /// region, in the order of ImplicitCoupling.
-class ThroughGroups {
+class ThroughGroups : public OneThread {
 public:
     /// `node`: rows of NodeTable of the region's nodes.
     ThroughGroups(const NodeClusters& clusters, const ImplicitInputs& implicit, const RigidInputs& rigid,

@@ -1,7 +1,10 @@
 // Rows of joints in a region. They are treated as contacts with a different law (docs/methods/joints.md 2).
 #pragma once
 
-#include "systems/solver/regions/life_cycle.h"
+#include <span>
+
+#include "systems/solver/local/load_sums.h"
+#include "systems/solver/regions/region_stage.h"
 
 namespace skerry {
 

@@ -34,15 +34,16 @@ void LaneQueue::solve(std::size_t size_class) {
     }
     solve_lane_batch(size_class, {lane.data(), batch.count}, settings.max_iterations, settings.relaxation, result);
     for (std::size_t l = 0; l < batch.count; ++l) {
-        RegionInOrder& region = batch.waiting[l].region;
+        const RegionInOrder& region = batch.waiting[l].region;
+        LumpedOperator op = operator_of(stage_, region);
         RegionOutcome outcome;
         if (result[l].solved) {
-            operator_of(stage_, region).refresh();
+            op.refresh();
             outcome = {.iterations = result[l].iterations, .error = result[l].error, .shortcut = shortcut_in_lanes};
         } else {
-            outcome = sweep_region(stage_, region);
+            outcome = sweep_in_order(stage_, region, op);
         }
-        finish_region(stage_, region, outcome);
+        finish_region(stage_, region, op, outcome);
         write_outcome(outcome, batch.waiting[l].number, regions_);
     }
     batch.count = 0;

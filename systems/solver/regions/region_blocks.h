@@ -1,7 +1,7 @@
 // Lists of the node clusters and rigid bodies that the contacts of each region touch.
 #pragma once
 
-#include "systems/solver/regions/life_cycle.h"
+#include "systems/solver/regions/region_stage.h"
 
 namespace skerry {
 

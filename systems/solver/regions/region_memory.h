@@ -55,7 +55,7 @@ inline std::size_t workspace_slots(SolverMethod method) {
 }
 
 /// Number of workspace vectors for regions with rigid bodies, whose default method takes Newton steps.
-inline std::size_t freedom_workspace_slots(SolverMethod method) {
+inline std::size_t body_workspace_slots(SolverMethod method) {
     return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
 }
 
@@ -101,7 +101,7 @@ struct RegionMemory {
     void make_room_for_rigid(std::size_t contacts, std::size_t region_nodes, SolverMethod method) {
         make_room(rigid_part, contacts);
         make_room(free_velocity, region_nodes);
-        for (std::size_t slot = 0; slot < freedom_workspace_slots(method); ++slot) make_room(workspace[slot], contacts);
+        for (std::size_t slot = 0; slot < body_workspace_slots(method); ++slot) make_room(workspace[slot], contacts);
     }
 };
 

@@ -1,38 +1,17 @@
 #include "systems/solver/regions/solve_large_regions.h"
 
-#include "systems/solver/methods/run_method.h"
 #include "systems/solver/regions/region_blocks.h"
 
 namespace skerry {
-namespace {
-
-RegionOutcome solve_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
-                              ColouredRegion& kept) {
-    order_region(stage.inputs, row, team, stage.memory.place.span(), kept);
-    const RegionByColour region = load_by_colour(stage, row, base, team, kept);
-    RegionOutcome outcome;
-    if (!start_region(stage, region, outcome)) {
-        ColouredOperator op = operator_of(stage, region);
-        const SolveLimits limits = limits_of(stage.settings, region.tolerance);
-        outcome = outcome_of(run_method(stage.settings.method, op, limits), stage.settings);
-    }
-    finish_region(stage, region, outcome);
-    return outcome;
-}
-
-}  // namespace
 
 RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
                               ColouredRegion& kept) {
-    RegionByColour region{.row = row,
-                          .base = base,
-                          .walk = kept.walk(team),
-                          .memory = memory_from(stage, base, row.size(), kept.node.span())};
+    RegionByColour region =
+        lumped_region(stage, row, base, 4 * static_cast<std::size_t>(base), kept.node.span(), kept.walk(team));
     region.walk.nodes(kept.node.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n)
-            region.memory.velocity[n] = padded(stage.out.velocity_next[kept.node[n]]);
+        for (std::size_t n = begin; n < end; ++n) region.memory.velocity[n] = free_velocity_of(stage, kept.node[n]);
     });
-    load_contacts(stage, region, [&](std::size_t number) {
+    load_lumped_contacts(stage, region, [&](std::size_t number) {
         // in the order of the calls by load_contact
         return [next = kept.local[number].data()](Index) mutable { return *next++; };
     });
@@ -56,9 +35,11 @@ void solve_large_regions(Executor& executor, const RegionStage& stage, RegionTab
         std::size_t next = 0;
         for (std::size_t r = 0; r < regions.size(); ++r) {
             if (!is_large(stage, regions, static_cast<Index>(r))) continue;
-            write_outcome(solve_by_colour(stage, regions.contacts[r], regions.contacts.offset[r], large.team,
-                                          *large.region[next++]),
-                          static_cast<Index>(r), regions);
+            ColouredRegion& kept = *large.region[next++];
+            order_region(stage.inputs, regions.contacts[r], large.team, stage.memory.place.span(), kept);
+            const RegionByColour region =
+                load_by_colour(stage, regions.contacts[r], regions.contacts.offset[r], large.team, kept);
+            write_outcome(solve_loaded(stage, region), static_cast<Index>(r), regions);
         }
     });
 }

@@ -1,7 +1,8 @@
 // Solver of large regions: a team of workers solves each in its coloured order (docs/methods/region_solver.md 6).
 #pragma once
 
-#include "systems/solver/regions/life_cycle.h"
+#include "systems/solver/coloured/order_region.h"
+#include "systems/solver/regions/lumped_region.h"
 
 namespace skerry {
 
@@ -10,7 +11,7 @@ namespace skerry {
 /// regions that touch clusters or rigid bodies.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
-using RegionByColour = LoadedRegion<ByColour>;
+using RegionByColour = LumpedRegion<ByColour>;
 
 /// Variant of load_region with the order and the nodes found by order_region.
 RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,

@@ -1,17 +1,18 @@
 #include "systems/solver/regions/solve_region.h"
 
-#include "systems/solver/methods/run_method.h"
+#include <array>
+#include <cmath>
+
 #include "systems/solver/operators/normal_rows.h"
-#include "systems/solver/regions/load_nodes.h"
 
 namespace skerry {
 namespace {
 
 /// Sweeps on the normal impulses only.
-SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region, const SolveLimits& limits) {
-    const PushMemory memory = push_memory(stage, region.base, region.row.size(), {});
+SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region) {
+    const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
-    const SolveResult result = solve_ags(rows, limits);
+    const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
     if (result.converged || !std::isfinite(result.error)) rows.keep();  // otherwise the best ones are there
     return result;
 }
@@ -19,26 +20,23 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
 }  // namespace
 
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base) {
-    RegionMemory& data = stage.memory;
-    const std::span<Index> node = data.node.span().subspan(4 * static_cast<std::size_t>(base), 4 * row.size());
-    RegionInOrder region{.row = row, .base = base, .memory = memory_from(stage, base, row.size(), node)};
-    load_nodes_and_contacts(stage, node, region, [](const auto&) {});
+    const std::size_t first_node = 4 * static_cast<std::size_t>(base);
+    NodeList list(stage.memory, first_node, 4 * row.size());
+    RegionInOrder region = lumped_region(stage, row, base, first_node, list.node(), InOrder{});
+    load_listed(stage, list, region);
     return region;
 }
 
-RegionOutcome sweep_region(const RegionStage& stage, RegionInOrder& region) {
+RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& region, LumpedOperator& op) {
     const SolverSettings& settings = stage.settings;
-    const SolveLimits limits = limits_of(settings, region.tolerance);
-    if (region.sums.frictionless && settings.frictionless_rows && sweeps_accelerated(settings)) {
-        RegionOutcome outcome = outcome_of(solve_frictionless(stage, region, limits), settings);
-        outcome.shortcut = shortcut_frictionless;
-        return outcome;
-    }
-    LumpedOperator op = operator_of(stage, region);
-    return outcome_of(run_method(settings.method, op, limits), settings);
+    if (!region.sums.frictionless || !settings.frictionless_rows || !sweeps_accelerated(settings))
+        return sweep_region(stage, region, op);
+    RegionOutcome outcome = outcome_of(solve_frictionless(stage, region), settings);
+    outcome.shortcut = shortcut_frictionless;
+    return outcome;
 }
 
-RegionOutcome solve_single(const RegionStage& stage, Index row) {
+RegionOutcome solve_single(const RegionStage& stage, Index row, Index base) {
     std::array<Index, 4> node;
     std::array<Vec4, 4> velocity, push_velocity;
     std::size_t node_count = 0;
@@ -48,7 +46,7 @@ RegionOutcome solve_single(const RegionStage& stage, Index row) {
             for (std::size_t n = 0; n < node_count; ++n)
                 if (node[n] == global) return static_cast<Index>(n);
             node[node_count] = global;
-            velocity[node_count] = padded(stage.out.velocity_next[global]);
+            velocity[node_count] = free_velocity_of(stage, global);
             return static_cast<Index>(node_count++);
         });
     Vec4 impulse = Vec4::Zero();
@@ -58,15 +56,19 @@ RegionOutcome solve_single(const RegionStage& stage, Index row) {
         outcome.status = RegionStatus::not_finite;
         outcome.error = size;
     }
-    const RegionInOrder region{
-        .row = {&row, 1},
-        .memory = {{&contact, 1}, {&impulse, 1}, {velocity.data(), node_count}, {node.data(), node_count}, {}, {}, {}}};
-    Real push_impulse, push_bias;
-    finish_region(stage, region, {{&push_impulse, 1}, {&push_bias, 1}, {push_velocity.data(), node_count}}, outcome);
+    const RegionInOrder region{.row = {&row, 1},
+                               .base = base,
+                               .memory = {{.contact = {&contact, 1},
+                                           .impulse = {&impulse, 1},
+                                           .velocity = {velocity.data(), node_count},
+                                           .node = {node.data(), node_count},
+                                           .scratch = {push_velocity.data(), node_count},
+                                           .workspace = {}},
+                                          {}}};
+    finish_region(stage, region, operator_of(stage, region), outcome);
     return outcome;
 }
 
-template bool start_region(const RegionStage&, const RegionInOrder&, RegionOutcome&);
-template void finish_region(const RegionStage&, const RegionInOrder&, RegionOutcome&);
+template bool start_region(const RegionStage&, const RegionInOrder&, LumpedOperator&, RegionOutcome&);
 
 }  // namespace skerry

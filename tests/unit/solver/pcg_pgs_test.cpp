@@ -63,7 +63,7 @@ TEST_CASE("conjugate gradients are exact where nothing is projected", "[unit][so
         contact[k].bias = 0;
         contact[k].friction = {0, 0};
     }
-    LumpedMemory memory{contact, impulse, velocity, node, free, scratch, {}};
+    LumpedMemory memory{{contact, impulse, velocity, node, scratch, {}}, free};
     for (std::size_t slot = 0; slot < 4; ++slot) {
         space[slot].resize(height);
         memory.workspace[slot] = space[slot];

@@ -1,4 +1,7 @@
-#include "systems/solver/regions/life_cycle.h"
+#include "systems/solver/regions/region_stage.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace skerry {
 
@@ -48,30 +51,25 @@ Real tolerance_of(const RegionStage& stage, std::span<const Index> row) {
     return all ? settings.still_tolerance : settings.tolerance;
 }
 
-LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node) {
-    return memory_from(stage, base, count, node, 4 * static_cast<std::size_t>(base));
-}
-
-LumpedMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::span<const Index> node,
-                         std::size_t first_node) {
+ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::size_t first_node,
+                          std::span<const Index> node, std::size_t slots) {
     RegionMemory& data = stage.memory;
     const std::size_t first = static_cast<std::size_t>(base);
-    LumpedMemory memory{.contact = data.contact.span().subspan(first, count),
-                        .impulse = data.impulse.span().subspan(first, count),
-                        .velocity = data.velocity.span().subspan(first_node, node.size()),
-                        .node = node,
-                        .free_velocity = stage.out.velocity_next,
-                        .scratch = data.scratch.span().subspan(first_node, node.size()),
-                        .workspace = {}};
-    for (std::size_t slot = 0; slot < workspace_slots(stage.settings.method); ++slot)
+    ContactMemory memory{.contact = data.contact.span().subspan(first, count),
+                         .impulse = data.impulse.span().subspan(first, count),
+                         .velocity = data.velocity.span().subspan(first_node, node.size()),
+                         .node = node,
+                         .scratch = data.scratch.span().subspan(first_node, node.size()),
+                         .workspace = {}};
+    for (std::size_t slot = 0; slot < slots; ++slot)
         memory.workspace[slot] = data.workspace[slot].span().subspan(first, count);
     return memory;
 }
 
-PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count, std::span<Vec4> velocity) {
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count) {
     const std::size_t first = static_cast<std::size_t>(base);
-    return {stage.memory.push_impulse.span().subspan(first, count), stage.memory.push_bias.span().subspan(first, count),
-            velocity};
+    return {stage.memory.push_impulse.span().subspan(first, count),
+            stage.memory.push_bias.span().subspan(first, count)};
 }
 
 Real dissipated_by(const RegionStage& stage, Index row) {
@@ -86,39 +84,34 @@ Real dissipated_by(const RegionStage& stage, Index row) {
     return -0.5 * impulse.dot(twice_mean);
 }
 
-Real push_work(const RegionStage& stage, const LumpedMemory& memory, std::span<const Vec4> push_velocity) {
-    Real work = 0;
-    for (std::size_t i = 0; i < memory.contact.size(); ++i)
-        work += memory.impulse[i].dot(add_node_velocities(memory.contact[i], push_velocity.data(), Vec4::Zero()));
-    for (std::size_t n = 0; n < memory.node.size(); ++n) {
-        const Vec3 change = memory.velocity[n].head<3>() - stage.inputs.velocity[memory.node[n]];
-        work -= change.dot(push_velocity[n].head<3>()) / stage.inputs.inverse_mass[memory.node[n]];
-    }
-    return work;
-}
-
-Real push_work_through_clusters(const RegionStage& stage, const LumpedMemory& memory,
-                                std::span<const Vec4> push_velocity, std::size_t first_node) {
+Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses) {
     const auto cluster_of = [&](Index node) {
         return stage.inputs.clustered() ? stage.inputs.clusters->cluster(node) : no_index;
     };
+    const std::span<const Vec4> push = memory.scratch;
     Real work = 0;
     for (std::size_t i = 0; i < memory.contact.size(); ++i) {
         const LumpedContact& contact = memory.contact[i];
+        if (own_masses) {
+            work += memory.impulse[i].dot(add_node_velocities(contact, push.data(), Vec4::Zero()));
+            continue;
+        }
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             if (cluster_of(memory.node[contact.node[a]]) == no_index)
-                work += contact.weight[a] * memory.impulse[i].dot(push_velocity[contact.node[a]]);
+                work += contact.weight[a] * memory.impulse[i].dot(push[contact.node[a]]);
     }
-    for (std::size_t n = first_node; n < memory.node.size(); ++n) {
-        const Index node = memory.node[n], cluster = cluster_of(node);
-        const Vec3 push = push_velocity[n].head<3>();
+    for (std::size_t n = 0; n < memory.node.size(); ++n) {
+        const Index node = memory.node[n];
+        if (node == no_index) continue;
+        const Index cluster = own_masses ? no_index : cluster_of(node);
+        const Vec3 moved = push[n].head<3>();
         if (cluster == no_index)
-            work -= (memory.velocity[n].head<3>() - stage.inputs.velocity[node]).dot(push) /
+            work -= (memory.velocity[n].head<3>() - stage.inputs.velocity[node]).dot(moved) /
                     stage.inputs.inverse_mass[node];
         else
             work -= stage.inputs
                         .cluster_kick[stage.inputs.clusters->nodes.offset[cluster] + stage.inputs.clusters->place[node]]
-                        .dot(push);
+                        .dot(moved);
     }
     return work;
 }

@@ -1,11 +1,12 @@
-#include "systems/solver/operators/freedom_operator.h"
+#include "systems/solver/operators/body_operator.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace skerry {
 
-static_assert(ContactOperator<FreedomOperator>);
+static_assert(ContactOperator<BodyOperator>);
+template class RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;
 
 namespace {
 
@@ -26,7 +27,7 @@ Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
 
 }  // namespace
 
-Vec4 FreedomOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
+Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     RigidPart& of = memory_.part[static_cast<std::size_t>(i)];
     if (const JointLaw* law = joint(i)) {
         const Vec3 r = in_frame(of.frame, impulse).head<3>();
@@ -38,7 +39,7 @@ Vec4 FreedomOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     return project(i, impulse - u / of.steepest);
 }
 
-Real FreedomOperator::step(Index i, Real relaxation) {
+Real BodyOperator::step(Index i, Real relaxation) {
     if (!(mobility(i) > 0)) return 0;
     Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
     Vec4 next = answer(i, impulse, velocity(i));
@@ -50,11 +51,11 @@ Real FreedomOperator::step(Index i, Real relaxation) {
     return inner(i, change, change);
 }
 
-void FreedomOperator::list_runs() const {
+void BodyOperator::list_runs() const {
     if (!runs_->listed()) runs_->list(memory_.contact, walk_, memory_.velocity.size());
 }
 
-void FreedomOperator::for_each_in_sweep(auto&& of) {
+void BodyOperator::for_each_in_sweep(auto&& of) {
     // One loop for both cases: compilers would not inline a second copy of the step.
     const ContactRuns::Run all{0, size(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
@@ -68,7 +69,7 @@ void FreedomOperator::for_each_in_sweep(auto&& of) {
     }
 }
 
-void FreedomOperator::apply(Index i, const Vec4& impulse) {
+void BodyOperator::apply(Index i, const Vec4& impulse) {
     Vec4* const velocity = memory_.velocity.data();
     if (runs_)
         runs_->apply(static_cast<std::size_t>(i), contact(i), walk_, impulse, velocity);
@@ -77,13 +78,13 @@ void FreedomOperator::apply(Index i, const Vec4& impulse) {
     apply_to_rigid(part(i), impulse, velocity);
 }
 
-Real FreedomOperator::sweep(Real relaxation) {
+Real BodyOperator::sweep(Real relaxation) {
     Real change = 0;
     for_each_in_sweep([&](Index i) { change += step(i, relaxation); });
     return change;
 }
 
-SweepChange FreedomOperator::accelerated_sweep(Real relaxation) {
+SweepChange BodyOperator::accelerated_sweep(Real relaxation) {
     const std::span<const Vec4> present = memory_.impulse, previous = memory_.workspace[1];
     SweepChange sum;
     for_each_in_sweep([&](Index i) {
@@ -97,39 +98,23 @@ SweepChange FreedomOperator::accelerated_sweep(Real relaxation) {
     return sum;
 }
 
-void FreedomOperator::remember() {
-    std::ranges::copy(memory_.impulse, memory_.workspace[1].begin());
-    std::ranges::copy(memory_.velocity, memory_.scratch.begin());
-}
-
-void FreedomOperator::extrapolate(Real factor) {
+void BodyOperator::extrapolate(Real factor) {
     extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.workspace[1]);
     extrapolate_range(0, memory_.velocity.size(), factor, memory_.velocity, memory_.scratch);
 }
 
-Real FreedomOperator::error() const {
-    Real sum = 0;
-    for (Index i = 0; i < size(); ++i) {
-        if (!(mobility(i) > 0)) continue;
-        const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
-        if (const JointLaw* law = joint(i)) {
-            const Columns3& frame = part(i).frame;
-            sum += mobility(i) * law->natural_map(in_frame(frame, impulse).head<3>(),
-                                                  in_frame(frame, velocity(i)).head<3>(), mobility(i))
-                                     .squaredNorm();
-            continue;
-        }
-        sum += contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
-    }
-    return sum == 0 ? 0 : std::sqrt(sum) / scale_;
+Real BodyOperator::squared_residual(Index i) const {
+    const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
+    const JointLaw* const law = joint(i);
+    if (law == nullptr)
+        return contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
+    const Columns3& frame = part(i).frame;
+    return mobility(i) *
+           law->natural_map(in_frame(frame, impulse).head<3>(), in_frame(frame, velocity(i)).head<3>(), mobility(i))
+               .squaredNorm();
 }
 
-void FreedomOperator::refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
-    std::ranges::copy(memory_.free_velocity, velocity.begin());
-    add_response(impulse, velocity);
-}
-
-void FreedomOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
+void BodyOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const {
     Vec4* const sum = runs_ ? runs_->sums(velocity.size()).data() : nullptr;
     for (Index i = 0; i < size(); ++i) {
         const Vec4& of = impulse[static_cast<std::size_t>(i)];
@@ -143,18 +128,7 @@ void FreedomOperator::add_response(std::span<const Vec4> impulse, std::span<Vec4
     if (runs_) runs_->spread_sums(walk_, velocity.data());
 }
 
-void FreedomOperator::residual(std::span<Vec4> out) const {
-    for (Index i = 0; i < size(); ++i)
-        out[static_cast<std::size_t>(i)] = mobility(i) > 0 ? Vec4(-velocity(i)) : Vec4(Vec4::Zero());
-}
-
-void FreedomOperator::multiply(std::span<const Vec4> in, std::span<Vec4> out) const {
-    std::ranges::fill(memory_.scratch, Vec4::Zero());
-    add_response(in, memory_.scratch);
-    for (Index i = 0; i < size(); ++i) out[static_cast<std::size_t>(i)] = velocity_at(i, memory_.scratch.data());
-}
-
-void FreedomOperator::assemble(Eigen::MatrixXd& matrix) const {
+void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {
     matrix.setZero(3 * size(), 3 * size());
     for (Index i = 0; i < size(); ++i)
         for (Index j = 0; j < size(); ++j)
@@ -162,7 +136,7 @@ void FreedomOperator::assemble(Eigen::MatrixXd& matrix) const {
                 walk_.coupling(contact(i), contact(j)) + rigid_coupling(part(i), part(j));
 }
 
-Real FreedomOperator::sweep_cost() const {
+Real BodyOperator::sweep_cost() const {
     constexpr Real contact_cost = 100, node_cost = 3;  // measured on a 3 GHz core
     Real cost = contact_cost * static_cast<Real>(size());
     if (!runs_) return cost;

@@ -6,23 +6,23 @@
 #include <span>
 #include <utility>
 
-#include "systems/solver/operators/freedom_operator.h"
+#include "systems/solver/operators/body_operator.h"
 
 namespace skerry {
 
 /// A held body has no rigid motion.
-bool FreedomOperator::is_whole(const BodyEquations& equations, const RigidTerm& term) const {
+bool BodyOperator::moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const {
     if (!walk_.deforms(term.row)) return true;
-    return equations.wholes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
+    return equations.rigid_modes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
 }
 
-bool FreedomOperator::is_unknown(const BodyEquations& equations, Index node) const {
-    return !(equations.wholes && walk_.moves_with_rigid(node));
+bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const {
+    return !(equations.rigid_modes && walk_.moves_with_rigid(node));
 }
 
 /// With few contacts per body sweeps alone are better: piles of cubes of 27 nodes have about 20, and rounds cost them a
 /// sixth more.
-bool FreedomOperator::moves_wholes() const {
+bool BodyOperator::corrects_rigid_modes() const {
     constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
     bool any_free = false;
@@ -36,11 +36,11 @@ bool FreedomOperator::moves_wholes() const {
     return any_free && size() >= many * bodies;
 }
 
-BodyEquations* FreedomOperator::wholes_memory() {
+BodyEquations* BodyOperator::rigid_mode_memory() {
     if (!newton_) newton_ = pool_->lease();
-    BodyEquations& equations = newton_->wholes;
-    if (!std::exchange(wholes_are_listed_, true)) {
-        equations.wholes = true;
+    BodyEquations& equations = newton_->rigid_modes;
+    if (!std::exchange(rigid_modes_are_listed_, true)) {
+        equations.rigid_modes = true;
         list_equations(equations);
         if (std::isfinite(equations.cost())) assemble(equations);
     }
@@ -49,7 +49,7 @@ BodyEquations* FreedomOperator::wholes_memory() {
 
 /// Computes the velocities that the impulses make, including deformations, and stores them. Deformation velocities stay
 /// fixed during the round.
-void FreedomOperator::start_round_of_wholes(BodyEquations& equations) {
+void BodyOperator::start_rigid_round(BodyEquations& equations) {
     refresh();
     std::ranges::copy(memory_.velocity, memory_.scratch.begin());
     gather(equations, equations.present);
@@ -60,21 +60,21 @@ void FreedomOperator::start_round_of_wholes(BodyEquations& equations) {
 }
 
 /// Updates the rigid velocities for the change of the impulses since `start`; the stored velocities belong to `start`.
-void FreedomOperator::push_wholes(std::span<const Vec4> start) {
+void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
     std::ranges::copy(memory_.scratch, memory_.velocity.begin());
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
-        push(i, memory_.impulse[at] - start[at], memory_.velocity.data());
+        apply_undeformed(i, memory_.impulse[at] - start[at], memory_.velocity.data());
     }
 }
 
-SolveResult FreedomOperator::take_rounds_of_wholes(Real error, Real tolerance, Index limit) {
+SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
     constexpr Real softness = 0.3;  // fraction of D, above the compliance of the bodies; otherwise rounds gain nothing
     constexpr Real enough = 0.01;   // end of a round: fraction of the error at its start
     constexpr Real gain = 0.5;      // another round follows if the error falls below this fraction
     constexpr Index most_in_round = 14;  // limit of steps
     SolveResult result{0, error, error <= tolerance};
-    BodyEquations* const equations = wholes_memory();
+    BodyEquations* const equations = rigid_mode_memory();
     if (equations == nullptr) return result;
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
     std::ranges::copy(memory_.impulse, best.begin());
@@ -82,9 +82,9 @@ SolveResult FreedomOperator::take_rounds_of_wholes(Real error, Real tolerance, I
     bool goes_on = !result.converged;
     while (goes_on) {
         std::ranges::copy(memory_.impulse, start.begin());
-        start_round_of_wholes(*equations);
+        start_rigid_round(*equations);
         equations->start_round();
-        std::optional<Real> lack = answer_motion(*equations, start, Look::matrix);
+        std::optional<Real> lack = answer_motion(*equations, start, Evaluation::matrix);
         for (Index steps = 0; lack && steps < most_in_round && result.iterations < limit; ++steps) {
             if (std::sqrt(*lack) <= enough * scale_ * result.error) break;
             ++result.iterations;

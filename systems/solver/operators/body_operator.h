@@ -3,6 +3,7 @@
 // of its centre and its spin (docs/methods/rigid_bodies.md 3).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -18,65 +19,38 @@
 
 namespace skerry {
 
-/// Memory of one region, owned by the caller. Spans are by contact unless they hold velocities. LumpedContact::diagonal
-/// is a third of the trace of W_ii.
-struct FreedomMemory {
-    std::span<const LumpedContact> contact;  // without the nodes of rigid bodies
-    std::span<RigidPart> part;
+/// Contacts are without the nodes of rigid bodies, and LumpedContact::diagonal is a third of the trace of W_ii.
+struct BodyMemory : ContactMemory {
+    std::span<RigidPart> part;            // by contact
     std::span<const JointLaw> joint;      // laws of the last contacts, which are rows of joints
-    std::span<Vec4> impulse;              // [N s]
-    std::span<Vec4> velocity;             // includes the effect of the impulse [m/s, rad/s]
-    std::span<const Vec4> free_velocity;  // velocities without impulses
-    std::span<Vec4> scratch;              // size of `velocity`: previous velocities, or those of a product
-    std::array<std::span<Vec4>, workspace_limit> workspace;
+    std::span<const Vec4> free_velocity;  // by velocity: its value without impulses [m/s, rad/s]
 };
 
 using NewtonPool = Pool<NewtonEquations>;
 using RunPool = Pool<ContactRuns>;
 
-class FreedomOperator {
-public:
-    using Number = Real;
+class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory> {
+    using Base = RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;
+    friend Base;
 
+public:
     /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse. `pool`: memory for Newton steps.
-    FreedomOperator(const FreedomMemory& memory, Friction friction, Real scale, const ThroughGroups& walk,
-                    NewtonPool& pool, RunPool& runs)
-        : memory_(memory), friction_(friction), scale_(scale), walk_(walk), pool_(&pool) {
+    BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
+                 RunPool& runs)
+        : Base(memory, friction, scale, walk), pool_(&pool) {
         if (!walk.any_deforms()) return;
         runs_ = runs.lease();
         runs_->start();
     }
 
-    Index size() const { return static_cast<Index>(memory_.contact.size()); }
-    std::span<Vec4> impulse() { return memory_.impulse; }
-    std::span<Vec4> workspace(Index slot) { return memory_.workspace[static_cast<std::size_t>(slot)]; }
-    void refresh() { refresh(memory_.impulse, memory_.velocity); }
-    void refresh_all() {
-        refresh();
-        refresh(memory_.workspace[1], memory_.scratch);
-    }
-    void remember();
     void extrapolate(Real factor);
     Real sweep(Real relaxation);
     SweepChange accelerated_sweep(Real relaxation);
-    /// e_nat of docs/methods/errors.md 2, with a third of the trace of W_ii as D.
-    Real error() const;
-    bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
-    void residual(std::span<Vec4> out) const;
-    void multiply(std::span<const Vec4> in, std::span<Vec4> out) const;
     Vec4 project(Index i, const Vec4& impulse) const {
         if (joint(i) != nullptr) return impulse;  // joints are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
-    Vec4 feasible(Index i, const Vec4& residual) const {
-        return feasible_direction(residual, memory_.impulse[static_cast<std::size_t>(i)], contact(i).normal,
-                                  contact(i).friction, friction_);
-    }
-    Vec4 normal(Index i) const { return contact(i).normal; }
-    FrictionLimits limits(Index i) const { return contact(i).friction; }
-    Real mobility(Index i) const { return contact(i).inverse_diagonal > 0 ? contact(i).diagonal : 0; }
-    Friction law() const { return friction_; }
     void assemble(Eigen::MatrixXd& matrix) const;
 
     /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse with this error: at most `limit` steps; the
@@ -84,21 +58,40 @@ public:
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
     /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies (5.10), in
-    /// rounds until one gains little. moves_wholes() tells whether it pays: free implicit bodies, no clusters, many
-    /// contacts.
-    SolveResult take_rounds_of_wholes(Real error, Real tolerance, Index limit);
-    bool moves_wholes() const;
+    /// rounds until one gains little. corrects_rigid_modes() is true if it pays: free implicit bodies, no clusters,
+    /// many contacts.
+    SolveResult correct_rigid_modes(Real error, Real tolerance, Index limit);
+    bool corrects_rigid_modes() const;
     Real sweep_cost() const;  // estimate [ns]
 
-    /// Velocity of a contact without its offset. The split impulse (push_contact.h) uses it, too.
+    /// Velocity of a contact [m/s]
+    Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
+    /// Velocity of a contact without its offset.
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
-    /// Applies a split impulse to rigid bodies, clusters and nodes with their own mass. Deformations of implicit bodies
-    /// do not change.
-    [[gnu::always_inline]] void push(Index i, const Vec4& impulse, Vec4* velocity) const {
+    /// Applies an impulse to rigid bodies, clusters and nodes with their own mass. Deformations of implicit bodies do
+    /// not change.
+    [[gnu::always_inline]] void apply_undeformed(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
+    }
+    /// Size of a push that changes the normal speed of a contact by `speed` [J]
+    Real push_size(Index i, Real speed) const {
+        return part(i).along_normal > 0 ? speed * speed / part(i).along_normal : 0;
+    }
+    /// One contact step of the split impulse (push_contact.h). Returns the size of the change [J]
+    [[gnu::always_inline]] Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
+        const Real mobility = part(i).along_normal;
+        if (!(mobility > 0)) return 0;
+        const Vec4& normal = contact(i).normal;
+        const Real along = bias + normal.dot(velocity_at(i, velocity));
+        const Real next = std::max(Real(0), impulse - along / mobility);
+        const Real change = next - impulse;
+        if (change == 0) return 0;
+        apply_undeformed(i, change * normal, velocity);
+        impulse = next;
+        return mobility * change * change;
     }
 
     /// Law of a joint row; null for a contact.
@@ -108,24 +101,31 @@ public:
     }
 
 private:
-    const LumpedContact& contact(Index i) const { return memory_.contact[static_cast<std::size_t>(i)]; }
+    // Functions that the base class calls.
+    bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
+    Real squared_residual(Index i) const;  // with a third of the trace of W_ii as D
+    const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
+    /// Impulses on implicit bodies are first summed up by node, because each of them moves all touched nodes of its
+    /// body.
+    void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
+
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
     // Functions for Newton steps.
     BodyEquations& newton_memory();
     void assemble(BodyEquations& equations) const;
     /// Copies the velocities of the region to the unknowns of the equations.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
-    enum class Look { value, matrix, turns };
-    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look);
+    enum class Evaluation { value, matrix, turns };
+    Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted);
     void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
-    /// is_whole: the rigid motion of the term's body is an unknown. is_unknown: the velocity of the node is an unknown.
-    bool is_whole(const BodyEquations& equations, const RigidTerm& term) const;
+    /// moves_rigidly: the rigid motion of the term's body is an unknown. is_unknown: the velocity of the node is one.
+    bool moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const;
     bool is_unknown(const BodyEquations& equations, Index node) const;
-    BodyEquations* wholes_memory();
-    void start_round_of_wholes(BodyEquations& equations);
-    void push_wholes(std::span<const Vec4> start);
+    BodyEquations* rigid_mode_memory();
+    void start_rigid_round(BodyEquations& equations);
+    void push_rigid_modes(std::span<const Vec4> start);
     std::optional<Real> go_on_as_before(BodyEquations& equations, std::span<const Vec4> start);
     std::optional<Real> step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack);
     void list_unknowns(BodyEquations& equations) const;
@@ -138,7 +138,6 @@ private:
     bool is_rigid(const BodyEquations::Unknown& unknown) const;
     bool deforms(const BodyEquations::Unknown& unknown) const;
 
-    Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
     /// Solution of the contact law with all other impulses fixed. It is exact for Coulomb's cone.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
     /// Solves one contact. Returns change . W_ii change.
@@ -148,20 +147,14 @@ private:
     void list_runs() const;
     /// Applies an impulse within a sweep. On implicit bodies it moves only the nodes of the contact's run.
     void apply(Index i, const Vec4& impulse);
-    void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
-    /// Adds the effect of impulses to the velocities. Impulses on implicit bodies are first summed up by node, because
-    /// each of them moves all touched nodes of its body.
-    void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
-    FreedomMemory memory_;
-    Friction friction_;
-    Real scale_;
-    ThroughGroups walk_;
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
     RunPool::Lease runs_;  // leased if contacts of the step touch implicit bodies
-    bool own_are_listed_ = false, wholes_are_listed_ = false;
+    bool own_are_listed_ = false, rigid_modes_are_listed_ = false;
     bool inertia_is_known_ = false;  // the equations have it after the first Newton steps
 };
+
+extern template class RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;  // compiled in body_operator.cpp
 
 }  // namespace skerry

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "systems/solver/operators/freedom_operator.h"
+#include "systems/solver/operators/body_operator.h"
 
 namespace skerry {
 namespace {
@@ -31,7 +31,7 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 }  // namespace
 
 /// Lists the velocity rows that contacts move, sorted by body; bodies that do not deform come first.
-void FreedomOperator::list_unknowns(BodyEquations& equations) const {
+void BodyOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     Column<Index>& of_row = equations.unknown_of_row();
     unknown.clear();
@@ -46,12 +46,12 @@ void FreedomOperator::list_unknowns(BodyEquations& equations) const {
         };
         const auto partner = [&](Index body) { return name[0] == body ? name[1] : name[0]; };
         for (const RigidTerm& term : part(i).terms())
-            if (is_whole(equations, term)) add(term.slot);
+            if (moves_rigidly(equations, term)) add(term.slot);
         const LumpedContact& of = contact(i);
         for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
             if (is_unknown(equations, of.node[a])) add(name_of_node(of.node[a]));
         for (const RigidTerm& term : part(i).terms())
-            if (is_whole(equations, term))
+            if (moves_rigidly(equations, term))
                 list({.body = term.slot, .partner = no_index, .row = term.slot, .rigid = term.row});
         for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a) {
             if (!is_unknown(equations, of.node[a])) continue;
@@ -68,13 +68,13 @@ void FreedomOperator::list_unknowns(BodyEquations& equations) const {
         of_row[static_cast<std::size_t>(unknown[k].row)] = static_cast<Index>(k);
 }
 
-Index FreedomOperator::name_of_node(Index node) const {
+Index BodyOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
 /// Defines the parts. A part is a rigid body, or the nodes of one deformable body that touch the same other body. Such
 /// nodes couple only to nodes of these two bodies.
-void FreedomOperator::list_parts(BodyEquations& equations) const {
+void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
     factor.start();
@@ -90,7 +90,7 @@ void FreedomOperator::list_parts(BodyEquations& equations) const {
     }
 }
 
-void FreedomOperator::list_pushes(BodyEquations& equations) const {
+void BodyOperator::list_pushes(BodyEquations& equations) const {
     Column<BodyEquations::Pushes>& pushes = equations.pushes();
     pushes.resize(static_cast<std::size_t>(size()));
     equations.answer.resize(static_cast<std::size_t>(size()));
@@ -101,7 +101,7 @@ void FreedomOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            if (!is_whole(equations, term)) continue;  // its nodes are part of its rigid motion
+            if (!moves_rigidly(equations, term)) continue;  // its nodes are part of its rigid motion
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
@@ -114,7 +114,7 @@ void FreedomOperator::list_pushes(BodyEquations& equations) const {
 }
 
 /// Couples parts that share a contact, and all parts of an implicit body.
-void FreedomOperator::couple_parts(BodyEquations& equations) const {
+void BodyOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
     for (const BodyEquations::Pushes& of : equations.pushes())
@@ -127,25 +127,25 @@ void FreedomOperator::couple_parts(BodyEquations& equations) const {
     });
 }
 
-bool FreedomOperator::touches_clusters() const {
+bool BodyOperator::touches_clusters() const {
     for (const LumpedContact& of : memory_.contact)
         for (std::size_t a = 0; a < static_cast<std::size_t>(of.node_count); ++a)
             if (walk_.in_cluster(of.node[a])) return true;
     return false;
 }
-bool FreedomOperator::is_rigid(const Unknown& unknown) const {
+bool BodyOperator::is_rigid(const Unknown& unknown) const {
     return unknown.rigid != no_index;
 }
-bool FreedomOperator::deforms(const Unknown& unknown) const {
+bool BodyOperator::deforms(const Unknown& unknown) const {
     return !is_rigid(unknown) && walk_.moves_with_rigid(unknown.row);
 }
 
-BodyEquations& FreedomOperator::newton_memory() {
+BodyEquations& BodyOperator::newton_memory() {
     if (!newton_) newton_ = pool_->lease();
     return std::exchange(own_are_listed_, true) ? newton_->own : list_equations(newton_->own);
 }
 
-BodyEquations& FreedomOperator::list_equations(BodyEquations& equations) {
+BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(std::numeric_limits<Real>::infinity());
     if (touches_clusters()) return equations;  // K is only available for nodes and whole bodies
     list_unknowns(equations);
@@ -168,7 +168,7 @@ BodyEquations& FreedomOperator::list_equations(BodyEquations& equations) {
     return equations;
 }
 
-void FreedomOperator::assemble(BodyEquations& equations) const {
+void BodyOperator::assemble(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     const Column<Unknown>& unknown = equations.unknown();
     std::ranges::fill(factor.numbers(), Real(0));
@@ -195,7 +195,7 @@ void FreedomOperator::assemble(BodyEquations& equations) const {
 
 /// Sets K of the touched nodes of a body: the inverse of their response to impulses, rigid motion and deformation
 /// together.
-void FreedomOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
+void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
     const Column<Unknown>& unknown = equations.unknown();
     const auto count = static_cast<Index>(end - begin), numbers = 3 * count;
     const BodyEquations::Square square = equations.square(numbers);
@@ -220,7 +220,7 @@ void FreedomOperator::assemble_deforming(BodyEquations& equations, std::size_t b
         }
 }
 
-void FreedomOperator::gather(BodyEquations& equations, Column<Real>& velocity) const {
+void BodyOperator::gather(BodyEquations& equations, Column<Real>& velocity) const {
     for (const Unknown& of : equations.unknown()) {
         Real* const to = velocity.data() + equations.factor().first(of.part) + static_cast<std::size_t>(of.place);
         const auto put = [&](Real* at, const Vec4& v) { std::copy_n(v.data(), 3, at); };
@@ -262,10 +262,10 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 /// Sets the impulses to the response to the present motion, P( start - u / (softness D) ), and updates the velocities
 /// of the region and `answered` accordingly. Returns the merit ( answered - present ) K ( answered - present ) [J] and
-/// sets the right-hand side K ( answered - present ). Unless `look` is value, also builds the matrix. If it is turns,
+/// sets the right-hand side K ( answered - present ). Unless `wanted` is value, also builds the matrix. If it is turns,
 /// also marks contacts that slide against their direction in the last matrix; stop_turned changes their equations.
-Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Look look) {
-    const bool with_matrix = look != Look::value;
+Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted) {
+    const bool with_matrix = wanted != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
@@ -276,7 +276,7 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
         memory_.impulse[at] = padded(answer.impulse);
         if (!with_matrix) continue;
         equations.answer[at] = answer.derivative;
-        if (runs_ && look == Look::turns) equations.stops[at] = equations.way[at].dot(answer.way) < 0 ? 1 : 0;
+        if (runs_ && wanted == Evaluation::turns) equations.stops[at] = equations.way[at].dot(answer.way) < 0 ? 1 : 0;
         equations.way[at] = answer.way;
         if (answer.open) continue;
         equations.add(i, (equations.stops[at] != 0 ? Mat3(Mat3::Identity()) : answer.derivative) / soft);
@@ -289,7 +289,7 @@ Real FreedomOperator::answer_motion(BodyEquations& equations, std::span<const Ve
 /// A contact whose sliding direction reversed has passed the sticking state, whose range is small for hard contacts.
 /// Newton's step for sliding would pass it again and again. The matrix treats such contacts as sticking, and the
 /// right-hand side uses the impulse that would stop them.
-void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
+void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         if (equations.stops[at] == 0 || equations.way[at].isZero(0)) continue;
@@ -301,9 +301,9 @@ void FreedomOperator::stop_turned(BodyEquations& equations, std::span<const Vec4
 
 /// Updates the velocities of the region and `answered` from the impulses. With d = answered - present it sets the
 /// right-hand side to K d and returns d K d [J]
-Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
-    if (equations.wholes)
-        push_wholes(start);
+Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
+    if (equations.rigid_modes)
+        push_rigid_modes(start);
     else
         refresh();
     gather(equations, equations.answered);
@@ -314,7 +314,7 @@ Real FreedomOperator::compare_motion(BodyEquations& equations, std::span<const V
 
 /// First step of a round. It assumes that contacts stick, slide or are open as in the last matrix. Returns
 /// answer_motion for the new motion, with the matrix, or nothing if the factorisation broke down.
-std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
+std::optional<Real> BodyOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
     equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
         if (!(mobility(i) > 0)) continue;
@@ -328,14 +328,14 @@ std::optional<Real> FreedomOperator::go_on_as_before(BodyEquations& equations, s
     if (!equations.factor().solve()) return std::nullopt;
     const std::span<const Real> step = equations.factor().right();
     for (std::size_t k = 0; k < equations.present.size(); ++k) equations.present[k] += step[k];
-    return answer_motion(equations, start, Look::turns);
+    return answer_motion(equations, start, Evaluation::turns);
 }
 
 /// One Newton step from the present motion with a line search on the result of answer_motion. Takes the first length of
 /// 1, 1/2, ... that lowers it below 0.9 of its value, otherwise the best one. A step that stops contacts may keep
 /// length 1 although it raises the value, a few times per round. Returns the new value, or nothing if the factorisation
 /// broke down.
-std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
+std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
     constexpr Index most_rises = 3;
@@ -351,7 +351,7 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
     for (int k = 0; k < halvings; ++k) {
         const Real length = std::ldexp(Real(1), -k);
         go(length);
-        const Real next = answer_motion(equations, start, k == 0 ? Look::turns : Look::value);
+        const Real next = answer_motion(equations, start, k == 0 ? Evaluation::turns : Evaluation::value);
         if (k == 0 && next < enough * lack) return next;  // the usual case
         if (k == 0 && stops && equations.rises < most_rises) {
             ++equations.rises;
@@ -364,7 +364,7 @@ std::optional<Real> FreedomOperator::step_motion(BodyEquations& equations, std::
         if (next < enough * lack) break;
     }
     go(best_length);
-    return answer_motion(equations, start, Look::matrix);
+    return answer_motion(equations, start, Evaluation::matrix);
 }
 
 namespace {
@@ -384,7 +384,7 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 
 }  // namespace
 
-SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
+SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
     constexpr Real enough = 0.1;         // end of a round: fraction of the error at its start
     constexpr Real solved = 1e-3;        // fraction of that below which it ends even if the error did not fall
     constexpr Index most_in_round = 14;  // longer rounds are unlikely to end soon
@@ -403,7 +403,7 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
     Index in_round = 0;
     bool goes_on = false;  // start with contacts as the last round left them
     equations.start_round();
-    std::optional<Real> lack = answer_motion(equations, start, Look::matrix);
+    std::optional<Real> lack = answer_motion(equations, start, Evaluation::matrix);
     while (!result.converged && result.iterations < limit) {
         ++result.iterations;
         ++in_round;
@@ -437,7 +437,7 @@ SolveResult FreedomOperator::take_newton_steps(Real error, Real tolerance, Index
         goes_on = ended;
         std::ranges::fill(equations.stops, std::uint8_t(0));
         equations.rises = 0;
-        if (!goes_on) lack = answer_motion(equations, start, Look::matrix);
+        if (!goes_on) lack = answer_motion(equations, start, Evaluation::matrix);
     }
     std::ranges::copy(best, memory_.impulse.begin());
     refresh();

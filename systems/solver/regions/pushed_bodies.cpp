@@ -1,13 +1,13 @@
-#include "systems/solver/regions/turned_axes.h"
+#include "systems/solver/regions/pushed_bodies.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "systems/geometry/free_turn.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
-
 namespace {
 
 /// Height along the normal of a point on a cylinder after the axis has turned, without rotation about the axis. For the
@@ -27,12 +27,21 @@ Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, co
 
 }  // namespace
 
-Real TurnedAxes::loss(Index row, const RigidPart& part, std::span<const Vec4> push) const {
+PushedBodies::PushedBodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> rigid,
+                           const BodyMemory& memory, const BodyOperator& op)
+    : stage_(stage), row_(row), memory_(memory), op_(op), any_turns_(std::ranges::any_of(rigid, [&](Index r) {
+          return stage.inputs.rigid.is_capsule(r) || stage.inputs.rigid.is_cylinder(r);
+      })) {
+    for (std::size_t at = row.size(); at < memory.contact.size(); ++at) memory.workspace[0][at].setZero();
+}
+
+Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
+    if (!any_turns_) return 0;
     constexpr Real rounding = 1e-12;  // as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
-    const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row)];
+    const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];
     Real along = 0;  // [m]
-    for (const RigidTerm& term : part.terms()) {
+    for (const RigidTerm& term : memory_.part[i].terms()) {
         const auto r = static_cast<std::size_t>(term.row);
         const bool cylinder = rigid.is_cylinder(term.row);
         if (!cylinder && !rigid.is_capsule(term.row)) continue;
@@ -41,7 +50,7 @@ Real TurnedAxes::loss(Index row, const RigidPart& part, std::span<const Vec4> pu
             cylinder ? Vec3(term.arm.head<3>()) : Vec3(term.arm.head<3>() + rigid.radius(term.row) * normal);
         const Vec3 angular_momentum =
             rigid.spins.angular_momentum[r] + (rigid.spins.moment_kick[r] + stage_.out.contact_moment[r]);
-        const Vec3 spin = velocity_[static_cast<std::size_t>(term.slot) + 1].head<3>(),
+        const Vec3 spin = memory_.velocity[static_cast<std::size_t>(term.slot) + 1].head<3>(),
                    push_spin = push[static_cast<std::size_t>(term.slot) + 1].head<3>();
         const Mat3 turned = turned_freely(rigid.rotation[r], rigid.moments[r], angular_momentum, stage_.h);
         const Mat3 pushed = rotation_matrix(stage_.h * push_spin);
@@ -55,6 +64,31 @@ Real TurnedAxes::loss(Index row, const RigidPart& part, std::span<const Vec4> pu
         along += normal.dot(there - place - straight);
     }
     return along < -rounding ? along / stage_.h : 0;
+}
+
+Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
+    const std::span<Vec4> impulse = memory_.workspace[0];
+    Real size = 0;
+    for (std::size_t at = row_.size(); at < memory_.contact.size(); ++at) {
+        const auto i = static_cast<Index>(at);
+        const RigidPart& part = memory_.part[at];
+        const JointLaw& law = *op_.joint(i);
+        const Mat3 frame = matrix_of(part.frame);
+        const Vec3 r = frame.transpose() * impulse[at].head<3>();
+        const Vec3 u = frame.transpose() * op_.velocity_at(i, push.data()).head<3>();
+        const Vec4 next = padded(frame * law.answer(bounds(at, law), u - law.block * r));
+        const Vec4 change = next - impulse[at];
+        if (change.isZero(0)) continue;
+        op_.apply_undeformed(i, change, push.data());
+        impulse[at] = next;
+        size += op_.inner(i, change, change);
+    }
+    return size;
+}
+
+AxisBounds PushedBodies::bounds(std::size_t at, const JointLaw& law) const {
+    const Real along = memory_.part[at].frame[2].dot(op_.velocity(static_cast<Index>(at)));
+    return {std::min(law.axis.low - along, Real(0)), std::max(law.axis.high - along, Real(0)), 0, 0};
 }
 
 }  // namespace skerry

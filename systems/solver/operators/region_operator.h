@@ -1,0 +1,126 @@
+// Functions that the operators of regions in a step share. These operators carry the velocities of their region along,
+// so that one contact step is a gather and a scatter.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "components/options.h"
+#include "systems/solver/local/lumped_contact.h"
+#include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/operators/in_order.h"
+
+namespace skerry {
+
+/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk. Most regions have one
+/// velocity per node; regions with rigid bodies also have two per body.
+struct ContactMemory {
+    std::span<const LumpedContact> contact;
+    std::span<Vec4> impulse;      // [N s]
+    std::span<Vec4> velocity;     // includes the effect of the impulse [m/s, rad/s]
+    std::span<const Index> node;  // by velocity: row of NodeTable, or no_index for that of a rigid body
+    std::span<Vec4> scratch;      // by velocity: previous velocities, or those of a product
+    std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
+};
+
+/// `Own` derives from this class and adds sweeps. It also tells whether a contact can move anything (moves), its part
+/// of the squared error (squared_residual), velocities without impulses, and the response to impulses (add_response).
+template <class Own, RegionOrder Walk, class Memory>
+class RegionOperatorBase {
+public:
+    using Number = Real;
+
+    Index size() const { return static_cast<Index>(memory_.contact.size()); }
+    std::span<Vec4> impulse() {
+        own().settle();
+        return memory_.impulse;
+    }
+    std::span<Vec4> workspace(Index slot) {
+        own().settle();
+        return memory_.workspace[slot];
+    }
+    void refresh() {
+        own().settle();
+        refresh(memory_.impulse, memory_.velocity);
+    }
+    void refresh_all() {
+        refresh();
+        refresh(memory_.workspace[1], memory_.scratch);  // refreshing only one would let their difference grow
+    }
+    void remember() {
+        own().settle();
+        walk_.contacts(memory_.impulse.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) memory_.workspace[1][i] = memory_.impulse[i];
+        });
+        walk_.nodes(memory_.velocity.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
+        });
+    }
+    /// e_nat of docs/methods/errors.md 2 over all contacts.
+    Real error() {
+        own().settle();
+        const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
+            Real part = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
+            return part;
+        });
+        if (sum == 0) return 0;  // solved exactly, for any scale
+        return std::sqrt(sum) / scale_;
+    }
+    /// The change of a sweep approximates the natural map at its start. The error is worth measuring once the change is
+    /// small.
+    bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
+    void residual(std::span<Vec4> out) {
+        own().settle();
+        walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto at = static_cast<Index>(i);
+                out[i] = own().moves(at) ? Vec4(-own().velocity(at)) : Vec4(Vec4::Zero());
+            }
+        });
+    }
+    void multiply(std::span<const Vec4> in, std::span<Vec4> out) {
+        walk_.nodes(memory_.scratch.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) memory_.scratch[n].setZero();
+        });
+        own().add_response(in, memory_.scratch);
+        walk_.contacts(memory_.contact.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                out[i] = own().velocity_at(static_cast<Index>(i), memory_.scratch.data());
+        });
+    }
+    Vec4 feasible(Index i, const Vec4& residual) const {
+        return feasible_direction(residual, memory_.impulse[i], contact(i).normal, contact(i).friction, friction_);
+    }
+    Vec4 normal(Index i) const { return contact(i).normal; }
+    FrictionLimits limits(Index i) const { return contact(i).friction; }
+    Real mobility(Index i) const { return own().moves(i) ? contact(i).diagonal : 0; }
+    Friction law() const { return friction_; }
+
+protected:
+    RegionOperatorBase(const Memory& memory, Friction friction, Real scale, const Walk& walk)
+        : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
+
+    const LumpedContact& contact(Index i) const { return memory_.contact[i]; }
+    /// Applies an extrapolation that was postponed, if the operator does so.
+    void settle() {}
+    void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) {
+        walk_.nodes(memory_.node.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) velocity[n] = own().free_velocity(n);
+        });
+        own().add_response(impulse, velocity);
+    }
+
+    Memory memory_;
+    Friction friction_;
+    Real scale_;  // scale of e_nat [sqrt(J)]
+    Walk walk_;
+
+private:
+    Own& own() { return static_cast<Own&>(*this); }
+    const Own& own() const { return static_cast<const Own&>(*this); }
+};
+
+}  // namespace skerry

@@ -1,0 +1,57 @@
+// Regions whose contacts or joints touch rigid or implicit bodies (docs/methods/rigid_bodies.md 3).
+#pragma once
+
+#include "systems/solver/operators/body_operator.h"
+#include "systems/solver/regions/joint_rows.h"
+#include "systems/solver/regions/life_cycle.h"
+#include "systems/solver/regions/pushed_bodies.h"
+
+namespace skerry {
+
+/// Order of the velocities: two per rigid body, then touched nodes of implicit bodies, then nodes of clusters, then
+/// other nodes. Joints follow the contacts in the memory by contact.
+struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
+    std::span<const Index> joint;  // rows of JointBlockTable
+    std::span<const Index> rigid;  // rows of RigidBodyTable
+
+    // Functions of the life cycle. They hide those of LoadedRegion.
+    bool moves_node(const RegionStage& stage, std::size_t n) const {
+        return memory.node[n] != no_index && stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) ==
+                                                 no_index;  // otherwise its frame moves it, too
+    }
+    /// Only sweeps support joints.
+    SolverMethod method(const SolverSettings& settings) const {
+        return joint.empty() ? settings.method : SolverMethod::ags;
+    }
+    void take_joint_impulses(const RegionStage& stage) const;
+    /// Corrects the joints to hold at the end of the step, and solves again if the correction exceeds the tolerance
+    /// (docs/methods/joints.md 2).
+    void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
+    void write_contact(const RegionStage& stage, std::size_t i) const;
+    void write_joints(const RegionStage& stage) const;
+    void write_body_push(const RegionStage& stage) const;
+    PushedBodies pushed(const RegionStage& stage, const BodyOperator& op) const {
+        return {stage, row, rigid, memory, op};
+    }
+    Real push_work(const RegionStage& stage) const;
+
+    JointPlaceInRegion joint_place(const RegionStage& stage, std::size_t k) const {
+        RegionMemory& data = stage.memory;
+        const std::size_t at = static_cast<std::size_t>(base) + row.size() + k;
+        return {data.contact[at], data.rigid_part[at], data.joint_law[at - data.contact_rows]};
+    }
+};
+
+inline BodyOperator operator_of(const RegionStage& stage, const BodyRegion& region) {
+    return {region.memory, stage.settings.friction, region.scale, region.walk, stage.memory.newton, stage.memory.runs};
+}
+
+/// Impulses are zero. `joint`: rows of JointBlockTable.
+BodyRegion load_body_region(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
+                            Index number, Index base);
+
+/// Solves one such region in one thread.
+RegionOutcome solve_bodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
+                           Index number, Index base);
+
+}  // namespace skerry

@@ -1,0 +1,174 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "systems/solver/local/load_contact.h"
+#include "systems/solver/regions/body_region.h"
+#include "systems/solver/regions/region_blocks.h"
+
+namespace skerry {
+namespace {
+
+const NodeClusters no_clusters;
+
+/// Loads one region.
+class Loading {
+public:
+    Loading(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint, Index number,
+            Index base)
+        : stage_(stage),
+          data_(stage.memory),
+          number_(static_cast<std::size_t>(number)),
+          list_(data_, data_.node_base[number_], room_of_region(stage.inputs, data_, row.size(), number)),
+          region_{{.row = row,
+                   .base = base,
+                   .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
+                                         stage.inputs.implicit, stage.inputs.rigid, list_.node()),
+                   .memory = memory_of(row.size(), joint.size(), base),
+                   // Joints are not checked for motion, so their regions never use the tolerance of still ones.
+                   .tolerance = joint.empty() ? tolerance_of(stage, row) : stage.settings.tolerance},
+                  joint,
+                  data_.region_rigid[number_]} {}
+
+    BodyRegion load() {
+        list_blocks();
+        for (std::size_t k = 0; k < region_.joint.size(); ++k) load_joint_at(k);
+        load_contacts(stage_, region_, [this](std::size_t i, std::size_t, LumpedContact& contact) {
+            RigidPart& part = region_.memory.part[i];
+            load_contact_at(i, contact, part);
+            const Vec4* const velocity = region_.memory.velocity.data();
+            return Vec4(contact.offset +
+                        add_rigid_velocities(part, velocity, add_node_velocities(contact, velocity, Vec4::Zero())));
+        });
+        list_.trim(region_.memory);
+        const std::span<Vec4> free =
+            data_.free_velocity.span().subspan(data_.node_base[number_], region_.memory.velocity.size());
+        std::ranges::copy(region_.memory.velocity, free.begin());
+        region_.memory.free_velocity = free;
+        return region_;
+    }
+
+private:
+    BodyMemory memory_of(std::size_t contacts, std::size_t joints, Index base) const {
+        const auto first = static_cast<std::size_t>(base);
+        const std::size_t slots = body_workspace_slots(stage_.settings.method);
+        BodyMemory memory{
+            memory_from(stage_, base, contacts + joints, data_.node_base[number_], list_.node(), slots), {}, {}, {}};
+        memory.part = data_.rigid_part.span().subspan(first, contacts + joints);
+        if (joints > 0) memory.joint = data_.joint_law.span().subspan(first + contacts - data_.contact_rows, joints);
+        return memory;
+    }
+
+    /// Lists the rigid bodies and the nodes that move together.
+    void list_blocks() {
+        const RigidInputs& rigid = stage_.inputs.rigid;
+        for (const Index body : region_.rigid) {
+            const auto r = static_cast<std::size_t>(body);
+            list_.add(no_index, padded(rigid.velocity(r)));
+            list_.add(no_index, padded(rigid.spins.kicked(r)));
+        }
+        if (stage_.inputs.implicit.any())
+            for (const Index body : region_.rigid)
+                for (const Index n : stage_.inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)])
+                    place_of(n);
+        for (const Index c : data_.region_clusters[number_])
+            for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
+    }
+
+    /// Returns the region's own row of a node.
+    Index place_of(Index node) {
+        return list_.place_of(node, [&]() -> Vec4 {
+            const RigidNodes& rigid = stage_.inputs.rigid.nodes;
+            const Index row = stage_.inputs.implicit.row(node, rigid);
+            if (row == no_index) return free_velocity_of(stage_, node);
+            return padded(stage_.inputs.implicit.deforming(row, rigid.row(node)));
+        });
+    }
+
+    void load_contact_at(std::size_t i, LumpedContact& contact, RigidPart& part) {
+        const RigidNodes& rigid = stage_.inputs.rigid.nodes;
+        part.term_count = 0;
+        contact = load_contact(
+            stage_.inputs, region_.row[i], stage_.out.velocity_next, stage_.settings, stage_.h,
+            [&](Index node) { return place_of(node); },
+            [&](Index node, Real weight) {
+                const Index body = rigid.row(node);
+                if (body != no_index) add_term(part, body, node, weight, i);
+                return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
+            });
+        find_mobility(contact, part);
+    }
+
+    void load_joint_at(std::size_t k) {
+        const JointPlaceInRegion place = region_.joint_place(stage_, k);
+        load_joint(stage_, stage_.inputs.joints[static_cast<std::size_t>(region_.joint[k])], region_.rigid, place);
+        region_.memory.impulse[region_.row.size() + k].setZero();
+        const Vec4 u = add_rigid_velocities(place.part, region_.memory.velocity.data(), place.contact.offset);
+        add_joint(place, u, region_.sums);
+    }
+
+    const Vec3& contact_normal(std::size_t i) const {
+        return stage_.inputs.normal[static_cast<std::size_t>(region_.row[i])];
+    }
+
+    void add_term(RigidPart& part, Index body, Index node, Real weight, std::size_t i) {
+        const RigidInputs& rigid = stage_.inputs.rigid;
+        Index k = 0;
+        while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
+        RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+        if (k == part.term_count) {
+            ++part.term_count;
+            const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
+            // A round body touches beside its core.
+            const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
+                                                        contact_normal(i), stage_.inputs.touch);
+            term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
+        }
+        term.weight += weight;
+        term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -
+                                    rigid.center[static_cast<std::size_t>(body)]);
+    }
+
+    void find_mobility(LumpedContact& contact, RigidPart& part) const {
+        const bool moves_nodes = contact.node_count > 0;
+        Mat3 mobility = moves_nodes ? region_.walk.coupling(contact, contact) : Mat3(Mat3::Zero());
+        for (Index k = 0; k < part.term_count; ++k) {
+            RigidTerm& term = part.term[static_cast<std::size_t>(k)];
+            const auto r = static_cast<std::size_t>(term.row);
+            term.step = stage_.inputs.rigid.inverse_mass(r) > 0 ? term.weight / stage_.inputs.rigid.mass[r] : 0;
+            term.spin_step =
+                columns_of(stage_.inputs.rigid.spins.inverse_inertia[r] * cross_matrix(term.arm.head<3>()));
+        }
+        const Mat3 rigid = rigid_coupling(part, part);
+        mobility += rigid;
+        const Vec3 normal = contact.normal.head<3>();
+        const TangentFrame tangents = tangent_frame(normal);
+        part.frame = {contact.normal, padded(tangents.first), padded(tangents.second)};
+        part.mobility = columns_of(mobility);
+        part.along_normal = normal.dot(mobility * normal);
+        if (moves_nodes && part.term_count > 0 && stage_.inputs.implicit.any())
+            part.along_normal = normal.dot((region_.walk.undeformed_coupling(contact, contact) + rigid) * normal);
+        part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
+        if (part.term_count > 0) {
+            const Mat3 frame = matrix_of(part.frame);
+            part.block = prepare_block(frame.transpose() * mobility * frame);
+        }
+        contact.diagonal = mobility.trace() / 3;
+        contact.inverse_diagonal = contact.diagonal > 0 ? 1 / contact.diagonal : 0;
+    }
+
+    const RegionStage& stage_;
+    RegionMemory& data_;
+    const std::size_t number_;
+    NodeList list_;
+    BodyRegion region_;
+};
+
+}  // namespace
+
+BodyRegion load_body_region(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
+                            Index number, Index base) {
+    if (!joint.empty()) base = static_cast<Index>(stage.memory.joint_base[static_cast<std::size_t>(number)]);
+    return Loading(stage, row, joint, number, base).load();
+}
+
+}  // namespace skerry

@@ -1,0 +1,65 @@
+// Regions of contacts between nodes with lumped masses, each with its own mass or coupled in clusters.
+#pragma once
+
+#include <type_traits>
+
+#include "systems/solver/local/load_contact.h"
+#include "systems/solver/operators/lumped_operator.h"
+#include "systems/solver/regions/life_cycle.h"
+
+namespace skerry {
+
+template <RegionWalk Walk>
+using LumpedRegion = LoadedRegion<Walk, LumpedMemory>;
+
+template <RegionWalk Walk>
+LumpedOperatorBy<Walk> operator_of(const RegionStage& stage, const LumpedRegion<Walk>& region) {
+    return {region.memory, stage.settings.friction, region.scale, region.walk};
+}
+
+/// Returns a region that is not loaded yet. `node`: rows of NodeTable, at places from `first_node` on in the columns by
+/// node.
+template <RegionWalk Walk>
+LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index> row, Index base,
+                                 std::size_t first_node, std::span<const Index> node, const Walk& walk) {
+    const std::size_t slots = workspace_slots(stage.settings.method);
+    return {.row = row,
+            .base = base,
+            .walk = walk,
+            .memory = {memory_from(stage, base, row.size(), first_node, node, slots), stage.out.velocity_next},
+            .tolerance = tolerance_of(stage, row)};
+}
+
+/// `numbering(k)` returns a function from a moving node of the region's contact k to the region's own row. The velocity
+/// of that row must be set by then.
+template <RegionWalk Walk, class Numbering>
+void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Walk>& region, Numbering&& numbering) {
+    // Lanes need the velocities without impulses.
+    const bool keep_free_velocity = std::is_same_v<Walk, InOrder> && workspace_slots(stage.settings.method) > 1;
+    const std::size_t first = static_cast<std::size_t>(region.base);
+    const Vec4* velocity = region.memory.velocity.data();
+    load_contacts(stage, region, [&](std::size_t place, std::size_t number, LumpedContact& contact) {
+        contact = load_contact(stage.inputs, region.row[number], stage.out.velocity_next, stage.settings, stage.h,
+                               numbering(number));
+        if constexpr (!Walk::own_masses) {
+            if (contact.node_count > 0) {
+                contact.diagonal = region.walk.coupling(contact, contact);
+                contact.inverse_diagonal = 1 / contact.diagonal;
+            }
+        }
+        const Vec4 u = contact_velocity(contact, velocity);
+        if (keep_free_velocity) stage.memory.workspace[free_velocity_slot][first + place] = u;
+        return u;
+    });
+}
+
+/// Loads a region of one thread, after the nodes that are in `list` already.
+template <RegionWalk Walk>
+void load_listed(const RegionStage& stage, NodeList& list, LumpedRegion<Walk>& region) {
+    const auto local = [&](Index node) { return list.place_of(node, [&] { return free_velocity_of(stage, node); }); };
+    load_lumped_contacts(
+        stage, region, [&](std::size_t) -> const auto& { return local; });
+    list.trim(region.memory);
+}
+
+}  // namespace skerry

@@ -1,0 +1,131 @@
+// Split impulse of a region: moves overlapping contacts apart without adding energy (docs/methods/contact.md 3.4).
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <span>
+#include <utility>
+
+#include "systems/solver/operators/contact_operator.h"
+#include "systems/solver/regions/region_stage.h"
+
+namespace skerry {
+
+/// Operator of a region in a step. Besides the methods it supports the split impulse.
+template <class Op>
+concept RegionOperator = ContactOperator<Op> &&
+    requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
+    { op.velocity(i) } -> std::same_as<Vec4>;           // u of the present impulse
+    { op.push_size(i, number) } -> std::same_as<Real>;  // size of a push that changes the normal speed [J]
+    { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;  // one contact step on the pseudo velocities
+};
+
+/// Parts of a push beside contacts. Regions of lumped masses have none; PushedBodies has joints and turning bodies.
+struct PushedContacts {
+    /// True if contacts may lose distance by rotation.
+    bool any_turns() const { return false; }
+    /// Speed of that loss at a place, at most 0 [m/s]
+    Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
+    /// One sweep over the joints. Returns the size of the change [J]
+    Real sweep_joints(std::span<Vec4>) const { return 0; }
+};
+
+/// Push of one region. `Others`: PushedContacts or PushedBodies.
+template <class Region, RegionOperator Op, class Others>
+class Push {
+public:
+    Push(const RegionStage& stage, const Region& region, const Op& op, Others others)
+        : stage_(stage),
+          region_(region),
+          op_(op),
+          others_(std::move(others)),
+          memory_(push_memory(stage, region.base, region.row.size())),
+          velocity_(region.memory.scratch),
+          slop_(push_slop(stage.inputs.gravity, stage.h)) {}
+
+    /// Writes the pseudo velocities. Returns false if there are none. `pressed`: some contact is pressed in.
+    bool run(bool pressed) {
+        clear();
+        const Asked asked = ask();
+        if (!pressed && !asked.by_turns) return false;
+        sweep(asked.size);
+        // The push turns bodies, too, so the loss is evaluated again.
+        constexpr int turn_rounds = 2;
+        for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
+        return true;
+    }
+
+private:
+    struct Asked {
+        Real size;  // scale of the requested push [J]
+        bool by_turns;
+    };
+
+    void clear() {
+        region_.walk.nodes(velocity_.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) velocity_[n].setZero();
+        });
+        region_.walk.contacts(region_.row.size(), [this](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) memory_.impulse[i] = 0;
+        });
+    }
+
+    Asked ask() {
+        bool by_turns = false;  // only regions of one thread have turns
+        const Real size = region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
+            Real part = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const LumpedContact& contact = region_.memory.contact[i];
+                const Real along = contact.normal.dot(op_.velocity(static_cast<Index>(i))) - contact.bias;
+                const Real gap = stage_.inputs.gap[region_.row_at(i)];
+                Real& bias = memory_.bias[i];
+                bias = push_bias(along, gap, slop_, stage_.settings, stage_.inputs.gravity, stage_.h);
+                if (const Real loss = others_.loss(i, velocity_); loss < 0) {
+                    bias = push_bias_turned(bias, along, gap, slop_, loss, stage_.h);
+                    by_turns = by_turns || bias < 0;
+                }
+                part += op_.push_size(static_cast<Index>(i), std::min(bias, Real(0)));
+            }
+            return part;
+        });
+        return {size, by_turns};
+    }
+
+    void sweep(Real asked) {
+        const Real small = region_.tolerance * region_.tolerance * asked;
+        for (Index iteration = 1; iteration <= stage_.settings.max_iterations; ++iteration) {
+            const Real of_joints = others_.sweep_joints(velocity_);
+            const Real change =
+                region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
+                    Real size = begin == 0 ? of_joints : 0;
+                    for (std::size_t i = begin; i < end; ++i)
+                        size += op_.push(static_cast<Index>(i), memory_.bias[i], velocity_.data(), memory_.impulse[i]);
+                    return size;
+                });
+            if (change <= small && !stage_.settings.fixed_iterations) break;
+        }
+    }
+
+    const RegionStage& stage_;
+    const Region& region_;
+    const Op& op_;
+    const Others others_;
+    const PushMemory memory_;
+    const std::span<Vec4> velocity_;
+    const Real slop_;
+};
+
+/// Finds frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed), further limited by
+/// push_speed, where the gap is below the slop. Elsewhere they allow no approach that the velocity solve would not
+/// allow. The solution must be written to `stage.out` already. The result is in region.memory.scratch. Returns false if
+/// nothing is pushed.
+template <class Region, RegionOperator Op>
+[[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
+    const Real slop = push_slop(stage.inputs.gravity, stage.h);
+    const bool pressed = std::ranges::any_of(region.row, [&](Index i) { return stage.inputs.gap[i] < -slop; });
+    auto others = region.pushed(stage, op);
+    if (!pressed && !others.any_turns()) return false;
+    return Push(stage, region, op, std::move(others)).run(pressed);
+}
+
+}  // namespace skerry

@@ -1,0 +1,63 @@
+// Data that all regions of a step share, the outcome of a region, and their memory.
+#pragma once
+
+#include <span>
+
+#include "components/region_table.h"
+#include "systems/solver/inputs/region_inputs.h"
+#include "systems/solver/inputs/solver_settings.h"
+#include "systems/solver/local/push_contact.h"
+#include "systems/solver/methods/error_test.h"
+#include "systems/solver/regions/region_memory.h"
+
+namespace skerry {
+
+struct RegionStage {
+    const RegionInputs& inputs;
+    const SolverSettings& settings;
+    Real h;  // length of the step [s]
+    const RegionOutputs& out;
+    RegionMemory& memory;
+};
+
+struct RegionOutcome {
+    Index iterations = 0;
+    Real error = 0;
+    RegionStatus status = RegionStatus::converged;
+    RegionShortcut shortcut = shortcut_none;
+    Real dissipated = 0;  // [J]
+    Real push_work = 0;   // [J]
+};
+
+/// Converts the result of a method: an error within settings.tolerance counts as converged.
+RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings);
+/// Writes an outcome to the region's row.
+void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions);
+
+SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
+
+/// Tolerance of a region with these contacts. It is smaller if all touched bodies are still; otherwise the remaining
+/// solver error would keep them from coming to rest (docs/methods/errors.md 7).
+Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
+
+/// Memory of `count` contacts starting at `base`, and of velocities starting at `first_node`. `node`: rows of NodeTable
+/// by velocity. `slots`: number of workspace vectors.
+ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::size_t first_node,
+                          std::span<const Index> node, std::size_t slots);
+/// Predicted velocity of a node [m/s]
+inline Vec4 free_velocity_of(const RegionStage& stage, Index node) {
+    return padded(stage.out.velocity_next[node]);
+}
+/// Memory of the split impulse of `count` contacts starting at `base`.
+PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
+
+/// Energy that a contact dissipates; its impulse and velocities must be written already (docs/methods/time_stepping.md
+/// 2.6) [J]
+Real dissipated_by(const RegionStage& stage, Index row);
+
+/// Work of moving nodes by h p against the forces of the step without contacts; p is in memory.scratch. h times the
+/// force on a node is its change of momentum minus the impulses of its contacts; nodes of clusters have it in the
+/// inputs. First order in h p. `own_masses`: the region has neither clusters nor bodies [J]
+Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
+
+}  // namespace skerry
