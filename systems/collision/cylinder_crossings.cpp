@@ -1,19 +1,17 @@
-#include "systems/collision/cylinder_crossings.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "systems/collision/awake_candidates.h"
-#include "systems/collision/colliders/time_of_touch.h"
-#include "systems/collision/cylinders/nearest_bound.h"
+#include "systems/collision/cylinders/cylinder_touches.h"
+#include "systems/collision/cylinders/rigid_cylinder.h"
 #include "systems/collision/cylinders/shape_facets.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/winding_number.h"
+#include "systems/collision/pair_crossings.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -29,106 +27,88 @@ static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
 // A motion below this fraction of the smaller half thickness passes through nothing between the start and the end.
 constexpr Real thin_fraction = 0.5;
 
-class CylinderCrossings {
+class CylinderCrossings : PairCrossings {
 public:
-    CylinderCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
-                      std::span<const ContactRow> known, Column<ContactRow>& found)
-        : inputs_(inputs),
-          motion_(motion),
-          of_(inputs, pairs, p),
-          cylinder_(cylinder_in_step(inputs, motion, of_.cylinder)),
-          scale_(pair_scale(inputs, of_.kind, pairs.first[p], pairs.second[p])),
-          surface_(pair_surface(inputs, of_.kind, pairs.first[p], pairs.second[p])),
-          candidates_(pairs.candidates[p].span()),
-          asleep_until_(pairs.asleep_until[p].span()),
-          known_(known),
-          found_(found) {}
+    CylinderCrossings(const PairCrossings& pair, std::span<const ContactRow> known)
+        : PairCrossings(pair), known_(known) {}
 
-    std::uint64_t run(Range range, Real travel_bound) {
-        return count_tested(asleep_until_, range, travel_bound, [&](Index c) { return test(candidates_[c]); });
+    bool test(const Candidate& candidate) {
+        if (kind == PairKind::collider)
+            return against_shape(candidate, inputs.collider.geometry[second], inputs.collider.motion[second],
+                                 second_local(candidate.feature), {});
+        const Index core = inputs.body.core_nodes[second], begin = inputs.body.nodes[second].begin;
+        if (core == 0) return against_triangle(candidate);
+        if (core != cylinder_core_nodes) return against_core(candidate, {begin, begin + core - 1, begin});
+        const RigidCylinder other = cylinder_in_step(inputs, motion, second);
+        return against_shape(candidate, other.geometry, other.motion, 0,
+                             stencil_of_point({cylinder_.middle, begin, begin, begin}, {1, 0, 0}));
     }
 
 private:
     using Kind = TouchingFeature::Kind;
 
-    bool test(const Candidate& candidate) {
-        if (of_.kind == PairKind::collider)
-            return against_shape(candidate, inputs_.collider.geometry[of_.other], inputs_.collider.motion[of_.other],
-                                 second_local(candidate.feature), {});
-        const Index core = inputs_.body.core_nodes[of_.other], first = inputs_.body.nodes[of_.other].begin;
-        if (core == 0) return against_triangle(candidate);
-        if (core != cylinder_core_nodes) return against_core(candidate, core, first);
-        const RigidCylinder other = cylinder_in_step(inputs_, motion_, of_.other);
-        return against_shape(candidate, other.geometry, other.motion, 0,
-                             stencil_of_cylinder(cylinder_.middle, {first, first, first}, {1, 0, 0}));
-    }
-
     bool against_triangle(const Candidate& candidate) {
         const Index t = candidate.second;
-        const TriangleTable& table = inputs_.surface.triangles;
+        const TriangleTable& table = inputs.surface.triangles;
         const auto& node = table.node[t];
-        if (!can_move(node)) return false;
-        TouchingFeature face = feature_of(Kind::face, node);
+        if (!any_moves(node)) return false;
+        const TouchingFeature face = feature_of(Kind::face, node, 0, kept(0));
         const LocalFace local{cylinder_.local(face.position[0]), cylinder_.local(face.position[1]),
                               cylinder_.local(face.position[2])};
         if (!may_meet(face, distance_bound(cylinder_.geometry, local))) return false;
         for (Index k = 0; k < 3; ++k) {
             const Index next = (k + 1) % 3;
             if (table.owned_vertices[t] >> k & 1)
-                look(candidate, crossing_of_triangle + k, feature_of(Kind::node, {node[k], no_index, no_index}),
-                     {node[k], node[k], node[k]});
+                test_feature(candidate, crossing_of_triangle + k, Kind::node, {node[k], node[k], node[k]});
             if (table.owned_edges[t] >> k & 1)
-                look(candidate, crossing_of_triangle + 3 + k, feature_of(Kind::edge, {node[k], node[next], no_index}),
-                     {node[k], node[next], node[k]});
+                test_feature(candidate, crossing_of_triangle + 3 + k, Kind::edge, {node[k], node[next], node[k]});
         }
-        for (Index rim = 0; rim < 2; ++rim) {
-            face.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
-            look(candidate, crossing_of_triangle + 6 + rim, face, node);
-        }
+        for (Index rim = 0; rim < 2; ++rim)
+            test_feature(candidate, crossing_of_triangle + 6 + rim, Kind::face, node, point_of_rim(rim));
         return true;
     }
 
-    void look(const Candidate& candidate, Index number, const TouchingFeature& feature,
-              const std::array<Index, 3>& node) {
-        if (!may_meet(feature, nearest(feature).distance)) return;
-        const std::optional<Hit> hit = first_hit(feature);
-        if (!hit || (hit->touch.within && !is_outside(inputs_, of_.other, cylinder_.world(hit->touch.point)))) return;
-        add(candidate, number, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature, *hit);
-    }
-
-    bool against_core(const Candidate& candidate, Index core, Index first) {
-        const std::array<Index, 3> node{first, first + core - 1, first};
-        if (!can_move(node)) return false;
-        TouchingFeature feature = feature_of(core == 1 ? Kind::node : Kind::edge, node);
-        feature.kept.distance = inputs_.body.round_radius[of_.other];
+    /// Tests a feature of the other body, or the core of one that is round with this radius [m]. Returns true if it
+    /// needed a full test.
+    bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
+                      Index of_shape = 0, Real radius = 0) {
+        const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
         if (!may_meet(feature, nearest(feature).distance)) return false;
-        if (const std::optional<Hit> hit = first_hit(feature))
-            add(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature,
-                *hit);
+        const std::optional<Hit> hit = first_hit(feature);
+        if (!hit || (hit->touch.within && !is_outside(inputs, second, cylinder_.world(hit->touch.point)))) return true;
+        const Stencil stencil = stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, hit->touch.weight);
+        add_hit(candidate, number, stencil, feature, *hit, Vec3::Zero());
         return true;
+    }
+
+    /// Tests a sphere or a capsule. `node`: ends of its axis.
+    bool against_core(const Candidate& candidate, const std::array<Index, 3>& node) {
+        return any_moves(node) &&
+               test_feature(candidate, crossing_of_shape, node[0] == node[1] ? Kind::node : Kind::edge, node, 0,
+                            inputs.body.round_radius[second]);
     }
 
     /// `stencil`: that of the pair, if the other partner is a body.
     bool against_shape(const Candidate& candidate, const ColliderGeometry& other, const RigidMotion& other_motion,
                        Index part, const std::optional<Stencil>& stencil) {
-        if (!(inputs_.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
+        if (!(inputs.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
         const RigidMotion place = seen_from(cylinder_.motion, other_motion);
         touches_.clear();
         const Real bound = shape_distance_bound(cylinder_.geometry, other, part, place, touches_);
         if (other.shape == ColliderShape::plane) return against_plane(candidate, other_motion, bound);
         const RigidMotion other_end = at_end(other_motion);
         const Real furthest =
-            motion_.h * (other_motion.angular_velocity.norm() * collider_radius(other) + other_motion.velocity.norm()) +
+            motion.h * (other_motion.angular_velocity.norm() * collider_radius(other) + other_motion.velocity.norm()) +
             greatest_way_of_cylinder();
         if (!(furthest > slow_fraction * bound)) return false;
-        touch_shape(cylinder_.geometry, other, part, place, furthest + scale_.shell, touches_);
+        touch_shape(cylinder_.geometry, other, part, place, furthest + scale.shell, touches_);
         if (!(furthest > slow_fraction * shape_distance_bound(cylinder_.geometry, other, part, place, touches_)))
             return false;
         const bool overlap =
             std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
-        const Stencil of_pair = stencil.value_or(stencil_of_cylinder(cylinder_.middle, {}, {}));
+        const Stencil of_pair = stencil.value_or(stencil_of_middle());
         const auto velocity = [&](const Vec3& at) {
-            return stencil ? Vec3(Vec3::Zero()) : velocity_of(other_motion, at);
+            return stencil ? Vec3(Vec3::Zero()) : velocity_at(other_motion, at);
         };
         if (!overlap && add_end(candidate, other, part, other_motion, other_end, of_pair, velocity)) return true;
         if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other)))
@@ -142,14 +122,13 @@ private:
                  const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
         const RigidMotion end = at_end(cylinder_.motion);
         touches_.clear();
-        touch_shape(cylinder_.geometry, other, part, seen_from(end, other_end), scale_.shell, touches_);
+        touch_shape(cylinder_.geometry, other, part, seen_from(end, other_end), scale.shell, touches_);
         if (std::none_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; }))
             return false;
         for (const CylinderTouch& touch : touches_) {
-            const Vec3 normal = end.rotation * touch.normal, on_other = end.position + end.rotation * touch.on_other,
+            const Vec3 normal = end.rotation * touch.normal, on_other = to_world(end, touch.on_other),
                        arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
-                       at_start = other_motion.position + other_motion.rotation * (other_end.rotation.transpose() *
-                                                                                   (on_other - other_end.position));
+                       at_start = to_world(other_motion, to_local(other_end, on_other));
             const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
             put(candidate, crossing_of_shape + touch.number, stencil, arm, normal, along, velocity(at_start),
                 touch.distance);
@@ -161,31 +140,33 @@ private:
     void add_facets(const Candidate& candidate, const ColliderGeometry& other, Index part,
                     const RigidMotion& other_motion, const RigidMotion& other_end, const Stencil& stencil,
                     auto&& velocity) {
-        std::optional<Hit> first;
+        std::optional<Hit> first_found;
         TouchingFeature of_first{};
         ShapeFacets(other, part).for_each([&](const Facet& facet) {
-            TouchingFeature feature{.kind = facet.kind, .of_collider = 0, .position = {}};
+            TouchingFeature feature{.kind = facet.kind, .of_shape = 0, .position = {}, .kept = kept(facet.radius)};
             for (std::size_t i = 0; i < feature.nodes(); ++i) {
-                feature.position[i] = other_motion.position + other_motion.rotation * facet.at[i];
-                feature.displacement[i] = other_end.position + other_end.rotation * facet.at[i] - feature.position[i];
+                feature.position[i] = to_world(other_motion, facet.at[i]);
+                feature.displacement[i] = to_world(other_end, facet.at[i]) - feature.position[i];
             }
-            feature.kept = kept(facet.radius);
             for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
-                feature.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
+                feature.of_shape = point_of_rim(rim);
                 if (!may_meet(feature, nearest(feature).distance)) continue;
                 const std::optional<Hit> hit = first_hit(feature);
-                if (!hit || hit->touch.within || (first && first->time <= hit->time)) continue;
-                first = hit;
+                if (!hit || hit->touch.within || (first_found && first_found->time <= hit->time)) continue;
+                first_found = hit;
                 of_first = feature;
             }
         });
-        if (first) add(candidate, crossing_of_facets, stencil, of_first, *first, velocity(along_of(of_first, *first)));
+        if (first_found) {
+            const Vec3 at = touched_point(of_first, *first_found);
+            add_hit(candidate, crossing_of_facets, stencil, of_first, *first_found, velocity(at));
+        }
     }
 
     /// Tests only the end of the step, because nothing gets around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
-        if (!(greatest_way_of_cylinder() + motion_.h * plane.velocity.norm() +
-                  motion_.h * plane.angular_velocity.norm() *
+        if (!(greatest_way_of_cylinder() + motion.h * plane.velocity.norm() +
+                  motion.h * plane.angular_velocity.norm() *
                       ((cylinder_.motion.position - plane.position).norm() + greatest_way_of_cylinder() +
                        ball_radius()) >
               distance) ||
@@ -199,8 +180,8 @@ private:
         if (!(normal.dot(end.position + end.rotation * deepest - plane_end.position) < 0)) return true;
         const Vec3 arm = cylinder_.motion.rotation * deepest;
         const Real along = normal.dot(cylinder_.motion.position + arm - plane.position);
-        put(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, {}, {}), arm, normal, along,
-            velocity_of(plane, cylinder_.motion.position + arm));
+        put(candidate, crossing_of_shape, stencil_of_middle(), arm, normal, along,
+            velocity_at(plane, cylinder_.motion.position + arm));
         return true;
     }
 
@@ -210,7 +191,7 @@ private:
     };
     std::optional<Hit> first_hit(const TouchingFeature& feature) const {
         Real time = 0;
-        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion_.h, feature, &time);
+        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
     }
     Touch nearest(const TouchingFeature& feature) const {
@@ -219,24 +200,25 @@ private:
         return nearest_touch(cylinder_.geometry, feature, local);
     }
     bool may_meet(const TouchingFeature& feature, Real distance) const {
-        return greatest_approach(cylinder_.motion, motion_.h, feature) > slow_fraction * distance;
+        return greatest_approach(cylinder_.motion, motion.h, feature) > slow_fraction * distance;
     }
 
     /// Orientation of the cylinder at a time of the step (fraction).
     Mat3 rotation_at(Real time) const {
-        return rotation_matrix(time * motion_.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
+        return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
     /// Position of the touched point of the feature at the start of the step [m].
-    static Vec3 along_of(const TouchingFeature& feature, const Hit& hit) {
+    static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
         return sum;
     }
-    void add(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
-             const Hit& hit, const Vec3& surface_velocity = Vec3::Zero()) {
+    void add_hit(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
+                 const Hit& hit, const Vec3& surface_velocity) {
         const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
                    arm = cylinder_.motion.rotation * hit.touch.point;
-        const Real along = normal.dot(cylinder_.motion.position + arm - along_of(feature, hit)) - feature.kept.distance;
+        const Real along =
+            normal.dot(cylinder_.motion.position + arm - touched_point(feature, hit)) - feature.kept.distance;
         put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
     /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
@@ -246,10 +228,9 @@ private:
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
             const Vec3 point = cylinder_.motion.position + arm - distance * normal;
-            return contact_row(
-                inputs_, of_,
-                {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
-                surface_);
+            return contact_row(*this, feature_of_touch(*this, candidate.feature, number),
+                               kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
+                               stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
         // A feature that turns by more than a right angle can have a negative distance here without an overlap.
         ContactRow row = row_at(std::max(along, Real(0)));
@@ -258,33 +239,22 @@ private:
             if (before != known_.end() && before->key == row.key)
                 row = row_at(std::max(std::min(row.distance, before->distance) + left, Real(0)));
         }
-        found_.push_back(row);
+        found.push_back(row);
     }
 
     /// Kept distance of a feature. If a contact stops it at the shell, it has not crossed, however far it came.
     KeptApart kept(Real radius) const {
-        return {radius, scale_.shell > 0 ? contact_slack * scale_.shell : std::numeric_limits<Real>::infinity()};
+        return {radius, scale.shell > 0 ? contact_slack * scale.shell : std::numeric_limits<Real>::infinity()};
     }
-    TouchingFeature feature_of(Kind kind, const std::array<Index, 3>& node) const {
-        TouchingFeature feature{.kind = kind, .of_collider = 0, .position = {}};
-        feature.kept = kept(0);
-        for (std::size_t i = 0; i < feature.nodes(); ++i) {
-            feature.position[i] = inputs_.position[node[i]];
-            feature.displacement[i] = motion_.of(node[i]);
-        }
-        return feature;
+    bool any_moves(const std::array<Index, 3>& node) const {
+        return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
-    bool can_move(const std::array<Index, 3>& node) const {
-        return inputs_.inverse_mass[cylinder_.middle] > 0 ||
-               std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
-    }
-    static RigidMotion seen_from(const RigidMotion& from, const RigidMotion& motion) {
-        const Mat3 back = from.rotation.transpose();
-        return {back * (motion.position - from.position), back * motion.rotation, Vec3::Zero(), Vec3::Zero()};
-    }
-    RigidMotion at_end(const RigidMotion& motion) const {
-        return {motion.position + motion_.h * motion.velocity,
-                rotation_matrix(motion_.h * motion.angular_velocity) * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+    Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
+    /// Point of the cylinder that follows a face around a rim (collider_point).
+    static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
+    RigidMotion at_end(const RigidMotion& pose) const {
+        return {pose.position + motion.h * pose.velocity,
+                rotation_matrix(motion.h * pose.angular_velocity) * pose.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     /// Half of the thickness of the thinnest part [m].
     static Real thickness(const ColliderGeometry& geometry) {
@@ -306,23 +276,11 @@ private:
     }
     Real ball_radius() const { return std::hypot(cylinder_.geometry.size[0], cylinder_.geometry.size[1]); }
     Real greatest_way_of_cylinder() const {
-        return motion_.h *
-               (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
-    }
-    static Vec3 velocity_of(const RigidMotion& motion, const Vec3& point) {
-        return motion.velocity + motion.angular_velocity.cross(point - motion.position);
+        return motion.h * (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
     }
 
-    const CollisionInputs& inputs_;
-    const StepMotion& motion_;
-    const CylinderPair of_;
-    const RigidCylinder cylinder_;
-    const PairScale scale_;
-    const SurfaceProperties surface_;
-    std::span<const Candidate> candidates_;
-    std::span<const Real> asleep_until_;
+    const RigidCylinder cylinder_ = cylinder_in_step(inputs, motion, first);
     std::span<const ContactRow> known_;  // of earlier tries, in key order
-    Column<ContactRow>& found_;
     CylinderTouches touches_;
 };
 
@@ -331,7 +289,9 @@ private:
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found) {
-    return CylinderCrossings(inputs, motion, pairs, p, known, found).run(range, travel_bound);
+    CylinderCrossings crossings({inputs, motion, pairs, p, found}, known);
+    return count_tested(pairs.asleep_until[p].span(), range, travel_bound,
+                        [&](Index c) { return crossings.test(pairs.candidates[p][c]); });
 }
 
 }  // namespace skerry

@@ -227,7 +227,7 @@ private:
 /// True if the whole part or point that the feature is tested against lies behind the plane of a touch.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
-    return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;
+    return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;
 }
 
 }  // namespace
@@ -240,15 +240,15 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
                     const std::array<Vec3, 3>& nodes) {
     switch (feature.kind) {
         case TouchingFeature::Kind::node: {
-            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_collider);
+            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_shape);
             return of_surface(on, on.distance - feature.kept.distance, {1, 0, 0});
         }
         case TouchingFeature::Kind::edge:
-            return nearest_on_edge(geometry, feature.of_collider, nodes, feature.kept.distance);
+            return nearest_on_edge(geometry, feature.of_shape, nodes, feature.kept.distance);
         case TouchingFeature::Kind::face:
             break;
     }
-    return nearest_on_face(geometry, feature.of_collider, nodes);
+    return nearest_on_face(geometry, feature.of_shape, nodes);
 }
 
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature) {

@@ -8,6 +8,7 @@
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {
@@ -183,8 +184,8 @@ private:
         return {normal, normal.cwiseProduct(other_.size), FlatSide::Region::rectangle, other_.size};
     }
 
-    Vec3 to_other(const Vec3& p) const { return place_.rotation.transpose() * (p - place_.position); }
-    Vec3 from_other(const Vec3& p) const { return place_.position + place_.rotation * p; }
+    Vec3 to_other(const Vec3& p) const { return to_local(place_, p); }
+    Vec3 from_other(const Vec3& p) const { return to_world(place_, p); }
     SurfacePoint other_at(const Vec3& p) const {
         SurfacePoint on = local_distance(other_, to_other(p), part_);
         on.normal = place_.rotation * on.normal;

@@ -5,6 +5,7 @@
 
 #include "components/check.h"
 #include "components/collider_table.h"
+#include "systems/collision/colliders/face_contact.h"
 
 namespace skerry {
 
@@ -68,5 +69,13 @@ void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& 
 /// are left out [m].
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
+
+/// Lower bound of the distance of a triangle, given in the frame of the cylinder [m].
+Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
+
+/// Lower bound of the distance of a part of a shape at `place` in the frame of the cylinder [m]. It uses the axes of
+/// both shapes and the normals of the touches as separating axes, and the bounding balls.
+Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
+                          const RigidMotion& place, const CylinderTouches& touches);
 
 }  // namespace skerry

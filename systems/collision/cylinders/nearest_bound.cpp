@@ -1,4 +1,4 @@
-#include "systems/collision/cylinders/nearest_bound.h"
+#include "systems/collision/cylinders/cylinder_touches.h"
 
 #include <algorithm>
 #include <cmath>

@@ -36,6 +36,14 @@ using NodeLanes = std::array<Index, candidate_lanes>;
 
 }  // namespace
 
+void prefetch_nodes(const SurfaceTables& surface, const Candidate& candidate) {
+    const bool edge = is_edge_edge(candidate.feature);
+    __builtin_prefetch(edge ? static_cast<const void*>(&surface.edges.node[candidate.first])
+                            : &surface.vertices.node[candidate.first]);
+    __builtin_prefetch(edge ? static_cast<const void*>(&surface.edges.node[candidate.second])
+                            : &surface.triangles.node[candidate.second]);
+}
+
 CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate) {
     if (is_edge_edge(candidate.feature)) {
         const auto &a = surface.edges.node[candidate.first], &b = surface.edges.node[candidate.second];
@@ -55,20 +63,6 @@ Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> p
     else
         store(square_root(point_triangle_distance(a, b, c, d).distance_squared), distance);
     return distance;
-}
-
-Lanes<Real, candidate_lanes> relative_speeds(FeaturePair kind, std::span<const Vec3> velocity,
-                                             const CandidateNodeLanes& node) {
-    const LaneVec3<Real8> a = gather(velocity, node[0]), b = gather(velocity, node[1]), c = gather(velocity, node[2]),
-                          d = gather(velocity, node[3]);
-    Real8 squared = greater(squared_difference(a, c), squared_difference(a, d));
-    if (kind == FeaturePair::edge_edge)
-        squared = greater(squared, greater(squared_difference(b, c), squared_difference(b, d)));
-    else
-        squared = greater(squared, squared_difference(a, b));
-    Lanes<Real, candidate_lanes> speed;
-    store(square_root(squared), speed);
-    return speed;
 }
 
 Lanes<Real, candidate_lanes> approaches(FeaturePair kind, const StepMotion& motion, const CandidateNodeLanes& node) {

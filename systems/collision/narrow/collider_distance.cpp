@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry {
@@ -158,9 +159,8 @@ Index collider_part_count(ColliderShape shape) {
 
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point) {
-    const Vec3 local = motion.rotation.transpose() * (world_point - motion.position);
-    const SurfacePoint found = local_distance(geometry, local, part);
-    return {found.distance, motion.rotation * found.normal, motion.position + motion.rotation * found.point};
+    const SurfacePoint found = local_distance(geometry, to_local(motion, world_point), part);
+    return {found.distance, motion.rotation * found.normal, to_world(motion, found.point)};
 }
 
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion) {
