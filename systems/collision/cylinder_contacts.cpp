@@ -219,9 +219,9 @@ private:
     void find_touches(Index c, const ColliderGeometry& other, const RigidMotion& motion, Index part) {
         const RigidMotion place = seen_from(cylinder_.motion, motion);
         touches_.clear();
-        if (is_far(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_))) return;
+        if (is_far(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance)) return;
         touch_shape(cylinder_.geometry, other, part, place, near_surface(), touches_);
-        note(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_));
+        note(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance);
     }
 
     Vec3 local(Index node) const { return cylinder_.local(inputs.position[node]); }

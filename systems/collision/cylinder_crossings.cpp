@@ -4,14 +4,15 @@
 #include <functional>
 #include <limits>
 
+#include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/cylinders/cylinder_touches.h"
 #include "systems/collision/cylinders/rigid_cylinder.h"
-#include "systems/collision/cylinders/shape_facets.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/winding_number.h"
 #include "systems/collision/pair_crossings.h"
+#include "systems/geometry/conservative_advancement.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -21,7 +22,7 @@ namespace {
 // Crossings are numbered after the touches at the start of the step. A triangle has eight: three corners, three edges
 // and two rims. A shape has those of the touches at the end of the step, and one on the way.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
-                crossing_of_facets = touches_of_shape - 1;
+                crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
 
 // A motion below this fraction of the smaller half thickness passes through nothing between the start and the end.
@@ -34,14 +35,16 @@ public:
 
     bool test(const Candidate& candidate) {
         if (kind == PairKind::collider)
-            return against_shape(candidate, inputs.collider.geometry[second], inputs.collider.motion[second],
-                                 second_local(candidate.feature), {});
+            return against_shape(candidate, {inputs.collider.geometry[second],
+                                             inputs.collider.motion[second],
+                                             second_local(candidate.feature),
+                                             {}});
         const Index core = inputs.body.core_nodes[second], begin = inputs.body.nodes[second].begin;
         if (core == 0) return against_triangle(candidate);
         if (core != cylinder_core_nodes) return against_core(candidate, {begin, begin + core - 1, begin});
         const RigidCylinder other = cylinder_in_step(inputs, motion, second);
-        return against_shape(candidate, other.geometry, other.motion, 0,
-                             stencil_of_point({cylinder_.middle, begin, begin, begin}, {1, 0, 0}));
+        return against_shape(candidate, {other.geometry, other.motion, 0,
+                                         stencil_of_point({cylinder_.middle, begin, begin, begin}, {1, 0, 0})});
     }
 
 private:
@@ -74,10 +77,14 @@ private:
                       Index of_shape = 0, Real radius = 0) {
         const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
         if (!may_meet(feature, nearest(feature).distance)) return false;
-        const std::optional<Hit> hit = first_hit(feature);
-        if (!hit || (hit->touch.within && !is_outside(inputs, second, cylinder_.world(hit->touch.point)))) return true;
-        const Stencil stencil = stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, hit->touch.weight);
-        add_hit(candidate, number, stencil, feature, *hit, Vec3::Zero());
+        Real time = 0;
+        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
+        if (!touch || (touch->within && !is_outside(inputs, second, cylinder_.world(touch->point)))) return true;
+        const Vec3 normal = -(rotation_at(time) * touch->normal), arm = cylinder_.motion.rotation * touch->point;
+        Vec3 at_start = Vec3::Zero();  // the touched point of the feature at the start of the step
+        for (std::size_t i = 0; i < feature.nodes(); ++i) at_start += touch->weight[i] * feature.position[i];
+        put(candidate, number, stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, touch->weight), arm,
+            normal, normal.dot(cylinder_.motion.position + arm - at_start) - feature.kept.distance, Vec3::Zero());
         return true;
     }
 
@@ -88,79 +95,104 @@ private:
                             inputs.body.round_radius[second]);
     }
 
-    /// `stencil`: that of the pair, if the other partner is a body.
-    bool against_shape(const Candidate& candidate, const ColliderGeometry& other, const RigidMotion& other_motion,
-                       Index part, const std::optional<Stencil>& stencil) {
-        if (!(inputs.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
-        const RigidMotion place = seen_from(cylinder_.motion, other_motion);
+    /// Another shape, and its motion in the step. `stencil`: that of the pair, if the other partner is a body.
+    struct OtherShape {
+        const ColliderGeometry& geometry;
+        const RigidMotion& motion;
+        Index part;
+        std::optional<Stencil> stencil;
+    };
+
+    bool against_shape(const Candidate& candidate, const OtherShape& other) {
+        if (!(inputs.inverse_mass[cylinder_.middle] > 0) && !other.stencil) return false;
         touches_.clear();
-        const Real bound = shape_distance_bound(cylinder_.geometry, other, part, place, touches_);
-        if (other.shape == ColliderShape::plane) return against_plane(candidate, other_motion, bound);
-        const RigidMotion other_end = at_end(other_motion);
-        const Real furthest =
-            motion.h * (other_motion.angular_velocity.norm() * collider_radius(other) + other_motion.velocity.norm()) +
-            greatest_way_of_cylinder();
+        const Real bound = separation_at(0, other).distance;
+        if (other.geometry.shape == ColliderShape::plane) return against_plane(candidate, other.motion, bound);
+        const Real furthest = motion.h * (other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
+                                          other.motion.velocity.norm()) +
+                              greatest_way_of_cylinder();
         if (!(furthest > slow_fraction * bound)) return false;
-        touch_shape(cylinder_.geometry, other, part, place, furthest + scale.shell, touches_);
-        if (!(furthest > slow_fraction * shape_distance_bound(cylinder_.geometry, other, part, place, touches_)))
-            return false;
-        const bool overlap =
-            std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
-        const Stencil of_pair = stencil.value_or(stencil_of_middle());
-        const auto velocity = [&](const Vec3& at) {
-            return stencil ? Vec3(Vec3::Zero()) : velocity_at(other_motion, at);
-        };
-        if (!overlap && add_end(candidate, other, part, other_motion, other_end, of_pair, velocity)) return true;
-        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other)))
-            add_facets(candidate, other, part, other_motion, other_end, of_pair, velocity);
+        find_touches(0, other, furthest + scale.shell);
+        if (!(furthest > slow_fraction * separation_at(0, other).distance)) return false;
+        if (!any_overlap() && add_end(candidate, other)) return true;
+        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other.geometry)))
+            add_on_the_way(candidate, other, furthest);
         return true;
     }
 
     /// Adds the exact overlaps at the end of the step and the near touches beside them: if only the former were held,
     /// the cylinder would come in at the latter. Returns true if anything would overlap.
-    bool add_end(const Candidate& candidate, const ColliderGeometry& other, Index part, const RigidMotion& other_motion,
-                 const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
-        const RigidMotion end = at_end(cylinder_.motion);
-        touches_.clear();
-        touch_shape(cylinder_.geometry, other, part, seen_from(end, other_end), scale.shell, touches_);
-        if (std::none_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; }))
-            return false;
-        for (const CylinderTouch& touch : touches_) {
-            const Vec3 normal = end.rotation * touch.normal, on_other = to_world(end, touch.on_other),
-                       arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
-                       at_start = to_world(other_motion, to_local(other_end, on_other));
-            const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
-            put(candidate, crossing_of_shape + touch.number, stencil, arm, normal, along, velocity(at_start),
-                touch.distance);
-        }
+    bool add_end(const Candidate& candidate, const OtherShape& other) {
+        find_touches(1, other, scale.shell);
+        if (!any_overlap()) return false;
+        for (const CylinderTouch& touch : touches_)
+            add_touch(candidate, crossing_of_shape + touch.number, other, touch, 1, touch.distance);
         return true;
     }
 
-    /// Adds the first crossing between the cylinder and facets of the other shape on the way.
-    void add_facets(const Candidate& candidate, const ColliderGeometry& other, Index part,
-                    const RigidMotion& other_motion, const RigidMotion& other_end, const Stencil& stencil,
-                    auto&& velocity) {
-        std::optional<Hit> first_found;
-        TouchingFeature of_first{};
-        ShapeFacets(other, part).for_each([&](const Facet& facet) {
-            TouchingFeature feature{.kind = facet.kind, .of_shape = 0, .position = {}, .kept = kept(facet.radius)};
-            for (std::size_t i = 0; i < feature.nodes(); ++i) {
-                feature.position[i] = to_world(other_motion, facet.at[i]);
-                feature.displacement[i] = to_world(other_end, facet.at[i]) - feature.position[i];
-            }
-            for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
-                feature.of_shape = point_of_rim(rim);
-                if (!may_meet(feature, nearest(feature).distance)) continue;
-                const std::optional<Hit> hit = first_hit(feature);
-                if (!hit || hit->touch.within || (first_found && first_found->time <= hit->time)) continue;
-                first_found = hit;
-                of_first = feature;
-            }
-        });
-        if (first_found) {
-            const Vec3 at = touched_point(of_first, *first_found);
-            add_hit(candidate, crossing_of_facets, stencil, of_first, *first_found, velocity(at));
-        }
+    /// Adds the first touch on the way, found by conservative advancement: the shapes are separated by their distance,
+    /// and by planes that separate them.
+    void add_on_the_way(const Candidate& candidate, const OtherShape& other, Real furthest) {
+        Separation separation;
+        const auto gap_at = [&](Real time) {
+            find_touches(time, other, std::numeric_limits<Real>::infinity());
+            separation = separation_at(time, other);
+            // in the hollow of a bucket, which is within its hull, the touches tell the distance
+            if (!is_convex_part(other.geometry, other.part) && !(separation.distance > 0) && nearest_touch_found())
+                separation = {nearest_touch_found()->distance, Vec3::Zero()};
+            return separation.distance;
+        };
+        const Real start = gap_at(0);
+        if (!(start > 0)) return;
+        const std::optional<Real> time = advance_conservatively(
+            start, std::min(contact_slack * start, kept(0).near),
+            [&](Real gap, Real now) {
+                const Vec3 normal = rotation_at(now) * separation.normal;
+                const Real closing = separation.normal.isZero(0) ? furthest : closing_along(normal, other);
+                return gap / std::min(furthest, std::max(closing, Real(0)));
+            },
+            gap_at);
+        if (time && nearest_touch_found())
+            add_touch(candidate, crossing_on_the_way, other, *nearest_touch_found(), *time, 0);
+    }
+
+    /// Upper bound of how much nearer both shapes come in the step along a fixed normal towards the cylinder [m].
+    Real closing_along(const Vec3& normal, const OtherShape& other) const {
+        return motion.h * (normal.dot(other.motion.velocity - cylinder_.motion.velocity) +
+                           other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
+                           cylinder_.motion.angular_velocity.norm() * ball_radius());
+    }
+
+    void add_touch(const Candidate& candidate, Index number, const OtherShape& other, const CylinderTouch& touch,
+                   Real time, Real left) {
+        const RigidMotion own = at(cylinder_.motion, time);
+        const Vec3 normal = own.rotation * touch.normal, on_other = to_world(own, touch.on_other),
+                   arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
+                   at_start = to_world(other.motion, to_local(at(other.motion, time), on_other));
+        const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
+        put(candidate, number, other.stencil.value_or(stencil_of_middle()), arm, normal, along,
+            other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, at_start), left);
+    }
+
+    void find_touches(Real time, const OtherShape& other, Real near) {
+        touches_.clear();
+        touch_shape(cylinder_.geometry, other.geometry, other.part, place_at(time, other), near, touches_);
+    }
+    Separation separation_at(Real time, const OtherShape& other) const {
+        return shape_separation(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
+    }
+    RigidMotion place_at(Real time, const OtherShape& other) const {
+        return seen_from(at(cylinder_.motion, time), at(other.motion, time));
+    }
+    bool any_overlap() const {
+        return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
+    }
+    /// The touch of the least distance, or null.
+    const CylinderTouch* nearest_touch_found() const {
+        const auto* const found_touch =
+            std::min_element(touches_.begin(), touches_.end(),
+                             [](const CylinderTouch& a, const CylinderTouch& b) { return a.distance < b.distance; });
+        return found_touch == touches_.end() ? nullptr : found_touch;
     }
 
     /// Tests only the end of the step, because nothing gets around a plane.
@@ -172,7 +204,7 @@ private:
               distance) ||
             distance < 0)
             return false;
-        const RigidMotion end = at_end(cylinder_.motion), plane_end = at_end(plane);
+        const RigidMotion end = at(cylinder_.motion, 1), plane_end = at(plane, 1);
         const Vec3 normal = plane_end.rotation.col(2), local = end.rotation.transpose() * normal;
         Vec3 deepest = -cylinder_.geometry.size[1] * (local[2] > 0 ? 1 : -1) * Vec3::UnitZ();
         const Real out = local.head<2>().norm();
@@ -185,15 +217,6 @@ private:
         return true;
     }
 
-    struct Hit {
-        Touch touch;
-        Real time;  // fraction of the step
-    };
-    std::optional<Hit> first_hit(const TouchingFeature& feature) const {
-        Real time = 0;
-        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
-        return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
-    }
     Touch nearest(const TouchingFeature& feature) const {
         std::array<Vec3, 3> local;
         for (std::size_t i = 0; i < feature.nodes(); ++i) local[i] = cylinder_.local(feature.position[i]);
@@ -206,20 +229,6 @@ private:
     /// Orientation of the cylinder at a time of the step (fraction).
     Mat3 rotation_at(Real time) const {
         return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
-    }
-    /// Position of the touched point of the feature at the start of the step [m].
-    static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
-        return sum;
-    }
-    void add_hit(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
-                 const Hit& hit, const Vec3& surface_velocity) {
-        const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
-                   arm = cylinder_.motion.rotation * hit.touch.point;
-        const Real along =
-            normal.dot(cylinder_.motion.position + arm - touched_point(feature, hit)) - feature.kept.distance;
-        put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
     /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
     /// the start of the step; `left`: distance there at its end [m]. If `left` is negative although an earlier try had
@@ -252,9 +261,11 @@ private:
     Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
     /// Point of the cylinder that follows a face around a rim (collider_point).
     static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
-    RigidMotion at_end(const RigidMotion& pose) const {
-        return {pose.position + motion.h * pose.velocity,
-                rotation_matrix(motion.h * pose.angular_velocity) * pose.rotation, Vec3::Zero(), Vec3::Zero()};
+    /// A shape at a time of the step (fraction).
+    RigidMotion at(const RigidMotion& pose, Real time) const {
+        const Real passed = time * motion.h;
+        return {pose.position + passed * pose.velocity, rotation_matrix(passed * pose.angular_velocity) * pose.rotation,
+                Vec3::Zero(), Vec3::Zero()};
     }
     /// Half of the thickness of the thinnest part [m].
     static Real thickness(const ColliderGeometry& geometry) {

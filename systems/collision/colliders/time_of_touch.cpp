@@ -8,6 +8,7 @@
 #include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
+#include "systems/geometry/conservative_advancement.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -15,10 +16,6 @@ namespace skerry {
 namespace {
 
 using Nodes = std::array<Vec3, 3>;
-
-// These constants have the values of time_of_contact.cpp.
-constexpr Real advance = 0.9;
-constexpr int most_rounds = 4096;
 
 // Accuracy of the place of the least distance along an edge, as a fraction of the edge.
 constexpr Real least_place_tolerance = 1e-12;
@@ -261,24 +258,27 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     const Real speed = moving.greatest_speed();
     Nodes nodes = moving.at(0);
     Touch touch = nearest_touch(geometry, feature, nodes);
-    const Real start = touch.distance, near = std::min(contact_slack * start, feature.kept.near);
+    const Real start = touch.distance;
     if (!(start > 0)) return std::nullopt;
     if (the_end_tells(geometry, feature)) {
         touch = nearest_touch(geometry, feature, moving.at(1));
         return touch.distance < 0 ? std::optional(touch) : std::nullopt;
     }
-    Real time = 0;
-    for (int round = 0; round < most_rounds && touch.distance > near; ++round) {
-        Real free = touch.distance / speed;  // infinite without motion
-        if (lies_behind(geometry, feature, touch)) free = std::max(free, moving.time_before_plane(touch, nodes, time));
-        time += advance * free;
-        if (!(time <= 1)) return std::nullopt;
-        nodes = moving.at(time);
-        touch = nearest_touch(geometry, feature, nodes);
-    }
-    if (!touch.in_face) return std::nullopt;
+    const std::optional<Real> time = advance_conservatively(
+        start, std::min(contact_slack * start, feature.kept.near),
+        [&](Real gap, Real now) {
+            const Real free = gap / speed;
+            return lies_behind(geometry, feature, touch) ? std::max(free, moving.time_before_plane(touch, nodes, now))
+                                                         : free;
+        },
+        [&](Real now) {
+            nodes = moving.at(now);
+            touch = nearest_touch(geometry, feature, nodes);
+            return touch.distance;
+        });
+    if (!time || !touch.in_face) return std::nullopt;
     touch.within = touches_within(feature, touch, nodes);
-    if (time_of_touch != nullptr) *time_of_touch = time;
+    if (time_of_touch != nullptr) *time_of_touch = *time;
     return touch;
 }
 

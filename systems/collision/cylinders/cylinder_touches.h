@@ -73,9 +73,16 @@ void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other
 /// Lower bound of the distance of a triangle, given in the frame of the cylinder [m].
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// Lower bound of the distance of a part of a shape at `place` in the frame of the cylinder [m]. It uses the axes of
-/// both shapes and the normals of the touches as separating axes, and the bounding balls.
-Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
-                          const RigidMotion& place, const CylinderTouches& touches);
+/// Two planes across `normal` (unit, towards the cylinder, in its frame) that lie `distance` apart [m] separate the
+/// cylinder from a shape. If the normal is zero, bounding balls or capsules do.
+struct Separation {
+    Real distance;
+    Vec3 normal;
+};
+
+/// Best separation from a part of a shape at `place` in the frame of the cylinder: a lower bound of the distance of its
+/// convex hull. It uses the axes of both shapes and the normals of the touches, and the bounding balls.
+Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
+                            const RigidMotion& place, const CylinderTouches& touches);
 
 }  // namespace skerry
