@@ -10,7 +10,6 @@
 #include "systems/collision/search/find_pairs.h"
 #include "systems/collision/search/search_pair.h"
 #include "systems/collision/search/step_reach.h"
-#include "systems/collision/search/surfaces_cross.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/bvh.h"
 
@@ -133,19 +132,12 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
 }
 
 /// Fits boxes and spheres to the bodies of expired pairs at their present positions.
-void fit_bounds(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
+void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index b = memory.refit[i];
-            const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
-            if (tree.size() == 0) continue;
-            const auto point_of = [&](Index v) -> const Vec3& {
-                return inputs.position[inputs.surface.vertices.node[v]];
-            };
-            Aabb& around = box[tree.begin];
-            around = empty_box();
-            for (Index v = vertices.begin; v < vertices.end; ++v) grow(around, point_of(v));
-            memory.sphere[b] = sphere_around(around, vertices.begin, vertices.end, point_of);
+            const Range tree = inputs.body.bvh_nodes[b];
+            if (tree.size() > 0) fit_bounds(inputs, b, box[tree.begin], memory.sphere[b]);
         }
     });
 }
@@ -288,7 +280,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_expired(executor, inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
-    fit_bounds(executor, inputs, box, memory);
+    fit_expired(executor, inputs, box, memory);
     list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, memory);
     search_expired(executor, inputs, settings, box, memory, pairs);

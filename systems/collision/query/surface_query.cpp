@@ -137,17 +137,4 @@ std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec
     return nearest.best();
 }
 
-std::optional<TrianglePoint> cast_ray_at_all(const SurfaceTree& surface, const Ray& ray, Real limit) {
-    const ShearedRay sheared(ray);
-    Nearest nearest(limit);
-    for (Index t = surface.triangles.begin; t < surface.triangles.end; ++t) meet(surface, sheared, t, nearest);
-    return nearest.best();
-}
-
-std::optional<TrianglePoint> nearest_point_of_all(const SurfaceTree& surface, const Vec3& point, Real limit) {
-    Nearest nearest(limit);
-    for (Index t = surface.triangles.begin; t < surface.triangles.end; ++t) approach(surface, point, t, nearest);
-    return nearest.best();
-}
-
 }  // namespace skerry

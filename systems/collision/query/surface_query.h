@@ -41,8 +41,4 @@ std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray
 /// The nearest point of the surface within `limit` [m]; among equally near ones that of the lowest row.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
 
-/// Simple twins of cast_ray and nearest_point without the tree: they test all triangles, one by one.
-std::optional<TrianglePoint> cast_ray_at_all(const SurfaceTree& surface, const Ray& ray, Real limit);
-std::optional<TrianglePoint> nearest_point_of_all(const SurfaceTree& surface, const Vec3& point, Real limit);
-
 }  // namespace skerry

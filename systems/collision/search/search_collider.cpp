@@ -1,4 +1,4 @@
-#include "systems/collision/search/search_collider.h"
+#include "systems/collision/search/search_pair.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,6 @@
 #include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/search/leaf_features.h"
-#include "systems/collision/search/search_collider.h"
 #include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"

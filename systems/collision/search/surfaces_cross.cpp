@@ -1,4 +1,4 @@
-#include "systems/collision/search/surfaces_cross.h"
+#include "systems/collision/search/search_pair.h"
 
 #include <limits>
 
