@@ -18,8 +18,7 @@ struct Ray {
 
 /// A surface and its tree, whose boxes are fitted around the present positions.
 struct SurfaceTree {
-    Range tree;       // rows of `node` and `box`
-    Range triangles;  // rows of `triangle_node`
+    Range tree;  // rows of `node` and `box`
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const Aabb> box;                            // [m]
