@@ -2,8 +2,8 @@
 #include <array>
 #include <limits>
 
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/narrow/winding_number.h"
 #include "systems/collision/pair_contacts.h"

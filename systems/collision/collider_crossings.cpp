@@ -2,7 +2,6 @@
 #include <array>
 
 #include "systems/collision/colliders/collider_shape.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/narrow/winding_number.h"

@@ -217,7 +217,8 @@ private:
     }
 
     void find_touches(Index c, const ColliderGeometry& other, const RigidMotion& motion, Index part) {
-        const RigidMotion place = seen_from(cylinder_.motion, motion);
+        const RigidMotion place{cylinder_.local(motion.position),
+                                cylinder_.motion.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
         touches_.clear();
         if (is_far(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance)) return;
         touch_shape(cylinder_.geometry, other, part, place, near_surface(), touches_);

@@ -182,7 +182,9 @@ private:
         return shape_separation(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
     }
     RigidMotion place_at(Real time, const OtherShape& other) const {
-        return seen_from(at(cylinder_.motion, time), at(other.motion, time));
+        const RigidMotion own = at(cylinder_.motion, time), there = at(other.motion, time);
+        const Mat3 back = own.rotation.transpose();
+        return {back * (there.position - own.position), back * there.rotation, Vec3::Zero(), Vec3::Zero()};
     }
     bool any_overlap() const {
         return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });

@@ -45,43 +45,17 @@ public:
                             [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
     }
 
-    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed.
-    /// `reach`: distance the pair may move [m]. Candidates fast enough for their distance are found eight at a time.
+    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed. `reach`:
+    /// distance the pair may move [m].
     std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
             if (reach > slow_fraction * (at.distance - scale.radii) && !(travel_bound < asleep_until_[at.candidate]))
-                tested += wait(at);
-        return tested + test_waiting();
+                tested += test(candidates[at.candidate], (1 - lane_rounding) * at.distance - scale.radii);
+        return tested;
     }
 
 private:
-    /// Collects candidates of one kind. They are tested together, in their order.
-    std::uint64_t wait(const NearCandidate& at) {
-        const FeaturePair features = features_of(candidates[at.candidate]);
-        const std::uint64_t tested =
-            waiting_count_ == waiting_.size() || features != waiting_kind_ ? test_waiting() : 0;
-        waiting_kind_ = features;
-        distance_[waiting_count_] = at.distance;
-        waiting_[waiting_count_++] = at.candidate;
-        return tested;
-    }
-
-    std::uint64_t test_waiting() {
-        if (waiting_count_ == 0) return 0;
-        CandidateNodeLanes node;
-        for (std::size_t i = 0; i < candidate_lanes; ++i)
-            set_lane(node, i, nodes_of(inputs.surface, candidates[waiting_[i < waiting_count_ ? i : 0]]));
-        const auto approach = approaches(waiting_kind_, motion, node);
-        std::uint64_t tested = 0;
-        for (std::size_t i = 0; i < waiting_count_; ++i) {
-            const Real least = (1 - lane_rounding) * distance_[i] - scale.radii;
-            if (approach[i] > slow_fraction * least) tested += test(candidates[waiting_[i]], least);
-        }
-        waiting_count_ = 0;
-        return tested;
-    }
-
     /// `least`: lower bound of the distance between the surfaces, which for round bodies lie around the features [m].
     bool test(const Candidate& candidate, Real least) {
         const FeaturePair features = features_of(candidate);
@@ -134,10 +108,6 @@ private:
     }
 
     std::span<const Real> asleep_until_;
-    std::array<Index, candidate_lanes> waiting_;
-    std::array<Real, candidate_lanes> distance_;
-    std::size_t waiting_count_ = 0;
-    FeaturePair waiting_kind_ = FeaturePair::point_triangle;
 };
 
 /// Bounds of how far a pair can move in this step [m].

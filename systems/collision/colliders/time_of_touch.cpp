@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "systems/collision/colliders/collider_shape.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/conservative_advancement.h"

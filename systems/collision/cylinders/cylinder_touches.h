@@ -5,7 +5,7 @@
 
 #include "components/check.h"
 #include "components/collider_table.h"
-#include "systems/collision/colliders/face_contact.h"
+#include "systems/collision/colliders/collider_shape.h"
 
 namespace skerry {
 

@@ -8,7 +8,6 @@
 #include "components/pair_table.h"
 #include "components/surface_table.h"
 #include "systems/collision/inputs/contact_key.h"
-#include "systems/collision/inputs/step_motion.h"
 #include "systems/geometry/time_of_contact.h"
 
 namespace skerry {
@@ -35,8 +34,5 @@ CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate
 /// Distances of the features; not a number where a position is not a number [m].
 Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> position,
                                        const CandidateNodeLanes& node);
-
-/// The greatest_approach of each candidate while every node moves by h (velocity_next + push_out) [m].
-Lanes<Real, candidate_lanes> approaches(FeaturePair kind, const StepMotion& motion, const CandidateNodeLanes& node);
 
 }  // namespace skerry

@@ -18,9 +18,5 @@ inline Vec3 to_world(const RigidMotion& motion, const Vec3& point) {
 inline Vec3 velocity_at(const RigidMotion& motion, const Vec3& point) {
     return motion.velocity + motion.angular_velocity.cross(point - motion.position);
 }
-/// Position and rotation of one shape in the frame of another.
-inline RigidMotion seen_from(const RigidMotion& from, const RigidMotion& motion) {
-    return {to_local(from, motion.position), from.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
-}
 
 }  // namespace skerry

@@ -5,7 +5,6 @@
 
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/colliders/time_of_touch.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/rigid_frame.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "components/check.h"
-#include "systems/collision/narrow/rigid_frame.h"
 
 namespace skerry {
 
@@ -90,7 +89,8 @@ void add_bucket(Real inner, Real height, Real wall, Pieces& pieces) {
 
 std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const RigidMotion& motion, const Ray& ray,
                                    Real limit) {
-    const Ray own{to_local(motion, ray.origin), motion.rotation.transpose() * ray.direction};
+    const Mat3 inverse = motion.rotation.transpose();
+    const Ray own{inverse * (ray.origin - motion.position), inverse * ray.direction};
     const Vec3& size = geometry.size;
     Pieces pieces(own, limit);
     switch (geometry.shape) {

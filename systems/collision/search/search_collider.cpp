@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/search/sort_found.h"

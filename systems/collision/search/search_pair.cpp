@@ -8,12 +8,12 @@
 #include "components/check.h"
 #include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/search/leaf_features.h"
 #include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/geometry/closest_lanes.h"
-#include "systems/geometry/closest_points.h"
 
 namespace skerry {
 
@@ -245,21 +245,14 @@ private:
     Range triangles(bool of_first) const { return inputs_.body.triangles[of_first ? pair_.first : pair_.second]; }
 
     bool excluded_at_rest(Index point, const std::array<Index, 3>& corner) const {
-        if (share_node(corner, point)) return true;
-        if (inputs_.rest_position.empty()) return false;
-        const auto& rest = inputs_.rest_position;
-        const Real squared =
-            closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
-        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+        return share_node(corner, point) || touched_at_rest(point, corner);
     }
-
     bool excluded_at_rest(const std::array<Index, 2>& a, const std::array<Index, 2>& b) const {
-        if (share_node(b, a[0]) || share_node(b, a[1])) return true;
-        if (inputs_.rest_position.empty()) return false;
-        const auto& rest = inputs_.rest_position;
-        const Real squared =
-            closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
-        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+        return share_node(b, a[0]) || share_node(b, a[1]) || touched_at_rest(a, b);
+    }
+    bool touched_at_rest(const auto& first, const auto& second) const {
+        return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, first, second) <
+                                                     pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
     /// Adds a candidate. It sleeps until it may have come within the zone in which it gets a close test.
