@@ -247,17 +247,17 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
 }
 
 /// Marks the bodies whose displacement has cost a searched pair more than a quarter of its skin.
-void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
-                    const PairTable& pairs) {
+void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
+                         const PairTable& pairs) {
     constexpr Real good_part = 0.25;
     memory.rebase.resize(inputs.body.slot.size());
-    const auto ask = [&](Index b, Real skin) {
+    const auto request = [&](Index b, Real skin) {
         if (2 * inputs.body.displacement[b] > good_part * skin) memory.rebase[b] = 1;
     };
     for (Index p : memory.expired) {
         const Real skin = settings.pair_skin * pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).edge;
-        ask(pairs.first[p], skin);
-        if (pairs.kind[p] != PairKind::collider) ask(pairs.second[p], skin);
+        request(pairs.first[p], skin);
+        if (pairs.kind[p] != PairKind::collider) request(pairs.second[p], skin);
     }
 }
 
@@ -284,7 +284,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, memory);
     search_expired(executor, inputs, settings, box, memory, pairs);
-    ask_for_rebase(inputs, settings, memory, pairs);
+    request_new_origins(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = count_candidates(executor, pairs);
     return true;

@@ -92,7 +92,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
 
 /// Prefetches the beginning of a pair's list; the rest follows by itself. Each list lies elsewhere in memory, and
 /// waiting for the lists takes a good part of the stage.
-void ask_for_list(const PairTable& pairs, Index p) {
+void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
     if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
 }
@@ -108,7 +108,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        ask_for_list(pairs, p + pairs_ahead);
+        prefetch_list(pairs, p + pairs_ahead);
         if (from >= to || pairs.idle[p]) continue;
         const bool cylinder = has_cylinder(inputs, pairs, p);
         if (!cylinder && pairs.kind[p] != PairKind::collider) {

@@ -84,7 +84,7 @@ private:
 /// returned distance is a lower bound and at least half of the distance at the returned place. If the search ends
 /// early, intervals that are left count as a quarter of it. Both distances are less `kept` [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
-    constexpr int most_looks = 1024;
+    constexpr int most_samples = 1024;
     const Wall wall(geometry, end);
     const auto at = [&](Real s) {
         SurfacePoint on = local_distance(geometry, end[0] + s * (end[1] - end[0]), part);
@@ -97,23 +97,23 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
     std::array<Interval, 64> open;
     std::size_t count = 0;
     Real place = 0, value = at(0).distance, bound = value;
-    const auto look = [&](Real s) {
+    const auto sample = [&](Real s) {
         const Real distance = at(s).distance;
         if (!(distance < value)) return;
         value = distance;
         place = s;
     };
-    look(1);
+    sample(1);
     open[count++] = {0, 1};
-    for (int looks = 0; count > 0 && value > 0; ++looks) {
+    for (int samples = 0; count > 0 && value > 0; ++samples) {
         const Interval interval = open[--count];
         const Real least = wall.bound(interval.low, interval.high) - kept;
-        if (least >= value / 2 || looks >= most_looks || count + 2 > open.size()) {
+        if (least >= value / 2 || samples >= most_samples || count + 2 > open.size()) {
             bound = std::min(bound, std::max(least, value / 4));
             continue;
         }
         const Real middle = 0.5 * (interval.low + interval.high);
-        look(middle);
+        sample(middle);
         open[count++] = {middle, interval.high};
         open[count++] = {interval.low, middle};
     }
