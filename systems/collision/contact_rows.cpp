@@ -2,41 +2,64 @@
 
 #include <utility>
 
+#include "systems/collision/cylinders/rigid_cylinder.h"
 #include "systems/collision/inputs/contact_key.h"
 
 namespace skerry {
 
-ContactRow contact_row(const CollisionInputs& inputs, const ContactPair& pair, const Candidate& candidate,
-                       ContactKind kind, const Stencil& stencil, const Vec3& point, const Vec3& normal, Real distance,
-                       Real contact_distance, const SurfaceProperties& surface) {
-    const bool turned = kind == ContactKind::point_triangle && is_point_of_second(candidate.feature);
-    const bool collider = pair.kind == PairKind::collider;
-    ContactRow row;
-    row.key = {pair.key, candidate.feature};
-    row.kind = kind;
-    row.stencil = stencil;
-    row.normal = normal;
-    row.gap = distance - contact_distance;
-    row.surface_velocity = Vec3::Zero();
-    row.static_friction = surface.static_friction;
-    row.dynamic_friction = surface.dynamic_friction;
-    row.restitution = surface.restitution;
-    row.first_body = turned ? pair.second : pair.first;
-    row.second_body = collider ? no_index : turned ? pair.first : pair.second;
-    row.collider = collider ? pair.second : inputs.body.collider[pair.second];
-    const Real of_first = inputs.body.round_radius[row.first_body],
-               of_second = collider ? 0 : inputs.body.round_radius[row.second_body];
-    row.point = point + of_second * normal;
-    row.distance = distance - (of_first + of_second);
+PairData::PairData(const CollisionInputs& all_inputs, const PairTable& pairs, Index p)
+    : inputs(all_inputs),
+      key(pairs.key[p]),
+      kind(pairs.kind[p]),
+      first(pairs.first[p]),
+      second(pairs.second[p]),
+      state(pairs.state[p]),
+      scale(pair_scale(inputs, kind, first, second)),
+      surface(pair_surface(inputs, kind, first, second)),
+      travel(pairs.travel[p]),
+      candidates(pairs.candidates[p].span()) {
+    if (!is_cylinder(inputs, first) && has_cylinder(inputs, pairs, p)) std::swap(first, second);
+}
+
+ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
+                       const ContactPlace& place) {
+    const BodyTable& body = pair.inputs.body;
+    ContactRow row{.key = {pair.key, feature},
+                   .kind = kind,
+                   .stencil = stencil,
+                   .point = place.point,
+                   .normal = place.normal,
+                   .gap = place.distance - place.contact_distance,
+                   .distance = place.distance,
+                   .surface_velocity = place.surface_velocity,
+                   .static_friction = pair.surface.static_friction,
+                   .dynamic_friction = pair.surface.dynamic_friction,
+                   .restitution = pair.surface.restitution,
+                   .first_body = pair.first,
+                   .second_body = pair.second_body(),
+                   .collider = pair.kind == PairKind::collider ? pair.second : body.collider[pair.second]};
+    if (is_cylinder(pair.inputs, pair.first)) return row;
+    if (kind == ContactKind::point_triangle && is_point_of_second(feature)) std::swap(row.first_body, row.second_body);
+    const Real of_first = body.round_radius[row.first_body],
+               of_second = row.second_body == no_index ? 0 : body.round_radius[row.second_body];
+    row.point += of_second * place.normal;
+    row.distance -= of_first + of_second;
     return row;
 }
 
-Stencil stencil_of_point(const std::array<Index, 4>& node, const PointTriangle& closest) {
+std::uint64_t feature_of_touch(const PairData& pair, std::uint64_t feature, Index number) {
+    const Index other = pair.second_body();
+    const bool has_faces = other != no_index && pair.inputs.body.core_nodes[other] == 0;
+    const Index numbers = has_faces ? touches_of_triangle : touches_of_shape;
+    return (feature & ~local_mask) | static_cast<std::uint64_t>(numbers * second_local(feature) + number);
+}
+
+Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real, 3>& weight) {
     Stencil stencil{{node[0], node[0], node[0], node[0]}, {1, 0, 0, 0}};
     for (std::size_t k = 0; k < 3; ++k) {
-        if (closest.weight[k] == 0) continue;
+        if (weight[k] == 0) continue;
         stencil.node[k + 1] = node[k + 1];
-        stencil.weight[k + 1] = -closest.weight[k];
+        stencil.weight[k + 1] = -weight[k];
     }
     return stencil;
 }

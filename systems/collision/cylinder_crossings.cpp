@@ -1,19 +1,18 @@
-#include "systems/collision/cylinder_crossings.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "systems/collision/awake_candidates.h"
-#include "systems/collision/colliders/time_of_touch.h"
-#include "systems/collision/cylinders/nearest_bound.h"
-#include "systems/collision/cylinders/shape_facets.h"
+#include "systems/collision/colliders/edge_contact.h"
+#include "systems/collision/cylinders/cylinder_touches.h"
+#include "systems/collision/cylinders/rigid_cylinder.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/winding_number.h"
+#include "systems/collision/pair_crossings.h"
+#include "systems/geometry/conservative_advancement.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -23,175 +22,191 @@ namespace {
 // Crossings are numbered after the touches at the start of the step. A triangle has eight: three corners, three edges
 // and two rims. A shape has those of the touches at the end of the step, and one on the way.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
-                crossing_of_facets = touches_of_shape - 1;
+                crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
 
 // A motion below this fraction of the smaller half thickness passes through nothing between the start and the end.
 constexpr Real thin_fraction = 0.5;
 
-class CylinderCrossings {
+class CylinderCrossings : PairCrossings {
 public:
-    CylinderCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
-                      std::span<const ContactRow> known, Column<ContactRow>& found)
-        : inputs_(inputs),
-          motion_(motion),
-          of_(inputs, pairs, p),
-          cylinder_(cylinder_in_step(inputs, motion, of_.cylinder)),
-          scale_(pair_scale(inputs, of_.kind, pairs.first[p], pairs.second[p])),
-          surface_(pair_surface(inputs, of_.kind, pairs.first[p], pairs.second[p])),
-          candidates_(pairs.candidates[p].span()),
-          asleep_until_(pairs.asleep_until[p].span()),
-          known_(known),
-          found_(found) {}
+    CylinderCrossings(const PairCrossings& pair, std::span<const ContactRow> known)
+        : PairCrossings(pair), known_(known) {}
 
-    std::uint64_t run(Range range, Real travel_bound) {
-        return count_tested(asleep_until_, range, travel_bound, [&](Index c) { return test(candidates_[c]); });
+    bool test(const Candidate& candidate) {
+        if (kind == PairKind::collider)
+            return against_shape(candidate, {inputs.collider.geometry[second],
+                                             inputs.collider.motion[second],
+                                             second_local(candidate.feature),
+                                             {}});
+        const Index core = inputs.body.core_nodes[second], begin = inputs.body.nodes[second].begin;
+        if (core == 0) return against_triangle(candidate);
+        if (core != cylinder_core_nodes) return against_core(candidate, {begin, begin + core - 1, begin});
+        const RigidCylinder other = cylinder_in_step(inputs, motion, second);
+        return against_shape(candidate, {other.geometry, other.motion, 0,
+                                         stencil_of_point({cylinder_.middle, begin, begin, begin}, {1, 0, 0})});
     }
 
 private:
     using Kind = TouchingFeature::Kind;
 
-    bool test(const Candidate& candidate) {
-        if (of_.kind == PairKind::collider)
-            return against_shape(candidate, inputs_.collider.geometry[of_.other], inputs_.collider.motion[of_.other],
-                                 second_local(candidate.feature), {});
-        const Index core = inputs_.body.core_nodes[of_.other], first = inputs_.body.nodes[of_.other].begin;
-        if (core == 0) return against_triangle(candidate);
-        if (core != cylinder_core_nodes) return against_core(candidate, core, first);
-        const RigidCylinder other = cylinder_in_step(inputs_, motion_, of_.other);
-        return against_shape(candidate, other.geometry, other.motion, 0,
-                             stencil_of_cylinder(cylinder_.middle, {first, first, first}, {1, 0, 0}));
-    }
-
     bool against_triangle(const Candidate& candidate) {
         const Index t = candidate.second;
-        const TriangleTable& table = inputs_.surface.triangles;
+        const TriangleTable& table = inputs.surface.triangles;
         const auto& node = table.node[t];
-        if (!can_move(node)) return false;
-        TouchingFeature face = feature_of(Kind::face, node);
+        if (!any_moves(node)) return false;
+        const TouchingFeature face = feature_of(Kind::face, node, 0, kept(0));
         const LocalFace local{cylinder_.local(face.position[0]), cylinder_.local(face.position[1]),
                               cylinder_.local(face.position[2])};
         if (!may_meet(face, distance_bound(cylinder_.geometry, local))) return false;
         for (Index k = 0; k < 3; ++k) {
             const Index next = (k + 1) % 3;
             if (table.owned_vertices[t] >> k & 1)
-                look(candidate, crossing_of_triangle + k, feature_of(Kind::node, {node[k], no_index, no_index}),
-                     {node[k], node[k], node[k]});
+                test_feature(candidate, crossing_of_triangle + k, Kind::node, {node[k], node[k], node[k]});
             if (table.owned_edges[t] >> k & 1)
-                look(candidate, crossing_of_triangle + 3 + k, feature_of(Kind::edge, {node[k], node[next], no_index}),
-                     {node[k], node[next], node[k]});
+                test_feature(candidate, crossing_of_triangle + 3 + k, Kind::edge, {node[k], node[next], node[k]});
         }
-        for (Index rim = 0; rim < 2; ++rim) {
-            face.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
-            look(candidate, crossing_of_triangle + 6 + rim, face, node);
-        }
+        for (Index rim = 0; rim < 2; ++rim)
+            test_feature(candidate, crossing_of_triangle + 6 + rim, Kind::face, node, point_of_rim(rim));
         return true;
     }
 
-    void look(const Candidate& candidate, Index number, const TouchingFeature& feature,
-              const std::array<Index, 3>& node) {
-        if (!may_meet(feature, nearest(feature).distance)) return;
-        const std::optional<Hit> hit = first_hit(feature);
-        if (!hit || (hit->touch.within && !is_outside(inputs_, of_.other, cylinder_.world(hit->touch.point)))) return;
-        add(candidate, number, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature, *hit);
-    }
-
-    bool against_core(const Candidate& candidate, Index core, Index first) {
-        const std::array<Index, 3> node{first, first + core - 1, first};
-        if (!can_move(node)) return false;
-        TouchingFeature feature = feature_of(core == 1 ? Kind::node : Kind::edge, node);
-        feature.kept.distance = inputs_.body.round_radius[of_.other];
+    /// Tests a feature of the other body, or the core of one that is round with this radius [m]. Returns true if it
+    /// needed a full test.
+    bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
+                      Index of_shape = 0, Real radius = 0) {
+        const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
         if (!may_meet(feature, nearest(feature).distance)) return false;
-        if (const std::optional<Hit> hit = first_hit(feature))
-            add(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, node, hit->touch.weight), feature,
-                *hit);
+        Real time = 0;
+        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
+        if (!touch || (touch->within && !is_outside(inputs, second, cylinder_.world(touch->point)))) return true;
+        const Vec3 normal = -(rotation_at(time) * touch->normal), arm = cylinder_.motion.rotation * touch->point;
+        Vec3 at_start = Vec3::Zero();  // the touched point of the feature at the start of the step
+        for (std::size_t i = 0; i < feature.nodes(); ++i) at_start += touch->weight[i] * feature.position[i];
+        put(candidate, number, stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, touch->weight), arm,
+            normal, normal.dot(cylinder_.motion.position + arm - at_start) - feature.kept.distance, Vec3::Zero());
         return true;
     }
 
-    /// `stencil`: that of the pair, if the other partner is a body.
-    bool against_shape(const Candidate& candidate, const ColliderGeometry& other, const RigidMotion& other_motion,
-                       Index part, const std::optional<Stencil>& stencil) {
-        if (!(inputs_.inverse_mass[cylinder_.middle] > 0) && !stencil) return false;
-        const RigidMotion place = seen_from(cylinder_.motion, other_motion);
+    /// Tests a sphere or a capsule. `node`: ends of its axis.
+    bool against_core(const Candidate& candidate, const std::array<Index, 3>& node) {
+        return any_moves(node) &&
+               test_feature(candidate, crossing_of_shape, node[0] == node[1] ? Kind::node : Kind::edge, node, 0,
+                            inputs.body.round_radius[second]);
+    }
+
+    /// Another shape, and its motion in the step. `stencil`: that of the pair, if the other partner is a body.
+    struct OtherShape {
+        const ColliderGeometry& geometry;
+        const RigidMotion& motion;
+        Index part;
+        std::optional<Stencil> stencil;
+    };
+
+    bool against_shape(const Candidate& candidate, const OtherShape& other) {
+        if (!(inputs.inverse_mass[cylinder_.middle] > 0) && !other.stencil) return false;
         touches_.clear();
-        const Real bound = shape_distance_bound(cylinder_.geometry, other, part, place, touches_);
-        if (other.shape == ColliderShape::plane) return against_plane(candidate, other_motion, bound);
-        const RigidMotion other_end = at_end(other_motion);
-        const Real furthest =
-            motion_.h * (other_motion.angular_velocity.norm() * collider_radius(other) + other_motion.velocity.norm()) +
-            greatest_way_of_cylinder();
+        const Real bound = separation_at(0, other).distance;
+        if (other.geometry.shape == ColliderShape::plane) return against_plane(candidate, other.motion, bound);
+        const Real furthest = motion.h * (other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
+                                          other.motion.velocity.norm()) +
+                              greatest_way_of_cylinder();
         if (!(furthest > slow_fraction * bound)) return false;
-        touch_shape(cylinder_.geometry, other, part, place, furthest + scale_.shell, touches_);
-        if (!(furthest > slow_fraction * shape_distance_bound(cylinder_.geometry, other, part, place, touches_)))
-            return false;
-        const bool overlap =
-            std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
-        const Stencil of_pair = stencil.value_or(stencil_of_cylinder(cylinder_.middle, {}, {}));
-        const auto velocity = [&](const Vec3& at) {
-            return stencil ? Vec3(Vec3::Zero()) : velocity_of(other_motion, at);
-        };
-        if (!overlap && add_end(candidate, other, part, other_motion, other_end, of_pair, velocity)) return true;
-        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other)))
-            add_facets(candidate, other, part, other_motion, other_end, of_pair, velocity);
+        find_touches(0, other, furthest + scale.shell);
+        if (!(furthest > slow_fraction * separation_at(0, other).distance)) return false;
+        if (!any_overlap() && add_end(candidate, other)) return true;
+        if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other.geometry)))
+            add_on_the_way(candidate, other, furthest);
         return true;
     }
 
     /// Adds the exact overlaps at the end of the step and the near touches beside them: if only the former were held,
     /// the cylinder would come in at the latter. Returns true if anything would overlap.
-    bool add_end(const Candidate& candidate, const ColliderGeometry& other, Index part, const RigidMotion& other_motion,
-                 const RigidMotion& other_end, const Stencil& stencil, auto&& velocity) {
-        const RigidMotion end = at_end(cylinder_.motion);
-        touches_.clear();
-        touch_shape(cylinder_.geometry, other, part, seen_from(end, other_end), scale_.shell, touches_);
-        if (std::none_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; }))
-            return false;
-        for (const CylinderTouch& touch : touches_) {
-            const Vec3 normal = end.rotation * touch.normal, on_other = end.position + end.rotation * touch.on_other,
-                       arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
-                       at_start = other_motion.position + other_motion.rotation * (other_end.rotation.transpose() *
-                                                                                   (on_other - other_end.position));
-            const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
-            put(candidate, crossing_of_shape + touch.number, stencil, arm, normal, along, velocity(at_start),
-                touch.distance);
-        }
+    bool add_end(const Candidate& candidate, const OtherShape& other) {
+        find_touches(1, other, scale.shell);
+        if (!any_overlap()) return false;
+        for (const CylinderTouch& touch : touches_)
+            add_touch(candidate, crossing_of_shape + touch.number, other, touch, 1, touch.distance);
         return true;
     }
 
-    /// Adds the first crossing between the cylinder and facets of the other shape on the way.
-    void add_facets(const Candidate& candidate, const ColliderGeometry& other, Index part,
-                    const RigidMotion& other_motion, const RigidMotion& other_end, const Stencil& stencil,
-                    auto&& velocity) {
-        std::optional<Hit> first;
-        TouchingFeature of_first{};
-        ShapeFacets(other, part).for_each([&](const Facet& facet) {
-            TouchingFeature feature{.kind = facet.kind, .of_collider = 0, .position = {}};
-            for (std::size_t i = 0; i < feature.nodes(); ++i) {
-                feature.position[i] = other_motion.position + other_motion.rotation * facet.at[i];
-                feature.displacement[i] = other_end.position + other_end.rotation * facet.at[i] - feature.position[i];
-            }
-            feature.kept = kept(facet.radius);
-            for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
-                feature.of_collider = rim * collider_point_count(ColliderShape::cylinder) / 2;
-                if (!may_meet(feature, nearest(feature).distance)) continue;
-                const std::optional<Hit> hit = first_hit(feature);
-                if (!hit || hit->touch.within || (first && first->time <= hit->time)) continue;
-                first = hit;
-                of_first = feature;
-            }
-        });
-        if (first) add(candidate, crossing_of_facets, stencil, of_first, *first, velocity(along_of(of_first, *first)));
+    /// Adds the first touch on the way, found by conservative advancement: the shapes are separated by their distance,
+    /// and by planes that separate them.
+    void add_on_the_way(const Candidate& candidate, const OtherShape& other, Real furthest) {
+        Separation separation;
+        const auto gap_at = [&](Real time) {
+            find_touches(time, other, std::numeric_limits<Real>::infinity());
+            separation = separation_at(time, other);
+            // in the hollow of a bucket, which is within its hull, the touches tell the distance
+            if (!is_convex_part(other.geometry, other.part) && !(separation.distance > 0) && nearest_touch_found())
+                separation = {nearest_touch_found()->distance, Vec3::Zero()};
+            return separation.distance;
+        };
+        const Real start = gap_at(0);
+        if (!(start > 0)) return;
+        const std::optional<Real> time = advance_conservatively(
+            start, std::min(contact_slack * start, kept(0).near),
+            [&](Real gap, Real now) {
+                const Vec3 normal = rotation_at(now) * separation.normal;
+                const Real closing = separation.normal.isZero(0) ? furthest : closing_along(normal, other);
+                return gap / std::min(furthest, std::max(closing, Real(0)));
+            },
+            gap_at);
+        if (time && nearest_touch_found())
+            add_touch(candidate, crossing_on_the_way, other, *nearest_touch_found(), *time, 0);
+    }
+
+    /// Upper bound of how much nearer both shapes come in the step along a fixed normal towards the cylinder [m].
+    Real closing_along(const Vec3& normal, const OtherShape& other) const {
+        return motion.h * (normal.dot(other.motion.velocity - cylinder_.motion.velocity) +
+                           other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
+                           cylinder_.motion.angular_velocity.norm() * ball_radius());
+    }
+
+    void add_touch(const Candidate& candidate, Index number, const OtherShape& other, const CylinderTouch& touch,
+                   Real time, Real left) {
+        const RigidMotion own = at(cylinder_.motion, time);
+        const Vec3 normal = own.rotation * touch.normal, on_other = to_world(own, touch.on_other),
+                   arm = cylinder_.motion.rotation * (touch.on_other + touch.distance * touch.normal),
+                   at_start = to_world(other.motion, to_local(at(other.motion, time), on_other));
+        const Real along = normal.dot(cylinder_.motion.position + arm - at_start);
+        put(candidate, number, other.stencil.value_or(stencil_of_middle()), arm, normal, along,
+            other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, at_start), left);
+    }
+
+    void find_touches(Real time, const OtherShape& other, Real near) {
+        touches_.clear();
+        touch_shape(cylinder_.geometry, other.geometry, other.part, place_at(time, other), near, touches_);
+    }
+    Separation separation_at(Real time, const OtherShape& other) const {
+        return shape_separation(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
+    }
+    RigidMotion place_at(Real time, const OtherShape& other) const {
+        const RigidMotion own = at(cylinder_.motion, time), there = at(other.motion, time);
+        const Mat3 back = own.rotation.transpose();
+        return {back * (there.position - own.position), back * there.rotation, Vec3::Zero(), Vec3::Zero()};
+    }
+    bool any_overlap() const {
+        return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
+    }
+    /// The touch of the least distance, or null.
+    const CylinderTouch* nearest_touch_found() const {
+        const auto* const found_touch =
+            std::min_element(touches_.begin(), touches_.end(),
+                             [](const CylinderTouch& a, const CylinderTouch& b) { return a.distance < b.distance; });
+        return found_touch == touches_.end() ? nullptr : found_touch;
     }
 
     /// Tests only the end of the step, because nothing gets around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
-        if (!(greatest_way_of_cylinder() + motion_.h * plane.velocity.norm() +
-                  motion_.h * plane.angular_velocity.norm() *
+        if (!(greatest_way_of_cylinder() + motion.h * plane.velocity.norm() +
+                  motion.h * plane.angular_velocity.norm() *
                       ((cylinder_.motion.position - plane.position).norm() + greatest_way_of_cylinder() +
                        ball_radius()) >
               distance) ||
             distance < 0)
             return false;
-        const RigidMotion end = at_end(cylinder_.motion), plane_end = at_end(plane);
+        const RigidMotion end = at(cylinder_.motion, 1), plane_end = at(plane, 1);
         const Vec3 normal = plane_end.rotation.col(2), local = end.rotation.transpose() * normal;
         Vec3 deepest = -cylinder_.geometry.size[1] * (local[2] > 0 ? 1 : -1) * Vec3::UnitZ();
         const Real out = local.head<2>().norm();
@@ -199,45 +214,23 @@ private:
         if (!(normal.dot(end.position + end.rotation * deepest - plane_end.position) < 0)) return true;
         const Vec3 arm = cylinder_.motion.rotation * deepest;
         const Real along = normal.dot(cylinder_.motion.position + arm - plane.position);
-        put(candidate, crossing_of_shape, stencil_of_cylinder(cylinder_.middle, {}, {}), arm, normal, along,
-            velocity_of(plane, cylinder_.motion.position + arm));
+        put(candidate, crossing_of_shape, stencil_of_middle(), arm, normal, along,
+            velocity_at(plane, cylinder_.motion.position + arm));
         return true;
     }
 
-    struct Hit {
-        Touch touch;
-        Real time;  // fraction of the step
-    };
-    std::optional<Hit> first_hit(const TouchingFeature& feature) const {
-        Real time = 0;
-        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion_.h, feature, &time);
-        return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
-    }
     Touch nearest(const TouchingFeature& feature) const {
         std::array<Vec3, 3> local;
         for (std::size_t i = 0; i < feature.nodes(); ++i) local[i] = cylinder_.local(feature.position[i]);
         return nearest_touch(cylinder_.geometry, feature, local);
     }
     bool may_meet(const TouchingFeature& feature, Real distance) const {
-        return greatest_approach(cylinder_.motion, motion_.h, feature) > slow_fraction * distance;
+        return greatest_approach(cylinder_.motion, motion.h, feature) > slow_fraction * distance;
     }
 
     /// Orientation of the cylinder at a time of the step (fraction).
     Mat3 rotation_at(Real time) const {
-        return rotation_matrix(time * motion_.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
-    }
-    /// Position of the touched point of the feature at the start of the step [m].
-    static Vec3 along_of(const TouchingFeature& feature, const Hit& hit) {
-        Vec3 sum = Vec3::Zero();
-        for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
-        return sum;
-    }
-    void add(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
-             const Hit& hit, const Vec3& surface_velocity = Vec3::Zero()) {
-        const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
-                   arm = cylinder_.motion.rotation * hit.touch.point;
-        const Real along = normal.dot(cylinder_.motion.position + arm - along_of(feature, hit)) - feature.kept.distance;
-        put(candidate, number, stencil, arm, normal, along, surface_velocity);
+        return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
     /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
     /// the start of the step; `left`: distance there at its end [m]. If `left` is negative although an earlier try had
@@ -246,10 +239,9 @@ private:
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
             const Vec3 point = cylinder_.motion.position + arm - distance * normal;
-            return contact_row(
-                inputs_, of_,
-                {candidate.feature, number, stencil, point, normal, distance, scale_.shell, surface_velocity},
-                surface_);
+            return contact_row(*this, feature_of_touch(*this, candidate.feature, number),
+                               kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
+                               stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
         // A feature that turns by more than a right angle can have a negative distance here without an overlap.
         ContactRow row = row_at(std::max(along, Real(0)));
@@ -258,33 +250,24 @@ private:
             if (before != known_.end() && before->key == row.key)
                 row = row_at(std::max(std::min(row.distance, before->distance) + left, Real(0)));
         }
-        found_.push_back(row);
+        found.push_back(row);
     }
 
     /// Kept distance of a feature. If a contact stops it at the shell, it has not crossed, however far it came.
     KeptApart kept(Real radius) const {
-        return {radius, scale_.shell > 0 ? contact_slack * scale_.shell : std::numeric_limits<Real>::infinity()};
+        return {radius, scale.shell > 0 ? contact_slack * scale.shell : std::numeric_limits<Real>::infinity()};
     }
-    TouchingFeature feature_of(Kind kind, const std::array<Index, 3>& node) const {
-        TouchingFeature feature{.kind = kind, .of_collider = 0, .position = {}};
-        feature.kept = kept(0);
-        for (std::size_t i = 0; i < feature.nodes(); ++i) {
-            feature.position[i] = inputs_.position[node[i]];
-            feature.displacement[i] = motion_.of(node[i]);
-        }
-        return feature;
+    bool any_moves(const std::array<Index, 3>& node) const {
+        return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
-    bool can_move(const std::array<Index, 3>& node) const {
-        return inputs_.inverse_mass[cylinder_.middle] > 0 ||
-               std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
-    }
-    static RigidMotion seen_from(const RigidMotion& from, const RigidMotion& motion) {
-        const Mat3 back = from.rotation.transpose();
-        return {back * (motion.position - from.position), back * motion.rotation, Vec3::Zero(), Vec3::Zero()};
-    }
-    RigidMotion at_end(const RigidMotion& motion) const {
-        return {motion.position + motion_.h * motion.velocity,
-                rotation_matrix(motion_.h * motion.angular_velocity) * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+    Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
+    /// Point of the cylinder that follows a face around a rim (collider_point).
+    static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
+    /// A shape at a time of the step (fraction).
+    RigidMotion at(const RigidMotion& pose, Real time) const {
+        const Real passed = time * motion.h;
+        return {pose.position + passed * pose.velocity, rotation_matrix(passed * pose.angular_velocity) * pose.rotation,
+                Vec3::Zero(), Vec3::Zero()};
     }
     /// Half of the thickness of the thinnest part [m].
     static Real thickness(const ColliderGeometry& geometry) {
@@ -306,23 +289,11 @@ private:
     }
     Real ball_radius() const { return std::hypot(cylinder_.geometry.size[0], cylinder_.geometry.size[1]); }
     Real greatest_way_of_cylinder() const {
-        return motion_.h *
-               (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
-    }
-    static Vec3 velocity_of(const RigidMotion& motion, const Vec3& point) {
-        return motion.velocity + motion.angular_velocity.cross(point - motion.position);
+        return motion.h * (cylinder_.motion.velocity.norm() + cylinder_.motion.angular_velocity.norm() * ball_radius());
     }
 
-    const CollisionInputs& inputs_;
-    const StepMotion& motion_;
-    const CylinderPair of_;
-    const RigidCylinder cylinder_;
-    const PairScale scale_;
-    const SurfaceProperties surface_;
-    std::span<const Candidate> candidates_;
-    std::span<const Real> asleep_until_;
+    const RigidCylinder cylinder_ = cylinder_in_step(inputs, motion, first);
     std::span<const ContactRow> known_;  // of earlier tries, in key order
-    Column<ContactRow>& found_;
     CylinderTouches touches_;
 };
 
@@ -331,7 +302,9 @@ private:
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found) {
-    return CylinderCrossings(inputs, motion, pairs, p, known, found).run(range, travel_bound);
+    CylinderCrossings crossings({inputs, motion, pairs, p, found}, known);
+    return count_tested(pairs.asleep_until[p].span(), range, travel_bound,
+                        [&](Index c) { return crossings.test(pairs.candidates[p][c]); });
 }
 
 }  // namespace skerry

@@ -10,7 +10,6 @@
 #include "systems/collision/search/find_pairs.h"
 #include "systems/collision/search/search_pair.h"
 #include "systems/collision/search/step_reach.h"
-#include "systems/collision/search/surfaces_cross.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/bvh.h"
 
@@ -133,19 +132,12 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
 }
 
 /// Fits boxes and spheres to the bodies of expired pairs at their present positions.
-void fit_bounds(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
+void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index b = memory.refit[i];
-            const Range tree = inputs.body.bvh_nodes[b], vertices = inputs.body.vertices[b];
-            if (tree.size() == 0) continue;
-            const auto point_of = [&](Index v) -> const Vec3& {
-                return inputs.position[inputs.surface.vertices.node[v]];
-            };
-            Aabb& around = box[tree.begin];
-            around = empty_box();
-            for (Index v = vertices.begin; v < vertices.end; ++v) grow(around, point_of(v));
-            memory.sphere[b] = sphere_around(around, vertices.begin, vertices.end, point_of);
+            const Range tree = inputs.body.bvh_nodes[b];
+            if (tree.size() > 0) fit_bounds(inputs, b, box[tree.begin], memory.sphere[b]);
         }
     });
 }
@@ -255,17 +247,17 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
 }
 
 /// Marks the bodies whose displacement has cost a searched pair more than a quarter of its skin.
-void ask_for_rebase(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
-                    const PairTable& pairs) {
+void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
+                         const PairTable& pairs) {
     constexpr Real good_part = 0.25;
     memory.rebase.resize(inputs.body.slot.size());
-    const auto ask = [&](Index b, Real skin) {
+    const auto request = [&](Index b, Real skin) {
         if (2 * inputs.body.displacement[b] > good_part * skin) memory.rebase[b] = 1;
     };
     for (Index p : memory.expired) {
         const Real skin = settings.pair_skin * pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).edge;
-        ask(pairs.first[p], skin);
-        if (pairs.kind[p] != PairKind::collider) ask(pairs.second[p], skin);
+        request(pairs.first[p], skin);
+        if (pairs.kind[p] != PairKind::collider) request(pairs.second[p], skin);
     }
 }
 
@@ -288,11 +280,11 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     list_expired(executor, inputs, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
-    fit_bounds(executor, inputs, box, memory);
+    fit_expired(executor, inputs, box, memory);
     list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, memory);
     search_expired(executor, inputs, settings, box, memory, pairs);
-    ask_for_rebase(inputs, settings, memory, pairs);
+    request_new_origins(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = count_candidates(executor, pairs);
     return true;

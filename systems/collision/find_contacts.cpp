@@ -9,9 +9,9 @@
 #include "components/ask_for_lines.h"
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
-#include "systems/collision/cylinders/cylinder_row.h"
-#include "systems/collision/look_at_awake.h"
-#include "systems/collision/look_at_candidates.h"
+#include "systems/collision/cylinders/rigid_cylinder.h"
+#include "systems/collision/pair_contacts.h"
+#include "systems/collision/surface_contacts.h"
 
 namespace skerry {
 
@@ -92,39 +92,35 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
 
 /// Prefetches the beginning of a pair's list; the rest follows by itself. Each list lies elsewhere in memory, and
 /// waiting for the lists takes a good part of the stage.
-void ask_for_list(const PairTable& pairs, Index p) {
+void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
     if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
 }
 
-/// True if features of two surfaces are tested against each other, as for most pairs.
-bool is_of_surfaces(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
-    return pairs.kind[p] != PairKind::collider && !has_cylinder(inputs, pairs, p);
-}
-
-void look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b,
-                   PairTable& pairs) {
+void test_block(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index b, PairTable& pairs) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     Column<ContactRow>& found = pairs.found[b];
     Column<NearCandidate>& near = pairs.near[b];
     found.clear();
     near.clear();
     Real nearest = std::numeric_limits<Real>::infinity();
-    AwakeCandidates awake(inputs, settings, h, pairs, found, near);
+    SurfaceContacts surfaces(inputs, settings, h, pairs, found, near);
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
-        ask_for_list(pairs, p + pairs_ahead);
+        prefetch_list(pairs, p + pairs_ahead);
         if (from >= to || pairs.idle[p]) continue;
-        if (settings.use_budgets && is_of_surfaces(inputs, pairs, p)) {
-            awake.add(p, {from, to});
+        const bool cylinder = has_cylinder(inputs, pairs, p);
+        if (!cylinder && pairs.kind[p] != PairKind::collider) {
+            surfaces.add(p, {from, to});
             continue;
         }
-        awake.look();  // contacts have to be in the order of their pairs
-        nearest = std::min(nearest, look_at_candidates(inputs, settings, h, p, {from, to}, pairs, found));
+        surfaces.test();  // contacts have to be in the order of their pairs
+        const auto find = cylinder ? find_cylinder_contacts : find_collider_contacts;
+        nearest = std::min(nearest, find(inputs, settings, h, p, {from, to}, pairs, found));
     }
-    awake.look();
-    pairs.block_nearest[b] = std::min(nearest, awake.least_distance());
+    surfaces.test();
+    pairs.block_nearest[b] = std::min(nearest, surfaces.least_distance());
 }
 
 void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTable& contacts) {
@@ -174,7 +170,7 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
     if (pairs.found.size() < static_cast<std::size_t>(blocks)) pairs.found.resize(static_cast<std::size_t>(blocks));
     if (pairs.near.size() < static_cast<std::size_t>(blocks)) pairs.near.resize(static_cast<std::size_t>(blocks));
     parallel_for(executor, static_cast<std::size_t>(blocks), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) look_at_block(inputs, settings, h, static_cast<Index>(b), pairs);
+        for (std::size_t b = begin; b < end; ++b) test_block(inputs, settings, h, static_cast<Index>(b), pairs);
     });
 
     if (!crossings.row.empty()) {

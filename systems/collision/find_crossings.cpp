@@ -6,15 +6,14 @@
 #include <limits>
 
 #include "jobs/parallel_for.h"
-#include "systems/collision/awake_candidates.h"
-#include "systems/collision/collider_crossings.h"
 #include "systems/collision/contact_rows.h"
-#include "systems/collision/cylinder_crossings.h"
+#include "systems/collision/cylinders/rigid_cylinder.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/rest_distance.h"
+#include "systems/collision/pair_crossings.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/time_of_contact.h"
 
@@ -34,134 +33,81 @@ struct Nearest {
 // The lanes and their scalar twin, which decides, may differ by rounding, by much less than this fraction.
 constexpr Real lane_rounding = 1e-6;
 
-class PairCrossings {
+/// Tests candidates of two surfaces.
+class SurfaceCrossings : PairCrossings {
 public:
-    PairCrossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, Index p,
-                  Column<ContactRow>& found)
-        : inputs_(inputs),
-          motion_(motion),
-          key_(pairs.key[p]),
-          kind_(pairs.kind[p]),
-          first_(pairs.first[p]),
-          second_(pairs.second[p]),
-          travel_(pairs.travel[p]),
-          candidates_(pairs.candidates[p].span()),
-          asleep_until_(pairs.asleep_until[p].span()),
-          found_(found),
-          scale_(pair_scale(inputs, kind_, first_, second_)) {}
+    SurfaceCrossings(const PairCrossings& pair, std::span<const Real> asleep_until)
+        : PairCrossings(pair), asleep_until_(asleep_until) {}
 
     /// Tests the candidates that can have met by `travel_bound` [m]. Returns the number tested.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
-                            [&](Index c) { return test(candidates_[c], asleep_until_[c] - travel_); });
+                            [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
     }
 
-    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed.
-    /// `motion`: distance the pair may move [m]. Candidates fast enough for their distance are found eight at a time.
-    std::uint64_t run(std::span<const NearCandidate> near, Real motion, Real travel_bound) {
+    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed. `reach`:
+    /// distance the pair may move [m].
+    std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
-            if (motion > slow_fraction * (at.distance - scale_.radii) && !(travel_bound < asleep_until_[at.candidate]))
-                tested += wait(at);
-        return tested + test_waiting();
+            if (reach > slow_fraction * (at.distance - scale.radii) && !(travel_bound < asleep_until_[at.candidate]))
+                tested += test(candidates[at.candidate], (1 - lane_rounding) * at.distance - scale.radii);
+        return tested;
     }
 
 private:
-    /// Collects candidates of one kind. They are tested together, in their order.
-    std::uint64_t wait(const NearCandidate& at) {
-        const FeaturePair kind = features_of(candidates_[at.candidate]);
-        const std::uint64_t tested = waiting_count_ == waiting_.size() || kind != waiting_kind_ ? test_waiting() : 0;
-        waiting_kind_ = kind;
-        distance_[waiting_count_] = at.distance;
-        waiting_[waiting_count_++] = at.candidate;
-        return tested;
-    }
-
-    std::uint64_t test_waiting() {
-        if (waiting_count_ == 0) return 0;
-        CandidateNodeLanes node;
-        for (std::size_t i = 0; i < candidate_lanes; ++i)
-            set_lane(node, i, nodes_of(inputs_.surface, candidates_[waiting_[i < waiting_count_ ? i : 0]]));
-        const auto approach = approaches(waiting_kind_, motion_, node);
-        std::uint64_t tested = 0;
-        for (std::size_t i = 0; i < waiting_count_; ++i) {
-            const Real least = (1 - lane_rounding) * distance_[i] - scale_.radii;
-            if (approach[i] > slow_fraction * least) tested += test(candidates_[waiting_[i]], least);
-        }
-        waiting_count_ = 0;
-        return tested;
-    }
-
     /// `least`: lower bound of the distance between the surfaces, which for round bodies lie around the features [m].
     bool test(const Candidate& candidate, Real least) {
-        const FeaturePair kind = features_of(candidate);
-        const CandidateNodes node = nodes_of(inputs_.surface, candidate);
+        const FeaturePair features = features_of(candidate);
+        const CandidateNodes node = nodes_of(inputs.surface, candidate);
         FourPoints x, displacement;
-        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion_.of(node[i]);
-        const Real approach = greatest_approach(kind, displacement);
+        for (std::size_t i = 0; i < 4; ++i) displacement[i] = motion.of(node[i]);
+        const Real approach = greatest_approach(features, displacement);
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
-        for (std::size_t i = 0; i < 4; ++i) x[i] = inputs_.position[node[i]];
-        const Real apart = nearest(kind, node, x).offset.norm();
+        for (std::size_t i = 0; i < 4; ++i) x[i] = inputs.position[node[i]];
+        const Real apart = nearest(features, node, x).offset.norm();
         // if the surface of a round body is pressed in already, only its core must not get through
-        const KeptApart kept = apart > scale_.radii ? kept_of_radii(scale_) : KeptApart{};
+        const KeptApart kept = apart > scale.radii ? kept_of_radii(scale) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
-        const std::optional<Real> time = time_of_contact(kind, x, displacement, kept);
-        if (!time || is_own_piece(kind, node)) return true;
+        const std::optional<Real> time = time_of_contact(features, x, displacement, kept);
+        if (!time || is_own_piece(features, node)) return true;
         FourPoints met;
         for (std::size_t i = 0; i < 4; ++i) met[i] = x[i] + *time * displacement[i];
-        add(candidate, kind, nearest(kind, node, met));
+        add(candidate, features, nearest(features, node, met));
         return true;
     }
 
-    bool can_move(const CandidateNodes& node) const {
-        return std::any_of(node.begin(), node.end(), [&](Index n) { return inputs_.inverse_mass[n] > 0; });
+    bool is_own_piece(FeaturePair features, const CandidateNodes& node) const {
+        if (kind != PairKind::self) return false;
+        return features == FeaturePair::edge_edge
+                   ? !was_far_at_rest(inputs, scale, std::array{node[0], node[1]}, std::array{node[2], node[3]})
+                   : !was_far_at_rest(inputs, scale, node[0], std::array{node[1], node[2], node[3]});
     }
 
-    bool is_own_piece(FeaturePair kind, const CandidateNodes& node) const {
-        if (kind_ != PairKind::self) return false;
-        return kind == FeaturePair::edge_edge
-                   ? !was_far_at_rest(inputs_, scale_, std::array{node[0], node[1]}, std::array{node[2], node[3]})
-                   : !was_far_at_rest(inputs_, scale_, node[0], std::array{node[1], node[2], node[3]});
-    }
-
-    static Nearest nearest(FeaturePair kind, const CandidateNodes& node, const FourPoints& x) {
-        if (kind == FeaturePair::edge_edge) {
+    static Nearest nearest(FeaturePair features, const CandidateNodes& node, const FourPoints& x) {
+        if (features == FeaturePair::edge_edge) {
             const SegmentSegment c = closest_points_of_segments(x[0], x[1], x[2], x[3]);
             return {stencil_of_edges(node, c), c.on_first - c.on_second, c.on_second};
         }
         const PointTriangle c = closest_point_on_triangle(x[0], x[1], x[2], x[3]);
-        return {stencil_of_point(node, c), x[0] - c.nearest, c.nearest};
+        return {stencil_of_point(node, c.weight), x[0] - c.nearest, c.nearest};
     }
 
-    void add(const Candidate& candidate, FeaturePair kind, const Nearest& met) {
+    void add(const Candidate& candidate, FeaturePair features, const Nearest& met) {
         const Real length = met.offset.norm();
         if (!(length > 0)) return;  // they touched before the step
         const Vec3 normal = met.offset / length;
         Real along = 0;  // distance of the two points along the normal at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
-            along += met.stencil.weight[a] * normal.dot(inputs_.position[met.stencil.node[a]]);
+            along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
         // features that turn by more than a right angle have a negative distance without an overlap
-        const Real distance = std::max(along, scale_.radii);
-        found_.push_back(contact_row(
-            inputs_, {key_, kind_, first_, second_}, candidate,
-            kind == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle, met.stencil,
-            met.point, normal, distance, scale_.contact_distance, pair_surface(inputs_, kind_, first_, second_)));
+        found.push_back(
+            contact_row(*this, candidate.feature,
+                        features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
+                        met.stencil, {met.point, normal, std::max(along, scale.radii), scale.contact_distance}));
     }
 
-    const CollisionInputs& inputs_;
-    const StepMotion& motion_;
-    const std::uint64_t key_;
-    const PairKind kind_;
-    const Index first_, second_;
-    const Real travel_;
-    std::span<const Candidate> candidates_;
     std::span<const Real> asleep_until_;
-    Column<ContactRow>& found_;
-    const PairScale scale_;
-    std::array<Index, candidate_lanes> waiting_;
-    std::array<Real, candidate_lanes> distance_;
-    std::size_t waiting_count_ = 0;
-    FeaturePair waiting_kind_ = FeaturePair::point_triangle;
 };
 
 /// Bounds of how far a pair can move in this step [m].
@@ -214,9 +160,8 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
     return near.subspan(first, next - first);
 }
 
-std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
-                            const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
-                            Column<ContactRow>& found) {
+std::uint64_t test_block(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, std::size_t b,
+                         std::span<const ContactRow> known, Column<ContactRow>& found) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
     std::size_t next = 0;
@@ -235,11 +180,12 @@ std::uint64_t look_at_block(const CollisionInputs& inputs, const CollisionSettin
             tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, known, found);
         else if (pairs.kind[p] == PairKind::collider)
             tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
-        else if (in_front && settings.use_budgets)
-            tested += PairCrossings(inputs, motion, pairs, p, found)
+        else if (in_front)
+            tested += SurfaceCrossings({inputs, motion, pairs, p, found}, pairs.asleep_until[p].span())
                           .run(take_near(pairs.near[b].span(), p, next), reach.motion, reach.travel_bound);
         else
-            tested += PairCrossings(inputs, motion, pairs, p, found).run({from, to}, reach.travel_bound);
+            tested += SurfaceCrossings({inputs, motion, pairs, p, found}, pairs.asleep_until[p].span())
+                          .run({from, to}, reach.travel_bound);
     }
     return tested;
 }
@@ -317,7 +263,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
-            tested += look_at_block(inputs, settings, motion, pairs, b, crossings.row, crossings.found[b]);
+            tested += test_block(inputs, motion, pairs, b, crossings.row, crossings.found[b]);
     });
     crossings.tested += tested;
     std::size_t hits = 0;

@@ -4,18 +4,11 @@
 #include <cmath>
 
 #include "systems/geometry/closest_points.h"
+#include "systems/geometry/conservative_advancement.h"
 
 namespace skerry {
 
 namespace {
-
-// Fraction of the provably contact-free motion by which one iteration advances. A fraction below 1 keeps the features
-// apart in spite of rounding.
-constexpr Real advance = 0.9;
-
-// Limit of iterations. Features that need more of them roll over each other at a distance too small to be resolved in a
-// step.
-constexpr int most_rounds = 4096;
 
 /// Vector between the nearest points of two features, from the second feature to the first [m].
 Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
@@ -55,18 +48,19 @@ std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position
     const Real approach = greatest_approach(kind, displacement);
     FourPoints x = position;
     Vec3 offset = offset_between(kind, x);
-    Real length = offset.norm(), time = 0;
-    const Real start = length - kept.distance, near = std::min(contact_slack * start, kept.near);
-    if (!(start > 0)) return time;
-    for (int round = 0; round < most_rounds && length - kept.distance > near; ++round) {
-        const Real slab = time_of_slab(kind, x, displacement, offset / length, kept.distance);
-        time += advance * std::max((length - kept.distance) / approach, slab);  // infinite without motion
-        if (!(time <= 1)) return std::nullopt;
-        for (std::size_t i = 0; i < 4; ++i) x[i] = position[i] + time * displacement[i];
-        offset = offset_between(kind, x);
-        length = offset.norm();
-    }
-    return time;
+    const Real start = offset.norm() - kept.distance;
+    if (!(start > 0)) return Real(0);
+    return advance_conservatively(
+        start, std::min(contact_slack * start, kept.near),
+        [&](Real gap, Real) {
+            const Vec3 normal = offset / offset.norm();
+            return std::max(gap / approach, time_of_slab(kind, x, displacement, normal, kept.distance));
+        },
+        [&](Real time) {
+            for (std::size_t i = 0; i < 4; ++i) x[i] = position[i] + time * displacement[i];
+            offset = offset_between(kind, x);
+            return offset.norm() - kept.distance;
+        });
 }
 
 }  // namespace skerry

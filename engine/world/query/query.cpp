@@ -32,8 +32,8 @@ SurfaceTree tree_of(WorldState& world, std::size_t body) {
     if (!trees.fitted[body] && tree.size() > 0)
         refit_bvh(tree, model.bvh.node, model.bvh_leaves.nodes, model.nodes.position, trees.box.span());
     trees.fitted[body] = 1;
-    return {tree,      model.bodies.triangles[body], model.bvh.node,      model.bvh_leaves.triangle,
-            trees.box, model.surface.triangles.node, model.nodes.position};
+    return {
+        tree, model.bvh.node, model.bvh_leaves.triangle, trees.box, model.surface.triangles.node, model.nodes.position};
 }
 
 SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t body) {

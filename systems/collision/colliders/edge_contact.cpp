@@ -105,15 +105,15 @@ public:
 
     Bracket find() {
         constexpr int rounds_by_chord = 3;
-        along_.for_each_kink([&](Real s) { look(s); });
+        along_.for_each_kink([&](Real s) { test(s); });
         const Real expected = along_.place_of(slope_, 0.5 * (on_.low + on_.high));
-        look(expected - least_step);
-        look(expected + least_step);
+        test(expected - least_step);
+        test(expected + least_step);
         for (int round = 0; on_.high - on_.low > place_tolerance; ++round) {
             if (round % (rounds_by_chord + 1) == rounds_by_chord)
-                look(0.5 * (on_.low + on_.high));
+                test(0.5 * (on_.low + on_.high));
             else
-                look(std::clamp(on_.low - below_ / (above_ - below_) * (on_.high - on_.low), on_.low + least_step,
+                test(std::clamp(on_.low - below_ / (above_ - below_) * (on_.high - on_.low), on_.low + least_step,
                                 on_.high - least_step));
         }
         return on_;
@@ -123,7 +123,7 @@ private:
     static constexpr Real least_step = 0.45 * place_tolerance;  // steps past a place that is approached from one side
 
     /// Tests the place `s`, unless it is outside of the interval.
-    void look(Real s) {
+    void test(Real s) {
         if (!(s > on_.low && s < on_.high)) return;
         const Real value = along_.slope(s) - slope_;
         const bool is_below = value < 0 || (itself_is_below_ && !(value > 0));

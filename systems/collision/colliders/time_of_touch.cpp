@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "systems/collision/colliders/collider_shape.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/tree/box.h"
+#include "systems/geometry/conservative_advancement.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -15,10 +15,6 @@ namespace skerry {
 namespace {
 
 using Nodes = std::array<Vec3, 3>;
-
-// These constants have the values of time_of_contact.cpp.
-constexpr Real advance = 0.9;
-constexpr int most_rounds = 4096;
 
 // Accuracy of the place of the least distance along an edge, as a fraction of the edge.
 constexpr Real least_place_tolerance = 1e-12;
@@ -88,7 +84,7 @@ private:
 /// returned distance is a lower bound and at least half of the distance at the returned place. If the search ends
 /// early, intervals that are left count as a quarter of it. Both distances are less `kept` [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
-    constexpr int most_looks = 1024;
+    constexpr int most_samples = 1024;
     const Wall wall(geometry, end);
     const auto at = [&](Real s) {
         SurfacePoint on = local_distance(geometry, end[0] + s * (end[1] - end[0]), part);
@@ -101,23 +97,23 @@ Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes&
     std::array<Interval, 64> open;
     std::size_t count = 0;
     Real place = 0, value = at(0).distance, bound = value;
-    const auto look = [&](Real s) {
+    const auto sample = [&](Real s) {
         const Real distance = at(s).distance;
         if (!(distance < value)) return;
         value = distance;
         place = s;
     };
-    look(1);
+    sample(1);
     open[count++] = {0, 1};
-    for (int looks = 0; count > 0 && value > 0; ++looks) {
+    for (int samples = 0; count > 0 && value > 0; ++samples) {
         const Interval interval = open[--count];
         const Real least = wall.bound(interval.low, interval.high) - kept;
-        if (least >= value / 2 || looks >= most_looks || count + 2 > open.size()) {
+        if (least >= value / 2 || samples >= most_samples || count + 2 > open.size()) {
             bound = std::min(bound, std::max(least, value / 4));
             continue;
         }
         const Real middle = 0.5 * (interval.low + interval.high);
-        look(middle);
+        sample(middle);
         open[count++] = {middle, interval.high};
         open[count++] = {interval.low, middle};
     }
@@ -227,7 +223,7 @@ private:
 /// True if the whole part or point that the feature is tested against lies behind the plane of a touch.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
-    return geometry.shape != ColliderShape::bucket || feature.of_collider == 0;
+    return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;
 }
 
 }  // namespace
@@ -240,15 +236,15 @@ Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& fea
                     const std::array<Vec3, 3>& nodes) {
     switch (feature.kind) {
         case TouchingFeature::Kind::node: {
-            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_collider);
+            const SurfacePoint on = local_distance(geometry, nodes[0], feature.of_shape);
             return of_surface(on, on.distance - feature.kept.distance, {1, 0, 0});
         }
         case TouchingFeature::Kind::edge:
-            return nearest_on_edge(geometry, feature.of_collider, nodes, feature.kept.distance);
+            return nearest_on_edge(geometry, feature.of_shape, nodes, feature.kept.distance);
         case TouchingFeature::Kind::face:
             break;
     }
-    return nearest_on_face(geometry, feature.of_collider, nodes);
+    return nearest_on_face(geometry, feature.of_shape, nodes);
 }
 
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature) {
@@ -261,24 +257,27 @@ std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMo
     const Real speed = moving.greatest_speed();
     Nodes nodes = moving.at(0);
     Touch touch = nearest_touch(geometry, feature, nodes);
-    const Real start = touch.distance, near = std::min(contact_slack * start, feature.kept.near);
+    const Real start = touch.distance;
     if (!(start > 0)) return std::nullopt;
     if (the_end_tells(geometry, feature)) {
         touch = nearest_touch(geometry, feature, moving.at(1));
         return touch.distance < 0 ? std::optional(touch) : std::nullopt;
     }
-    Real time = 0;
-    for (int round = 0; round < most_rounds && touch.distance > near; ++round) {
-        Real free = touch.distance / speed;  // infinite without motion
-        if (lies_behind(geometry, feature, touch)) free = std::max(free, moving.time_before_plane(touch, nodes, time));
-        time += advance * free;
-        if (!(time <= 1)) return std::nullopt;
-        nodes = moving.at(time);
-        touch = nearest_touch(geometry, feature, nodes);
-    }
-    if (!touch.in_face) return std::nullopt;
+    const std::optional<Real> time = advance_conservatively(
+        start, std::min(contact_slack * start, feature.kept.near),
+        [&](Real gap, Real now) {
+            const Real free = gap / speed;
+            return lies_behind(geometry, feature, touch) ? std::max(free, moving.time_before_plane(touch, nodes, now))
+                                                         : free;
+        },
+        [&](Real now) {
+            nodes = moving.at(now);
+            touch = nearest_touch(geometry, feature, nodes);
+            return touch.distance;
+        });
+    if (!time || !touch.in_face) return std::nullopt;
     touch.within = touches_within(feature, touch, nodes);
-    if (time_of_touch != nullptr) *time_of_touch = time;
+    if (time_of_touch != nullptr) *time_of_touch = *time;
     return touch;
 }
 

@@ -15,7 +15,7 @@ struct TouchingFeature {
     enum class Kind : std::uint8_t { node, edge, face };
 
     Kind kind;
-    Index of_collider;                   // for a node or edge the part, for a face the point (see collider_point)
+    Index of_shape;                      // for a node or edge the part, for a face the point (see collider_point)
     std::array<Vec3, 3> position;        // in the world at the start of the step, one for each node of the feature [m]
     std::array<Vec3, 3> displacement{};  // in the step [m]
     KeptApart kept{};                    // for a node or edge that is the core of a round body

@@ -8,6 +8,7 @@
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/geometry/closest_points.h"
 
 namespace skerry {
@@ -26,7 +27,7 @@ constexpr Real place_rounding = 1e-9;
 constexpr Real over_fraction = 1e-9;
 // A distance along a rim that changes by less than this counts as constant.
 constexpr Real level_slope = 1e-9;
-constexpr int looks_around = 16;                           // samples of a rim, between which minima are searched
+constexpr int samples_around = 16;                         // samples of a rim, between which minima are searched
 constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
 // Numbering of the touches with a shape. of_rim and of_side are sizes of groups, the others are first numbers.
@@ -50,27 +51,27 @@ struct CylinderRim {
 /// a stretch, both ends of the stretch are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
-    struct Look {
+    struct Sample {
         Vec3 direction;
         SurfacePoint on;
         Real slope;
     };
-    const auto look = [&](Real turn) {
-        Look at;
+    const auto sample = [&](Real turn) {
+        Sample at;
         at.direction = {std::cos(turn), std::sin(turn), 0};
         at.on = distance_at(rim_place(rim.radius, rim.z, at.direction));
         at.slope = at.on.normal.dot(Vec3(-at.direction[1], at.direction[0], 0));
         return at;
     };
-    constexpr Real round = 2 * std::numbers::pi, between = round / looks_around;
+    constexpr Real round = 2 * std::numbers::pi, between = round / samples_around;
     Index number = 0;
     std::optional<Real> first, last;  // places of the minima found first and last [rad]
     // bisects for the place between two samples where the slope passes a value
-    const auto find = [&](Real low, Real high, Real slope, const Look& behind) {
-        Look found = behind;
+    const auto find = [&](Real low, Real high, Real slope, const Sample& behind) {
+        Sample found = behind;
         while (high - low > turn_tolerance) {
             const Real middle = 0.5 * (low + high);
-            const Look there = look(middle);
+            const Sample there = sample(middle);
             if (there.slope < slope) {
                 low = middle;
             } else {
@@ -84,20 +85,20 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         // a kink in the distance is an edge of the other shape, which has its own touches
         if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
     };
-    Look before = look(0);
-    for (int i = 1; i <= looks_around; ++i) {
-        const Look after = look(i * between);
+    Sample before = sample(0);
+    for (int i = 1; i <= samples_around; ++i) {
+        const Sample after = sample(i * between);
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
         // a sample at a minimum is not a stretch
         if (falls && after.slope >= -level_slope) {
-            const Look beyond = rises ? after : look(high + same_place);
+            const Sample beyond = rises ? after : sample(high + same_place);
             if (beyond.slope > level_slope)
                 find(low, rises ? high : high + same_place, 0, beyond);
             else
                 find(low, high, -level_slope, after);
         } else if (!falls && before.slope <= level_slope && rises) {
-            const bool stretch = look(low - same_place).slope >= -level_slope;
+            const bool stretch = sample(low - same_place).slope >= -level_slope;
             find(stretch ? low : low - same_place, high, stretch ? level_slope : 0, after);
         }
         before = after;
@@ -183,8 +184,8 @@ private:
         return {normal, normal.cwiseProduct(other_.size), FlatSide::Region::rectangle, other_.size};
     }
 
-    Vec3 to_other(const Vec3& p) const { return place_.rotation.transpose() * (p - place_.position); }
-    Vec3 from_other(const Vec3& p) const { return place_.position + place_.rotation * p; }
+    Vec3 to_other(const Vec3& p) const { return to_local(place_, p); }
+    Vec3 from_other(const Vec3& p) const { return to_world(place_, p); }
     SurfacePoint other_at(const Vec3& p) const {
         SurfacePoint on = local_distance(other_, to_other(p), part_);
         on.normal = place_.rotation * on.normal;
@@ -279,9 +280,9 @@ private:
     template <class Value, class Visit>
     void for_each_passing(const CylinderRim& rim, Value&& value_at, Visit&& visit) const {
         const auto at = [&](Real turn) { return rim_place(rim.radius, rim.z, {std::cos(turn), std::sin(turn), 0}); };
-        constexpr Real between = 2 * std::numbers::pi / looks_around;
+        constexpr Real between = 2 * std::numbers::pi / samples_around;
         Real before = value_at(at(0));
-        for (int i = 1; i <= looks_around; ++i) {
+        for (int i = 1; i <= samples_around; ++i) {
             const Real after = value_at(at(i * between));
             if ((before < 0) != (after < 0)) {
                 Real low = (i - 1) * between, high = i * between;

@@ -5,6 +5,7 @@
 
 #include "components/check.h"
 #include "components/collider_table.h"
+#include "systems/collision/colliders/collider_shape.h"
 
 namespace skerry {
 
@@ -68,5 +69,20 @@ void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& 
 /// are left out [m].
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
+
+/// Lower bound of the distance of a triangle, given in the frame of the cylinder [m].
+Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
+
+/// Two planes across `normal` (unit, towards the cylinder, in its frame) that lie `distance` apart [m] separate the
+/// cylinder from a shape. If the normal is zero, bounding balls or capsules do.
+struct Separation {
+    Real distance;
+    Vec3 normal;
+};
+
+/// Best separation from a part of a shape at `place` in the frame of the cylinder: a lower bound of the distance of its
+/// convex hull. It uses the axes of both shapes and the normals of the touches, and the bounding balls.
+Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
+                            const RigidMotion& place, const CylinderTouches& touches);
 
 }  // namespace skerry

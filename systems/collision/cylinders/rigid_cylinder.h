@@ -3,8 +3,10 @@
 
 #include "components/collider_table.h"
 #include "components/node_block_table.h"
+#include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/inputs/step_motion.h"
+#include "systems/collision/narrow/rigid_frame.h"
 
 namespace skerry {
 
@@ -14,15 +16,17 @@ struct RigidCylinder {
     RigidMotion motion;
     Index middle;  // row of NodeTable
 
-    Vec3 local(const Vec3& point) const { return motion.rotation.transpose() * (point - motion.position); }
-    Vec3 world(const Vec3& point) const { return motion.position + motion.rotation * point; }
-    Vec3 velocity_at(const Vec3& point) const {
-        return motion.velocity + motion.angular_velocity.cross(point - motion.position);
-    }
+    Vec3 local(const Vec3& point) const { return to_local(motion, point); }
+    Vec3 world(const Vec3& point) const { return to_world(motion, point); }
+    Vec3 velocity_at(const Vec3& point) const { return skerry::velocity_at(motion, point); }
 };
 
 inline bool is_cylinder(const CollisionInputs& inputs, Index body) {
     return inputs.body.core_nodes[body] == cylinder_core_nodes;
+}
+inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, Index p) {
+    return is_cylinder(inputs, pairs.first[p]) ||
+           (pairs.kind[p] != PairKind::collider && is_cylinder(inputs, pairs.second[p]));
 }
 
 /// The cylinder at the start of the step, with its velocities at that time.

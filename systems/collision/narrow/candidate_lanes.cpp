@@ -16,25 +16,15 @@ using NodeLanes = std::array<Index, candidate_lanes>;
     return {axis(0), axis(1), axis(2)};
 }
 
-[[gnu::always_inline]] inline Real8 squared_difference(const LaneVec3<Real8>& a, const LaneVec3<Real8>& b) {
-    const LaneVec3<Real8> d = a - b;
-    return dot(d, d);
-}
-
-/// The greater one; b if a is not a number.
-[[gnu::always_inline]] inline Real8 greater(const Real8& a, const Real8& b) {
-    return a > b ? a : b;
-}
-
-[[gnu::always_inline]] inline LaneVec3<Real8> gather(const StepMotion& motion, const NodeLanes& node) {
-    return motion.h * (gather(motion.velocity_next, node) + gather(motion.push_out, node));
-}
-
-[[gnu::always_inline]] inline LaneVec3<Real8> mean_of(const std::array<LaneVec3<Real8>, 4>& v) {
-    return Real(0.25) * (v[0] + v[1] + v[2] + v[3]);
-}
-
 }  // namespace
+
+void prefetch_nodes(const SurfaceTables& surface, const Candidate& candidate) {
+    const bool edge = is_edge_edge(candidate.feature);
+    __builtin_prefetch(edge ? static_cast<const void*>(&surface.edges.node[candidate.first])
+                            : &surface.vertices.node[candidate.first]);
+    __builtin_prefetch(edge ? static_cast<const void*>(&surface.edges.node[candidate.second])
+                            : &surface.triangles.node[candidate.second]);
+}
 
 CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate) {
     if (is_edge_edge(candidate.feature)) {
@@ -55,34 +45,6 @@ Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> p
     else
         store(square_root(point_triangle_distance(a, b, c, d).distance_squared), distance);
     return distance;
-}
-
-Lanes<Real, candidate_lanes> relative_speeds(FeaturePair kind, std::span<const Vec3> velocity,
-                                             const CandidateNodeLanes& node) {
-    const LaneVec3<Real8> a = gather(velocity, node[0]), b = gather(velocity, node[1]), c = gather(velocity, node[2]),
-                          d = gather(velocity, node[3]);
-    Real8 squared = greater(squared_difference(a, c), squared_difference(a, d));
-    if (kind == FeaturePair::edge_edge)
-        squared = greater(squared, greater(squared_difference(b, c), squared_difference(b, d)));
-    else
-        squared = greater(squared, squared_difference(a, b));
-    Lanes<Real, candidate_lanes> speed;
-    store(square_root(squared), speed);
-    return speed;
-}
-
-Lanes<Real, candidate_lanes> approaches(FeaturePair kind, const StepMotion& motion, const CandidateNodeLanes& node) {
-    const std::array<LaneVec3<Real8>, 4> moved{gather(motion, node[0]), gather(motion, node[1]),
-                                               gather(motion, node[2]), gather(motion, node[3])};
-    const LaneVec3<Real8> mean = mean_of(moved);
-    const Real8 a = squared_difference(moved[0], mean), b = squared_difference(moved[1], mean),
-                c = squared_difference(moved[2], mean), d = squared_difference(moved[3], mean);
-    Lanes<Real, candidate_lanes> approach;
-    if (kind == FeaturePair::edge_edge)
-        store(square_root(greater(a, b)) + square_root(greater(c, d)), approach);
-    else
-        store(square_root(a) + square_root(greater(greater(b, c), d)), approach);
-    return approach;
 }
 
 }  // namespace skerry

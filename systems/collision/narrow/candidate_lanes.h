@@ -8,7 +8,6 @@
 #include "components/pair_table.h"
 #include "components/surface_table.h"
 #include "systems/collision/inputs/contact_key.h"
-#include "systems/collision/inputs/step_motion.h"
 #include "systems/geometry/time_of_contact.h"
 
 namespace skerry {
@@ -29,17 +28,11 @@ inline void set_lane(CandidateNodeLanes& lanes, std::size_t lane, const Candidat
 inline FeaturePair features_of(const Candidate& candidate) {
     return is_edge_edge(candidate.feature) ? FeaturePair::edge_edge : FeaturePair::point_triangle;
 }
+void prefetch_nodes(const SurfaceTables& surface, const Candidate& candidate);
 CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate);
 
 /// Distances of the features; not a number where a position is not a number [m].
 Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> position,
                                        const CandidateNodeLanes& node);
-
-/// Greatest differences between a velocity of the first feature and one of the second [m/s].
-Lanes<Real, candidate_lanes> relative_speeds(FeaturePair kind, std::span<const Vec3> velocity,
-                                             const CandidateNodeLanes& node);
-
-/// The greatest_approach of each candidate while every node moves by h (velocity_next + push_out) [m].
-Lanes<Real, candidate_lanes> approaches(FeaturePair kind, const StepMotion& motion, const CandidateNodeLanes& node);
 
 }  // namespace skerry

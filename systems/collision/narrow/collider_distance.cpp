@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "components/check.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/tree/box.h"
 
 namespace skerry {
@@ -158,39 +159,39 @@ Index collider_part_count(ColliderShape shape) {
 
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point) {
-    const Vec3 local = motion.rotation.transpose() * (world_point - motion.position);
-    const SurfacePoint found = local_distance(geometry, local, part);
-    return {found.distance, motion.rotation * found.normal, motion.position + motion.rotation * found.point};
+    const SurfacePoint found = local_distance(geometry, to_local(motion, world_point), part);
+    return {found.distance, motion.rotation * found.normal, to_world(motion, found.point)};
 }
 
-Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion) {
+Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& direction) {
     const Vec3& size = geometry.size;
-    const Vec3 axis = motion.rotation.col(2);
-    // A disc reaches radius * sin(angle between its axis and the world axis).
-    const Vec3 disc = (Vec3::Ones() - axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
-    Vec3 centre = motion.position, half = Vec3::Constant(infinite);
+    const Real out = direction.head<2>().norm(), up = direction[2];
     switch (geometry.shape) {
+        case ColliderShape::sphere:
+            return size[0];
+        case ColliderShape::box:
+            return direction.cwiseAbs().dot(size);
+        case ColliderShape::capsule:
+            return size[0] + std::abs(up) * size[1];
+        case ColliderShape::cylinder:
+            return out * size[0] + std::abs(up) * size[1];
+        case ColliderShape::bucket:
+            return out * (size[0] + size[2]) + (up > 0 ? (part == 0 ? 0 : up * size[1]) : -up * size[2]);
         case ColliderShape::plane:
         case ColliderShape::mesh:
             break;
-        case ColliderShape::sphere:
-            half = Vec3::Constant(size[0]);
-            break;
-        case ColliderShape::box:
-            half = motion.rotation.cwiseAbs() * size;
-            break;
-        case ColliderShape::capsule:
-            half = size[1] * axis.cwiseAbs() + Vec3::Constant(size[0]);
-            break;
-        case ColliderShape::cylinder:
-            half = size[1] * axis.cwiseAbs() + size[0] * disc;
-            break;
-        case ColliderShape::bucket:
-            centre += 0.5 * (size[1] - size[2]) * axis;
-            half = 0.5 * (size[1] + size[2]) * axis.cwiseAbs() + (size[0] + size[2]) * disc;
-            break;
     }
-    return {centre - half, centre + half};
+    return infinite;
+}
+
+Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion) {
+    Aabb box{motion.position, motion.position};
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 axis = motion.rotation.row(i).transpose();
+        box.lower[i] -= extent_along(geometry, no_index, -axis);
+        box.upper[i] += extent_along(geometry, no_index, axis);
+    }
+    return box;
 }
 
 Real collider_radius(const ColliderGeometry& geometry) {

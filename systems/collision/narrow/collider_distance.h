@@ -28,6 +28,10 @@ SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const R
 /// Signed distance in the frame of the collider, to one part or to all of it (no_index).
 SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
 
+/// Extent of a shape from its origin along a unit direction in its frame [m]. For a part of a bucket it is that of the
+/// part's convex hull; no_index stands for all parts.
+Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& direction);
+
 /// World box around a collider of finite size; unbounded for a plane or a mesh.
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion);
 

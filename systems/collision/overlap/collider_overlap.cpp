@@ -5,9 +5,9 @@
 
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/colliders/time_of_touch.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/tree/box.h"
 #include "systems/geometry/closest_points.h"
 
@@ -45,11 +45,10 @@ struct ColliderAndBody {
 
     /// Position of a node of the body in the frame of the collider.
     Vec3 local(Index node) const {
-        const Vec3 x = body.solid.point[static_cast<std::size_t>(node)] + body.shift;
-        return motion.rotation.transpose() * (x - motion.position);
+        return to_local(motion, body.solid.point[static_cast<std::size_t>(node)] + body.shift);
     }
     /// Position of a point of the collider in the world.
-    Vec3 world(const Vec3& point) const { return motion.position + motion.rotation * point; }
+    Vec3 world(const Vec3& point) const { return to_world(motion, point); }
 };
 
 class SurfaceInside {
@@ -155,7 +154,7 @@ std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, con
 
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance) {
-    const Vec3 point = motion.position + motion.rotation * inner_point(geometry);
+    const Vec3 point = to_world(motion, inner_point(geometry));
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
@@ -166,12 +165,11 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
 
 std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
                                         const RigidMotion& motion, Real tolerance) {
-    const auto local = [&](const Vec3& at) { return Vec3(motion.rotation.transpose() * (at - motion.position)); };
-    const std::array<Vec3, 3> core{local(body.end[0]), local(body.end[1]), Vec3::Zero()};
+    const std::array<Vec3, 3> core{to_local(motion, body.end[0]), to_local(motion, body.end[1]), Vec3::Zero()};
     Touch nearest{.distance = std::numeric_limits<Real>::infinity(), .weight = {}, .point = {}, .normal = {}};
     for (Index part = 0; part < collider_part_count(geometry.shape); ++part) {
         TouchingFeature feature{.kind = body.is_segment ? TouchingFeature::Kind::edge : TouchingFeature::Kind::node,
-                                .of_collider = part,
+                                .of_shape = part,
                                 .position = core};
         feature.kept.distance = body.radius;
         const Touch touch = nearest_touch(geometry, feature, core);
@@ -181,7 +179,7 @@ std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGe
     if (!(depth > tolerance)) return std::nullopt;
     const bool inside = std::ranges::all_of(
         body.end, [&](const Vec3& at) { return distance_to_collider(geometry, motion, at).distance < 0; });
-    const Vec3 normal = motion.rotation * nearest.normal, point = motion.position + motion.rotation * nearest.point;
+    const Vec3 normal = motion.rotation * nearest.normal, point = to_world(motion, nearest.point);
     return Overlap{inside ? OverlapKind::inside : OverlapKind::crossing, depth, normal, point - depth / 2 * normal};
 }
 

@@ -84,8 +84,8 @@ private:
     std::optional<TrianglePoint> best_;
 };
 
-/// Calls look(triangle) for every triangle in the leaves, but skips the boxes for which worth(box) is false.
-void for_each_triangle(const SurfaceTree& surface, auto&& worth, auto&& look) {
+/// Calls visit(triangle) for every triangle in the leaves, but skips the boxes for which worth(box) is false.
+void for_each_triangle(const SurfaceTree& surface, auto&& worth, auto&& visit) {
     for (Index row = surface.tree.begin; row < surface.tree.end;) {
         const auto r = static_cast<std::size_t>(row);
         const BvhNode& node = surface.node[r];
@@ -95,7 +95,7 @@ void for_each_triangle(const SurfaceTree& surface, auto&& worth, auto&& look) {
         }
         if (node.leaf != no_index)
             for (Index i = 0; i < node.count; ++i)
-                look(surface.leaf_triangle[static_cast<std::size_t>(node.leaf)][static_cast<std::size_t>(i)]);
+                visit(surface.leaf_triangle[static_cast<std::size_t>(node.leaf)][static_cast<std::size_t>(i)]);
         ++row;
     }
 }
@@ -134,19 +134,6 @@ std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec
         surface,
         [&](const Aabb& box) { return std::sqrt(distance_squared(box, point)) <= nearest.limit() * (1 + rounding); },
         [&](Index triangle) { approach(surface, point, triangle, nearest); });
-    return nearest.best();
-}
-
-std::optional<TrianglePoint> cast_ray_at_all(const SurfaceTree& surface, const Ray& ray, Real limit) {
-    const ShearedRay sheared(ray);
-    Nearest nearest(limit);
-    for (Index t = surface.triangles.begin; t < surface.triangles.end; ++t) meet(surface, sheared, t, nearest);
-    return nearest.best();
-}
-
-std::optional<TrianglePoint> nearest_point_of_all(const SurfaceTree& surface, const Vec3& point, Real limit) {
-    Nearest nearest(limit);
-    for (Index t = surface.triangles.begin; t < surface.triangles.end; ++t) approach(surface, point, t, nearest);
     return nearest.best();
 }
 

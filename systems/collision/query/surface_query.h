@@ -18,8 +18,7 @@ struct Ray {
 
 /// A surface and its tree, whose boxes are fitted around the present positions.
 struct SurfaceTree {
-    Range tree;       // rows of `node` and `box`
-    Range triangles;  // rows of `triangle_node`
+    Range tree;  // rows of `node` and `box`
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const Aabb> box;                            // [m]
@@ -40,9 +39,5 @@ std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray
 
 /// The nearest point of the surface within `limit` [m]; among equally near ones that of the lowest row.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
-
-/// Simple twins of cast_ray and nearest_point without the tree: they test all triangles, one by one.
-std::optional<TrianglePoint> cast_ray_at_all(const SurfaceTree& surface, const Ray& ray, Real limit);
-std::optional<TrianglePoint> nearest_point_of_all(const SurfaceTree& surface, const Vec3& point, Real limit);
 
 }  // namespace skerry

@@ -24,15 +24,6 @@ bool is_movable(const BodyTable& body, Index b) {
     return body.kind[b] == BodyKind::deformable;
 }
 
-/// Fits box and sphere to the present shape of a body.
-void fit(const CollisionInputs& inputs, Index b, Aabb& box, BoundingSphere& sphere) {
-    const Range vertices = inputs.body.vertices[b];
-    const auto point_of = [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; };
-    box = empty_box();
-    for (Index v = vertices.begin; v < vertices.end; ++v) grow(box, point_of(v));
-    sphere = sphere_around(box, vertices.begin, vertices.end, point_of);
-}
-
 void widen(Aabb& box, Real margin) {
     box.lower.array() -= margin;
     box.upper.array() += margin;
@@ -59,7 +50,7 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
             const Real travel =
                 is_movable(body, static_cast<Index>(b)) ? settings.broad_skin / 2 * body.mean_edge[b] : common_travel;
             search.body_valid_until[b] = memory.body_travel_bound[b] - 2 * body.displacement[b] + travel;
-            fit(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
+            fit_bounds(inputs, static_cast<Index>(b), memory.box[b], memory.sphere[b]);
             const Real margin = memory.body_reach[b] + travel + body.contact_distance[b] / 2 + body.round_radius[b];
             widen(memory.box[b], margin);
             memory.sphere[b].radius += margin;
@@ -337,6 +328,14 @@ void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
 }
 
 }  // namespace
+
+void fit_bounds(const CollisionInputs& inputs, Index b, Aabb& box, BoundingSphere& sphere) {
+    const Range vertices = inputs.body.vertices[b];
+    const auto point_of = [&](Index v) -> const Vec3& { return inputs.position[inputs.surface.vertices.node[v]]; };
+    box = empty_box();
+    for (Index v = vertices.begin; v < vertices.end; ++v) grow(box, point_of(v));
+    sphere = sphere_around(box, vertices.begin, vertices.end, point_of);
+}
 
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                 SearchState& search, PairTable& pairs) {

@@ -15,4 +15,7 @@ namespace skerry {
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                 SearchState& search, PairTable& pairs);
 
+/// Fits box and sphere to the present shape of a body.
+void fit_bounds(const CollisionInputs& inputs, Index body, Aabb& box, BoundingSphere& sphere);
+
 }  // namespace skerry

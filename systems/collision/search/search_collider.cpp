@@ -1,11 +1,12 @@
-#include "systems/collision/search/search_collider.h"
+#include "systems/collision/search/search_pair.h"
 
 #include <algorithm>
 #include <array>
 
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/rigid_frame.h"
 #include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 
@@ -37,7 +38,7 @@ public:
 
 private:
     const Vec3& position(Index node) const { return inputs_.position[node]; }
-    Vec3 local(Index node) const { return motion_.rotation.transpose() * (position(node) - motion_.position); }
+    Vec3 local(Index node) const { return to_local(motion_, position(node)); }
     Range vertices() const { return inputs_.body.vertices[pair_.first]; }
 
     /// Adds the nodes near the collider. Returns the least distance of a node [m].

@@ -5,24 +5,19 @@
 #include <cmath>
 
 #include "components/ask_for_lines.h"
-#include "components/check.h"
 #include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/search/leaf_features.h"
-#include "systems/collision/search/search_collider.h"
 #include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
+#include "systems/collision/tree/leaf_pairs.h"
 #include "systems/geometry/closest_lanes.h"
-#include "systems/geometry/closest_points.h"
 
 namespace skerry {
 
 namespace {
-
-// Two trees over at most 2^31 triangles are together at most 2 * 32 levels deep, and each level leaves at most two
-// waiting pairs.
-constexpr std::size_t max_waiting = 192;
 
 // Number of leaves whose features are kept. Two bodies that lie on each other touch with some ten leaves.
 constexpr std::size_t kept_leaves = 16;
@@ -56,14 +51,13 @@ public:
           second_is_point_(is_point(inputs.body.core_nodes[pair.second])) {}
 
     void run() {
-        push(inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin);
-        while (waiting_count_ > 0) {
-            const auto [a, b] = waiting_[--waiting_count_];
-            if (self_ && a == b)
-                split_with_itself(a);
-            else
-                split(a, b);
-        }
+        any_leaf_pair(
+            inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
+            self_, [&](Index a, Index b) { return distance_squared(box_[a], box_[b]) < radius_squared_; },
+            [&](Index a, Index b) {
+                add_near(a, b);
+                return false;
+            });
         compare_near();
     }
 
@@ -73,18 +67,9 @@ private:
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
 
-    void push(Index a, Index b) {
-        SKERRY_CHECK(waiting_count_ < max_waiting);
-        waiting_[waiting_count_++] = {a, b};
-    }
-
-    void push_if_near(Index a, Index b) {
-        if (distance_squared(box_[a], box_[b]) < radius_squared_) push(a, b);
-    }
-
     /// Prefetches the data of a leaf, which lie too far apart for caches. Leaves are prefetched when they are found,
     /// and compared when several have been found.
-    void ask_for_leaf(Index a) const {
+    void prefetch_leaf(Index a) const {
         constexpr std::size_t owned_edges = 12, owned_points = 4;  // average for eight triangles
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
         const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
@@ -93,37 +78,13 @@ private:
         ask_for_lines(nodes.corner.data(), nodes.corner.size());
     }
 
-    void split_with_itself(Index a) {
-        if (node(a).count > 0) {
-            add_near(a, a);
-            return;
-        }
-        push(a + 1, a + 1);
-        push(node(a).right, node(a).right);
-        push_if_near(a + 1, node(a).right);
-    }
-
-    /// Replaces a pair of nodes by pairs with the children of the one that has more below it.
-    void split(Index a, Index b) {
-        const bool leaf_a = node(a).count > 0, leaf_b = node(b).count > 0;
-        if (leaf_a && leaf_b) {
-            add_near(a, b);
-        } else if (leaf_b || (!leaf_a && node(a).skip - a >= node(b).skip - b)) {
-            push_if_near(a + 1, b);
-            push_if_near(node(a).right, b);
-        } else {
-            push_if_near(a, b + 1);
-            push_if_near(a, node(b).right);
-        }
-    }
-
     const LeafTriangles& leaf_triangle(Index a) const { return inputs_.leaf_triangle[node(a).leaf]; }
 
     void add_near(Index a, Index b) {
         if (near_count_ == most_near) compare_near();
         near_[near_count_++] = {a, b};
-        ask_for_leaf(a);
-        ask_for_leaf(b);
+        prefetch_leaf(a);
+        prefetch_leaf(b);
     }
 
     void compare_near() {
@@ -246,21 +207,14 @@ private:
     Range triangles(bool of_first) const { return inputs_.body.triangles[of_first ? pair_.first : pair_.second]; }
 
     bool excluded_at_rest(Index point, const std::array<Index, 3>& corner) const {
-        if (share_node(corner, point)) return true;
-        if (inputs_.rest_position.empty()) return false;
-        const auto& rest = inputs_.rest_position;
-        const Real squared =
-            closest_point_on_triangle(rest[point], rest[corner[0]], rest[corner[1]], rest[corner[2]]).distance_squared;
-        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+        return share_node(corner, point) || touched_at_rest(point, corner);
     }
-
     bool excluded_at_rest(const std::array<Index, 2>& a, const std::array<Index, 2>& b) const {
-        if (share_node(b, a[0]) || share_node(b, a[1])) return true;
-        if (inputs_.rest_position.empty()) return false;
-        const auto& rest = inputs_.rest_position;
-        const Real squared =
-            closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
-        return squared < pair_.scale.contact_distance * pair_.scale.contact_distance;
+        return share_node(b, a[0]) || share_node(b, a[1]) || touched_at_rest(a, b);
+    }
+    bool touched_at_rest(const auto& first, const auto& second) const {
+        return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, first, second) <
+                                                     pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
     /// Adds a candidate. It sleeps until it may have come within the zone in which it gets a close test.
@@ -282,8 +236,6 @@ private:
     std::array<KeptLeaves<LeafPoints>, 2> points_;
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
     std::array<KeptLeaves<LeafCorners>, 2> corners_;
-    std::array<std::array<Index, 2>, max_waiting> waiting_;
-    std::size_t waiting_count_ = 0;
     std::array<std::array<Index, 2>, most_near> near_;  // pairs of leaves that are still to be compared
     std::size_t near_count_ = 0;
 };

@@ -24,4 +24,14 @@ struct PairToSearch {
 Real search_pair(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                  Column<FoundCandidate>& found);
 
+/// Lists in feature order the nodes of a body that are near a part of a collider, the faces that are near one of its
+/// points and the edges that are near a part. Faces and edges are listed only where they may touch between their nodes.
+/// Returns the travel_bound up to which the list is complete [m].
+Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Column<FoundCandidate>& found);
+
+/// True if an edge of one surface passes through a triangle of the other. It traverses two trees whose boxes fit the
+/// present positions. Touching does not count. If a body is paired with itself, features that were near each other at
+/// rest do not count either.
+bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box);
+
 }  // namespace skerry

@@ -1,9 +1,10 @@
-#include "systems/collision/search/surfaces_cross.h"
+#include "systems/collision/search/search_pair.h"
 
 #include <limits>
 
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/tree/leaf_boxes.h"
+#include "systems/collision/tree/leaf_pairs.h"
 #include "systems/geometry/passes_through.h"
 
 namespace skerry {
@@ -15,15 +16,12 @@ public:
     CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box)
         : inputs_(inputs), pair_(pair), box_(box) {}
 
-    bool run(Index a, Index b) const {
-        const bool same = pair_.kind == PairKind::self && a == b;
-        if (!same && distance_squared(box_[a], box_[b]) > 0) return false;
-        const BvhNode &own = inputs_.bvh_node[a], &other = inputs_.bvh_node[b];
-        if (own.count > 0 && other.count > 0) return leaves_cross(own, other, same);
-        if (same) return run(a + 1, a + 1) || run(own.right, own.right) || run(a + 1, own.right);
-        if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b))
-            return run(a + 1, b) || run(own.right, b);
-        return run(a, b + 1) || run(a, other.right);
+    bool run() const {
+        const bool self = pair_.kind == PairKind::self;
+        return any_leaf_pair(
+            inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
+            self, [&](Index a, Index b) { return !(distance_squared(box_[a], box_[b]) > 0); },
+            [&](Index a, Index b) { return leaves_cross(inputs_.bvh_node[a], inputs_.bvh_node[b], self && a == b); });
     }
 
 private:
@@ -72,7 +70,7 @@ private:
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
     if (first.size() == 0 || second.size() == 0) return false;
-    return CrossingSearch(inputs, pair, box).run(first.begin, second.begin);
+    return CrossingSearch(inputs, pair, box).run();
 }
 
 }  // namespace skerry

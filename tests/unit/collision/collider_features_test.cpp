@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
-#include "systems/collision/colliders/face_contact.h"
 #include "tests/support/draws.h"
 #include "tests/support/random.h"
 

@@ -1,4 +1,5 @@
-// Rays and nearest points: the tree against all triangles, closed forms against distances.
+// Rays and nearest points: the tree against a tree with endless boxes, which tests all triangles, closed forms against
+// distances.
 #include <catch2/catch.hpp>
 
 #include <limits>
@@ -22,7 +23,8 @@ struct Surface {
     Column<std::array<Index, 3>> triangle;
     BvhTable bvh;
     BvhLeafTable leaves;
-    SurfaceTree tree;
+    Column<Aabb> endless;   // boxes that every ray meets
+    SurfaceTree tree, all;  // `all` has endless boxes, so that a query tests all triangles
 
     Surface(Random& random, int rings) {
         const int around = 2 * rings;
@@ -45,11 +47,14 @@ struct Surface {
             }
             triangle.push_back({at(rings - 1, j), last, at(rings - 1, j + 1)});
         }
-        const Range all{0, static_cast<Index>(triangle.size())};
-        const BvhRanges ranges = append_bvh(all, triangle, position, bvh, leaves);
+        const Range rows{0, static_cast<Index>(triangle.size())};
+        const BvhRanges ranges = append_bvh(rows, triangle, position, bvh, leaves);
         for (Vec3& x : position) x += 0.05 * random.vector();  // the surface deforms, the structure of the tree stays
         refit_bvh(ranges.nodes, bvh.node, leaves.nodes, position, bvh.box.span());
-        tree = {ranges.nodes, all, bvh.node, leaves.triangle, bvh.box, triangle, position};
+        endless.resize(bvh.box.size(), {Vec3::Constant(-far), Vec3::Constant(far)});
+        tree = {ranges.nodes, bvh.node, leaves.triangle, bvh.box, triangle, position};
+        all = tree;
+        all.box = endless;
     }
 };
 
@@ -84,14 +89,13 @@ TEST_CASE("the tree gives the triangle, weights and distance that all triangles 
             const Ray ray{from, (0.8 * random.vector() - from).normalized()};
             const Real limit = i % 3 == 0 ? 1.0 : far;
             const auto found = cast_ray(surface.tree, ray, limit);
-            check_same(found, cast_ray_at_all(surface.tree, ray, limit));
+            check_same(found, cast_ray(surface.all, ray, limit));
             if (found) {
                 ++hits;
                 CHECK((point_of(surface, *found) - ray.origin - found->distance * ray.direction).norm() < 1e-12);
             }
             const Real within = i % 3 == 0 ? 0.3 : far;
-            check_same(nearest_point(surface.tree, ray.origin, within),
-                       nearest_point_of_all(surface.tree, ray.origin, within));
+            check_same(nearest_point(surface.tree, ray.origin, within), nearest_point(surface.all, ray.origin, within));
         }
     }
     CHECK(hits > 1000);
@@ -103,7 +107,7 @@ TEST_CASE("rays through corners, edges and along the axes leave no closed surfac
     const auto seen = [&](const Vec3& from, const Vec3& target) {
         const auto found = cast_ray(surface.tree, {from, (target - from).normalized()}, far);
         REQUIRE(found);
-        check_same(found, cast_ray_at_all(surface.tree, {from, (target - from).normalized()}, far));
+        check_same(found, cast_ray(surface.all, {from, (target - from).normalized()}, far));
     };
     for (const Vec3& corner : surface.position) seen({0, 0, 0}, corner);
     for (const auto& node : surface.triangle)

@@ -1,5 +1,5 @@
 // Candidates of many pairs that are evaluated together, against each pair alone.
-#include "systems/collision/look_at_awake.h"
+#include "systems/collision/surface_contacts.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <limits>
 
-#include "systems/collision/look_at_candidates.h"
-#include "systems/collision/pair_look.h"
+#include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/pair_contacts.h"
 #include "systems/geometry/closest_points.h"
 #include "tests/support/collision_world.h"
 #include "tests/support/random.h"
 
-namespace skerry::test::look_at_awake_test {
+namespace skerry::test::surface_contacts_test {
 
 using test::CollisionWorld;
 
@@ -46,7 +46,7 @@ struct Row : CollisionWorld {
 
 }  // namespace
 
-TEST_CASE("candidates that are looked at together are found and sleep as each alone does", "[unit]") {
+TEST_CASE("candidates of many pairs tested together become contacts and sleep as those of each pair alone", "[unit]") {
     test::Random random(17);
     std::size_t edges = 0, points = 0, far_edges = 0, far_points = 0, contacts = 0;
     for (int trial = 0; trial < 4; ++trial) {
@@ -54,14 +54,16 @@ TEST_CASE("candidates that are looked at together are found and sleep as each al
         const CollisionInputs inputs = row.inputs();
         PairTable twin = row.pairs;
         Column<ContactRow> together, alone;
-        Column<NearCandidate> near;
-        AwakeCandidates awake(inputs, row.settings, h, row.pairs, together, near);
+        Column<NearCandidate> near, near_alone;
+        SurfaceContacts of_all(inputs, row.settings, h, row.pairs, together, near);
         for (Index p = 0; p < static_cast<Index>(row.pairs.size()); ++p) {
             const Range all{0, static_cast<Index>(row.pairs.candidates[p].size())};
-            awake.add(p, all);
-            look_at_candidates(inputs, row.settings, h, p, all, twin, alone);
+            of_all.add(p, all);
+            SurfaceContacts of_one(inputs, row.settings, h, twin, alone, near_alone);
+            of_one.add(p, all);
+            of_one.test();
         }
-        awake.look();
+        of_all.test();
 
         REQUIRE(together.size() == alone.size());
         contacts += together.size();
@@ -79,7 +81,7 @@ TEST_CASE("candidates that are looked at together are found and sleep as each al
                 pair_scale_as_known(row.settings, row.pairs.state[p],
                                     pair_scale(inputs, row.pairs.kind[p], row.pairs.first[p], row.pairs.second[p]));
             const Real base = pair_travel_base(inputs, row.pairs, p),
-                       close = std::max(nearness(scale, row.pairs.closing[p]), scale.zone);
+                       close = std::max(near_distance(scale, row.pairs.closing[p]), scale.zone);
             for (std::size_t c = 0; c < row.pairs.candidates[p].size(); ++c) {
                 const Candidate& candidate = row.pairs.candidates[p][c];
                 const Real distance = distance_of(inputs, candidate);
@@ -99,4 +101,4 @@ TEST_CASE("candidates that are looked at together are found and sleep as each al
     CHECK(far_points > 100);
 }
 
-}  // namespace skerry::test::look_at_awake_test
+}  // namespace skerry::test::surface_contacts_test

@@ -1,0 +1,244 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "systems/collision/colliders/edge_contact.h"
+#include "systems/collision/cylinders/cylinder_touches.h"
+#include "systems/collision/cylinders/rigid_cylinder.h"
+#include "systems/collision/narrow/edge_edge_contact.h"
+#include "systems/collision/narrow/point_triangle_contact.h"
+#include "systems/collision/narrow/winding_number.h"
+#include "systems/collision/pair_contacts.h"
+
+namespace skerry {
+
+namespace {
+
+// The travel of the nodes of the rims is more than this fraction of the motion of the points between them.
+constexpr Real of_rim_nodes = 0.95;
+
+// An edge counts as parallel to the axis if the sine of their angle is below this. It touches the side along a stretch,
+// or hardly at all.
+constexpr Real parallel_sine = 1e-3;
+
+// Slopes of the distance along an edge below this count as zero.
+constexpr Real straight_slope = 1e-7;
+
+// Numbers of the touches with a triangle: three corners, eight places of each edge, nine of each rim.
+constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
+static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
+
+constexpr Real seam_fraction = 1e-9;  // of an edge: places this near to a seam are over one or both of its faces
+
+class CylinderContacts : PairContacts {
+public:
+    using PairContacts::PairContacts;
+
+    void test(Index c) {
+        if (kind == PairKind::collider)
+            against_shape(c, inputs.collider.geometry[second], inputs.collider.motion[second],
+                          second_local(candidates[c].feature));
+        else if (inputs.body.core_nodes[second] == 0)
+            against_triangle(c, candidates[c]);
+        else if (is_cylinder(inputs, second))
+            against_cylinder(c, cylinder_at_start(inputs, second));
+        else
+            against_core(c);
+    }
+    Real least_distance() const { return least_; }
+
+private:
+    /// `distance`: lower bound of the distance between the surfaces [m]. Returns true if the candidate matters in this
+    /// step.
+    bool note(Index c, Real distance) {
+        least_ = std::min(least_, distance);
+        asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
+        return distance <= near_surface();
+    }
+    /// True if a bound shows that the candidate does not matter in this step. Else its touches give a sharper bound.
+    bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
+    Real near_surface() const { return near - scale.radii; }
+
+    void against_triangle(Index c, const Candidate& candidate) {
+        const Index t = candidate.second;
+        const TriangleTable& table = inputs.surface.triangles;
+        const auto& node = table.node[t];
+        const LocalFace face{local(node[0]), local(node[1]), local(node[2])};
+        if (!note(c, distance_bound(cylinder_.geometry, face))) return;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (table.owned_vertices[t] >> k & 1) corner(candidate, k, face[k]);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (table.owned_edges[t] >> k & 1) edge(candidate, k, face[k], face[(k + 1) % 3]);
+        rims(c, candidate, face);
+    }
+
+    void corner(const Candidate& candidate, std::size_t k, const Vec3& at) {
+        const SurfacePoint on = local_distance(cylinder_.geometry, at, 0);
+        if (!(on.distance <= near_surface())) return;
+        const Index vertex = inputs.surface.triangles.vertex[candidate.second][k];
+        const CylinderPlace place = place_of(on.normal);
+        const Vec3 normal = -(cylinder_.motion.rotation * on.normal);
+        bool holds = place == CylinderPlace::end;
+        if (place == CylinderPlace::side)
+            holds = vertex_holds_axis(inputs.surface, inputs.position, vertex,
+                                      cylinder_.world({0, 0, at[2]}) - cylinder_.world(at),
+                                      cylinder_.motion.rotation.col(2), scale);
+        if (place == CylinderPlace::rim)
+            holds = vertex_holds_place(inputs.surface, inputs.position, vertex,
+                                       std::max(std::abs(on.distance), scale.edge) * normal, scale);
+        std::array<Real, 3> weight{};
+        weight[k] = 1;
+        if (holds) add_touch(candidate, static_cast<Index>(k), weight, normal, on.distance);
+    }
+
+    void edge(const Candidate& candidate, std::size_t k, const Vec3& a, const Vec3& b) {
+        if (!(edge_distance(cylinder_.geometry, 0, a, b) <= near_surface())) return;
+        const EdgeContact contact = edge_contact(cylinder_.geometry, 0, a, b);
+        const Vec3 along = b - a;
+        const bool parallel = along.head<2>().norm() <= parallel_sine * along.norm();
+        for (std::size_t i = 0; i < contact.count; ++i) {
+            const EdgePoint& touch = contact.point[i];
+            if (!(touch.on.distance <= near_surface())) continue;
+            const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
+            // A cylinder that rolls or slides over a flat place is held by its faces alone: an edge ahead would be a
+            // bump.
+            const CylinderPlace place = place_of(touch.on.normal);
+            const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
+            const bool nearly_flat =
+                place == CylinderPlace::end || (place == CylinderPlace::side && !parallel && straight_on);
+            if (!edge_faces(inputs.surface, inputs.position, inputs.surface.triangles.edge[candidate.second][k], normal,
+                            nearly_flat))
+                continue;
+            std::array<Real, 3> weight{};
+            weight[k] = 1 - touch.s;
+            weight[(k + 1) % 3] = touch.s;
+            add_touch(candidate, number_of_edges + places_of_edge * static_cast<Index>(k) + touch.number, weight,
+                      normal, touch.on.distance);
+        }
+    }
+
+    void rims(Index c, const Candidate& candidate, const LocalFace& face) {
+        const Vec3 area = (face[1] - face[0]).cross(face[2] - face[0]);
+        const Real length = area.norm();
+        if (!(length > 0)) return;
+        const Vec3 normal = area / length;
+        for (const RimPoints::Point& point : RimPoints(cylinder_.geometry, normal)) {
+            const Real height = normal.dot(point.at - face[0]);
+            if (!(height <= near_surface() && -height <= scale.face_depth)) continue;
+            const PointTriangle closest = closest_point_on_triangle(point.at, face[0], face[1], face[2]);
+            const Vec3 beside = closest.nearest + height * normal - point.at;
+            if (closest.region != TriangleRegion::face && !(beside.norm() <= seam_fraction * scale.edge)) continue;
+            if (height < 0 && !is_truly_behind(c, point.at, -height)) continue;
+            add_touch(candidate, number_of_faces + point.number, closest.weight, cylinder_.motion.rotation * normal,
+                      height);
+        }
+    }
+
+    /// True if the point has come through this face, as for bodies and colliders. In pairs held apart nothing is behind
+    /// a face.
+    bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
+        return !held_apart && depth <= scale.face_depth && is_nearest(c, depth, [&](Index i) {
+            const auto& node = inputs.surface.triangles.node[candidates[i].second];
+            return closest_point_on_triangle(point, local(node[0]), local(node[1]), local(node[2])).distance_squared;
+        }) && !is_outside(inputs, second, cylinder_.world(point));
+    }
+
+    void add_touch(const Candidate& candidate, Index number, const std::array<Real, 3>& weight, const Vec3& normal,
+                   Real distance) {
+        const auto& node = inputs.surface.triangles.node[candidate.second];
+        Vec3 point = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k) point += weight[k] * inputs.position[node[k]];
+        add_if_reached(candidate.feature, number, node, weight, {point, normal, distance, scale.shell},
+                       speed_against(cylinder_.velocity_at(point), node));
+    }
+
+    /// `node`, `weight`: nodes of the other body at the touched place, none for a collider. `speed`: of the place
+    /// relative to the cylinder [m/s].
+    void add_if_reached(std::uint64_t feature, Index number, const std::array<Index, 3>& node,
+                        const std::array<Real, 3>& weight, const ContactPlace& place, Real speed) {
+        if (!within_reach(place.distance + scale.radii, speed)) return;
+        add(feature_of_touch(*this, feature, number),
+            kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
+            stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), place);
+    }
+    /// Adds the touches with one shape. `speed_at(velocity, place)`: speed of the other partner at a place relative to
+    /// the velocity of the cylinder there [m/s].
+    void add_touches(Index c, const std::array<Index, 3>& node, auto&& weight_of, auto&& speed_at) {
+        for (const CylinderTouch& touch : touches_) {
+            const Vec3 point = cylinder_.world(touch.on_other), velocity = cylinder_.velocity_at(point);
+            ContactPlace place{point, cylinder_.motion.rotation * touch.normal, touch.distance, scale.shell};
+            const Real speed = speed_at(velocity, place);
+            add_if_reached(candidates[c].feature, touch.number, node, weight_of(touch), place, speed);
+        }
+    }
+
+    /// Tests a sphere or a capsule.
+    void against_core(Index c) {
+        const Index nodes = inputs.body.core_nodes[second], begin = inputs.body.nodes[second].begin;
+        const std::array<Index, 2> core{begin, begin + nodes - 1};
+        const Real radius = inputs.body.round_radius[second];
+        const Vec3 a = local(core[0]), b = local(core[1]);
+        touches_.clear();
+        if (nodes == 1) {
+            if (note(c, local_distance(cylinder_.geometry, a, 0).distance - radius))
+                touch_ball(cylinder_.geometry, a, radius, near_surface(), touches_);
+        } else if (note(c, edge_distance(cylinder_.geometry, 0, a, b) - radius)) {
+            touch_capsule(cylinder_.geometry, a, b, radius, near_surface(), touches_);
+        }
+        add_touches(
+            c, {core[0], core[1], core[0]},
+            [](const CylinderTouch& touch) {
+                return std::array{touch.weight[0], touch.weight[1], Real(0)};
+            },
+            [&](const Vec3& velocity, const ContactPlace&) { return speed_against(velocity, core); });
+    }
+
+    void against_cylinder(Index c, const RigidCylinder& other) {
+        find_touches(c, other.geometry, other.motion, 0);
+        add_touches(
+            c, {other.middle, other.middle, other.middle},
+            [](const CylinderTouch&) {
+                return std::array<Real, 3>{1, 0, 0};
+            },
+            [&](const Vec3& velocity, const ContactPlace& place) {
+                return (velocity - other.velocity_at(place.point)).norm();
+            });
+    }
+
+    void against_shape(Index c, const ColliderGeometry& geometry, const RigidMotion& motion, Index part) {
+        find_touches(c, geometry, motion, part);
+        add_touches(
+            c, {}, [](const CylinderTouch&) { return std::array<Real, 3>{}; },
+            [&](const Vec3& velocity, ContactPlace& place) {
+                place.surface_velocity = velocity_at(motion, place.point);
+                return (velocity - place.surface_velocity).norm();
+            });
+    }
+
+    void find_touches(Index c, const ColliderGeometry& other, const RigidMotion& motion, Index part) {
+        const RigidMotion place{cylinder_.local(motion.position),
+                                cylinder_.motion.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
+        touches_.clear();
+        if (is_far(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance)) return;
+        touch_shape(cylinder_.geometry, other, part, place, near_surface(), touches_);
+        note(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance);
+    }
+
+    Vec3 local(Index node) const { return cylinder_.local(inputs.position[node]); }
+
+    const RigidCylinder cylinder_ = cylinder_at_start(inputs, first);
+    CylinderTouches touches_;
+    Real least_ = std::numeric_limits<Real>::infinity();
+};
+
+}  // namespace
+
+Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
+                            Range range, PairTable& pairs, Column<ContactRow>& found) {
+    CylinderContacts contacts(inputs, settings, h, pairs, p, found);
+    for_each_awake(settings, pairs, p, range, [&](Index c) { contacts.test(c); });
+    return contacts.least_distance();
+}
+
+}  // namespace skerry

@@ -1,0 +1,121 @@
+// Contacts of the candidates of one pair in one step. Candidates whose gap may close within the step of length h are
+// appended to a list, in order, and those that were tested get the travel until which they may sleep.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "components/range.h"
+#include "systems/collision/contact_rows.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/geometry/lane_mask.h"
+
+namespace skerry {
+
+/// Tests the awake candidates of pair p, a body and an analytic collider, in a range of its list; without use_budgets
+/// it tests all. Returns the least distance of the features tested, or how far they may move over a flat place if that
+/// is more [m].
+Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
+                            Range range, PairTable& pairs, Column<ContactRow>& found);
+
+/// Version of find_collider_contacts for a rigid cylinder and a body or an analytic collider.
+Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
+                            Range range, PairTable& pairs, Column<ContactRow>& found);
+
+// Number of candidates whose sleep is tested together, without a branch for each.
+inline constexpr Index candidates_at_once = 16;
+
+// Another triangle counts as nearer to a point only if the difference exceeds rounding.
+inline constexpr Real nearer_fraction = 1e-9;
+
+/// Mask of the awake candidates, with a bit for each of those from `begin` on that are tested together.
+inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
+    static_assert(candidates_at_once == 2 * element_lanes);
+    const Real* const until = asleep_until.data() + begin;
+    const Real8 bound = Real8{} + travel_bound, first = *reinterpret_cast<const Real8InMemory*>(until),
+                second = *reinterpret_cast<const Real8InMemory*>(until + element_lanes);
+    return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
+}
+
+/// Calls `test` for each awake candidate of a range of the list of pair p, in order; without use_budgets for all.
+void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, Index p, Range range, auto&& test) {
+    const std::span<const Real> asleep_until = pairs.asleep_until[p].span();
+    const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : std::numeric_limits<Real>::infinity();
+    Index c = range.begin;
+    for (; c + candidates_at_once <= range.end; c += candidates_at_once)
+        for_each_lane(awake_lanes(asleep_until, c, travel_bound),
+                      [&](std::size_t l) { test(c + static_cast<Index>(l)); });
+    for (; c < range.end; ++c)
+        if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
+}
+
+/// Distance up to which features get a close test, if the pair closes by `closing` in this step [m].
+inline Real near_distance(const PairScale& scale, Real closing) {
+    return scale.contact_distance + (closing >= 0 ? closing : 0);
+}
+
+/// Base of the classes that test the candidates of one pair.
+struct PairContacts : PairData {
+    const CollisionSettings& settings;
+    const Real h;
+    const Real travel_base;  // [m]
+    const Real near;         // features further apart get no close test [m]
+    const bool held_apart;   // neither partner can have come through the other
+    std::span<Real> asleep_until;
+    Column<ContactRow>& found;
+
+    PairContacts(const CollisionInputs& all_inputs, const CollisionSettings& all_settings, Real step, PairTable& pairs,
+                 Index p, Column<ContactRow>& rows)
+        : PairData(all_inputs, pairs, p),
+          settings(all_settings),
+          h(step),
+          travel_base(pair_travel_base(inputs, pairs, p)),
+          near(near_distance(scale, pairs.closing[p])),
+          held_apart(is_held_apart(settings, state, scale)),
+          asleep_until(pairs.asleep_until[p].span()),
+          found(rows) {}
+
+    bool within_reach(Real distance, Real relative_speed) const {
+        const Real gap = distance - scale.contact_distance;
+        return gap <= reach(h, relative_speed, settings.gravity, scale.shell);
+    }
+
+    /// Greatest speed of some nodes relative to `velocity` [m/s].
+    Real speed_against(const Vec3& velocity, std::span<const Index> nodes) const {
+        Real squared = 0;
+        for (const Index n : nodes) squared = std::max(squared, (inputs.velocity[n] - velocity).squaredNorm());
+        return std::sqrt(squared);
+    }
+
+    /// Appends a contact, unless none of its nodes can move.
+    void add(std::uint64_t feature, ContactKind contact_kind, const Stencil& stencil, const ContactPlace& place) {
+        for (std::size_t a = 0; a < 4; ++a)
+            if (stencil.weight[a] != 0 && inputs.inverse_mass[stencil.node[a]] > 0) {
+                found.push_back(contact_row(*this, feature, contact_kind, stencil, place));
+                return;
+            }
+    }
+
+    /// True if no other triangle among the candidates of the same point is nearer than `depth`: all triangles as near
+    /// are candidates, side by side in the list. `squared(i)`: squared distance of the point of candidate c to the
+    /// triangle of candidate i.
+    bool is_nearest(Index c, Real depth, auto&& squared) const {
+        const Real limit = depth - nearer_fraction * (depth + scale.edge);
+        return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });
+    }
+
+    /// True if `holds` is false for every other candidate of the point of candidate c.
+    bool none_of_point(Index c, auto&& holds) const {
+        const std::uint64_t group = point_of_feature(candidates[c].feature);
+        const Index count = static_cast<Index>(candidates.size());
+        for (Index i = c - 1; i >= 0 && point_of_feature(candidates[i].feature) == group; --i)
+            if (holds(i)) return false;
+        for (Index i = c + 1; i < count && point_of_feature(candidates[i].feature) == group; ++i)
+            if (holds(i)) return false;
+        return true;
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,55 @@
+// Features of one pair that would pass through each other, or enter a shape, in the motion of the step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/range.h"
+#include "systems/collision/colliders/time_of_touch.h"
+#include "systems/collision/contact_rows.h"
+#include "systems/collision/inputs/step_motion.h"
+
+namespace skerry {
+
+/// Tests the candidates of pair p, a body and an analytic collider, in a range that can have met by `travel_bound` [m].
+/// Features that would cross are appended as contacts. Returns the number of candidates tested.
+std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
+                                      Index p, Range range, Real travel_bound, Column<ContactRow>& found);
+
+/// Version of find_collider_crossings for a rigid cylinder and a body or an analytic collider. `known`: contacts that
+/// earlier tries of the step have found, in key order.
+std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
+                                      Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
+                                      Column<ContactRow>& found);
+
+/// Calls `test(c)` for those candidates of a range that can have met by `travel_bound` [m]. `test` returns true if it
+/// needed a full test. Returns the number of full tests.
+std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
+    std::uint64_t tested = 0;
+    for (Index c = range.begin; c < range.end; ++c)
+        if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) tested += test(c);
+    return tested;
+}
+
+/// Base of the classes that test the candidates of one pair.
+struct PairCrossings : PairData {
+    const StepMotion& motion;
+    Column<ContactRow>& found;
+
+    PairCrossings(const CollisionInputs& all_inputs, const StepMotion& step_motion, const PairTable& pairs, Index p,
+                  Column<ContactRow>& rows)
+        : PairData(all_inputs, pairs, p), motion(step_motion), found(rows) {}
+
+    TouchingFeature feature_of(TouchingFeature::Kind of_kind, const std::array<Index, 3>& node, Index of_shape,
+                               const KeptApart& kept) const {
+        TouchingFeature feature{.kind = of_kind, .of_shape = of_shape, .position = {}, .kept = kept};
+        for (std::size_t i = 0; i < feature.nodes(); ++i) {
+            feature.position[i] = inputs.position[node[i]];
+            feature.displacement[i] = motion.of(node[i]);
+        }
+        return feature;
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,203 @@
+#include "systems/collision/surface_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "systems/collision/narrow/edge_edge_contact.h"
+#include "systems/collision/narrow/point_triangle_contact.h"
+#include "systems/collision/narrow/rest_distance.h"
+#include "systems/collision/pair_contacts.h"
+#include "systems/geometry/passes_through.h"
+
+namespace skerry {
+
+namespace {
+
+// Up to this fraction of the distance, faces around a place may seem to lie before it by rounding.
+constexpr Real sight_slack = 1e-6;
+
+/// Tests candidates of two surfaces, one by one.
+class CloseTest : PairContacts {
+public:
+    using PairContacts::PairContacts;
+
+    /// Tests candidate c of the list, unless it is too slow for its distance. If surfaces may overlap, slow ones are
+    /// tested, too: they may have come through.
+    void test(Index c, const CandidateNodes& node, Real distance) {
+        const FeaturePair features = features_of(candidates[c]);
+        const Real speed = relative_speed(features, node);
+        if (held_apart && !within_reach(distance, speed)) return;
+        if (features == FeaturePair::edge_edge)
+            edge_against_edge(c, node, speed);
+        else
+            point_against_triangle(c, node, speed);
+    }
+
+private:
+    /// Greatest difference between a velocity of the first feature and one of the second [m/s].
+    Real relative_speed(FeaturePair features, const CandidateNodes& node) const {
+        const std::size_t own = features == FeaturePair::edge_edge ? 2 : 1;
+        Real squared = 0;
+        for (std::size_t m = 0; m < own; ++m)
+            for (std::size_t n = own; n < 4; ++n)
+                squared = std::max(squared, (inputs.velocity[node[m]] - inputs.velocity[node[n]]).squaredNorm());
+        return std::sqrt(squared);
+    }
+
+    void point_against_triangle(Index c, const CandidateNodes& node, Real speed) {
+        const Candidate& candidate = candidates[c];
+        const PointTriangleContact contact = point_triangle_contact(
+            inputs.surface, inputs.position, inputs.position[node[0]], candidate.second, known_scale_, near, surfaces_);
+        asleep_until[c] = travel_base + contact.sleep;
+        const auto& corner = inputs.surface.triangles.node[candidate.second];
+        if (contact.side == Side::none || (is_core(corner) && !core_is_touched(candidate, contact.closest))) return;
+        if (!within_reach(contact.distance, speed)) return;
+        if (contact.side == Side::behind) {
+            const bool held = scale.radii > 0 && surfaces_ == Surfaces::apart
+                                  ? is_in_sight(c, node[0], contact.closest.nearest)
+                                  : is_truly_behind(c, node[0], corner, std::abs(contact.distance));
+            if (!held) return;
+        }
+        add(candidate.feature, ContactKind::point_triangle, stencil_of_point(node, contact.closest.weight),
+            {contact.closest.nearest, contact.normal, contact.distance, scale.contact_distance});
+    }
+
+    void edge_against_edge(Index c, const CandidateNodes& node, Real speed) {
+        const Candidate& candidate = candidates[c];
+        const EdgeEdgeContact contact = edge_edge_contact(inputs.surface, inputs.position, candidate.first,
+                                                          candidate.second, known_scale_, near, surfaces_);
+        asleep_until[c] = travel_base + contact.sleep;
+        if (!contact.touching || !within_reach(contact.distance, speed)) return;
+        add(candidate.feature, ContactKind::edge_edge, stencil_of_edges(node, contact.closest),
+            {contact.closest.on_second, contact.normal, contact.distance, scale.contact_distance - contact.slack});
+    }
+
+    /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front
+    /// of the far side of a thin part, or be pushed out through a nearer face.
+    bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
+        // In self-contact the point may simply be on the other side of a thin part.
+        if (kind == PairKind::self && !was_far_at_rest(inputs, scale, point, corner)) return false;
+        return is_nearest(c, depth, [&](Index i) {
+            const auto& n = inputs.surface.triangles.node[candidates[i].second];
+            return closest_point_on_triangle(inputs.position[point], inputs.position[n[0]], inputs.position[n[1]],
+                                             inputs.position[n[2]])
+                .distance_squared;
+        });
+    }
+
+    /// True if this point touches the core of a round body. If an end of an axis is nearest, that end is tested against
+    /// the other surface instead. Two ends are tested against each other once.
+    bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
+        const bool turned = is_point_of_second(candidate.feature);
+        const BodyTable& body = inputs.body;
+        const Index own = body.core_nodes[turned ? second : first], other = body.core_nodes[turned ? first : second];
+        const bool between = closest.region == TriangleRegion::edge01;
+        if (own > 0) return between || own < other || !turned;
+        const auto& [a, b, c] = inputs.surface.triangles.node[candidate.second];
+        const Vec3& point = inputs.position[inputs.surface.vertices.node[candidate.first]];
+        return between && vertex_holds_axis(inputs.surface, inputs.position, candidate.first, closest.nearest - point,
+                                            inputs.position[b] - inputs.position[a], scale);
+    }
+
+    /// True if a round body meets a place from behind because the other body is inside out there. A face between its
+    /// core and the place would hold it off. Other faces may be nearer: it lies on many faces at once.
+    bool is_in_sight(Index c, Index core, const Vec3& place) const {
+        const Vec3& from = inputs.position[core];
+        const Vec3 until = from + (1 - sight_slack) * (place - from);
+        return none_of_point(c, [&](Index i) {
+            const auto& n = inputs.surface.triangles.node[candidates[i].second];
+            return passes_through(from, until, inputs.position[n[0]], inputs.position[n[1]], inputs.position[n[2]]);
+        });
+    }
+
+    const PairScale known_scale_ = pair_scale_as_known(settings, state, scale);
+    const Surfaces surfaces_ = held_apart ? Surfaces::apart : Surfaces::may_overlap;
+};
+
+}  // namespace
+
+void SurfaceContacts::add(Index p, Range range) {
+    const Candidate* const list = pairs_.candidates[p].data();
+    std::size_t begin = count_;
+    const auto close_pair = [&] {
+        if (begin < count_) pair_[pair_count_++] = {p, begin, count_};
+    };
+    for_each_awake(settings_, pairs_, p, range, [&](Index c) {
+        if (count_ == most_candidates) {
+            close_pair();
+            test();
+            begin = 0;
+        }
+        __builtin_prefetch(list + c);  // without it each load would wait for the one before
+        row_[count_++] = c;
+    });
+    close_pair();
+}
+
+void SurfaceContacts::test() {
+    list_nodes();
+    measure_distances(FeaturePair::point_triangle);
+    measure_distances(FeaturePair::edge_edge);
+    for (std::size_t i = 0; i < pair_count_; ++i) test_pair(pair_[i]);
+    count_ = pair_count_ = 0;
+}
+
+/// Lists the nodes of the candidates, and the places of each kind.
+void SurfaceContacts::list_nodes() {
+    for (std::size_t i = 0; i < pair_count_; ++i) {
+        const Candidate* const list = pairs_.candidates[pair_[i].pair].data();
+        for (std::size_t place = pair_[i].begin; place < pair_[i].end; ++place) {
+            const Candidate& candidate = candidate_[place] = list[row_[place]];
+            prefetch_nodes(inputs_.surface, candidate);
+        }
+    }
+    for (Places& places : places_) places.count = 0;
+    for (std::size_t place = 0; place < count_; ++place) {
+        Places& places = places_[static_cast<std::size_t>(features_of(candidate_[place]))];
+        places.place[places.count++] = static_cast<std::uint16_t>(place);
+        node_[place] = nodes_of(inputs_.surface, candidate_[place]);
+    }
+}
+
+void SurfaceContacts::measure_distances(FeaturePair kind) {
+    const Places& places = places_[static_cast<std::size_t>(kind)];
+    for (std::size_t first = 0; first < places.count; first += candidate_lanes) {
+        const std::size_t used = std::min(candidate_lanes, places.count - first);
+        CandidateNodeLanes lanes;
+        for (std::size_t lane = 0; lane < candidate_lanes; ++lane)
+            set_lane(lanes, lane, node_[places.place[lane < used ? first + lane : first]]);
+        const auto found = distances(kind, inputs_.position, lanes);
+        for (std::size_t lane = 0; lane < used; ++lane) distance_[places.place[first + lane]] = found[lane];
+    }
+}
+
+/// Puts the candidates of a pair to sleep that it cannot close at its greatest speeds, and tests the others.
+void SurfaceContacts::test_pair(const AwakePair& awake) {
+    const Index p = awake.pair;
+    const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],
+                                                pair_scale(inputs_, pairs_.kind[p], pairs_.first[p], pairs_.second[p]));
+    const Real travel_base = pair_travel_base(inputs_, pairs_, p), close_until = travel_base - scale.edge_depth,
+               near = near_distance(scale, pairs_.closing[p]),
+               can_meet = (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction;
+    Real* const asleep_until = pairs_.asleep_until[p].data();
+    ByPlace<std::uint16_t> close, meeting;
+    std::size_t close_count = 0, meeting_count = 0;
+    Real least = least_distance_;
+    for (std::size_t place = awake.begin; place < awake.end; ++place) {  // no branches: they would be hard to predict
+        const Real zone = features_of(candidate_[place]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
+        const Real distance = distance_[place], apart = distance - scale.radii;
+        const bool is_close = distance <= std::max(near, zone);
+        asleep_until[row_[place]] = distance + (is_close ? close_until : travel_base - zone);
+        close[close_count] = meeting[meeting_count] = static_cast<std::uint16_t>(place);
+        close_count += is_close;
+        meeting_count += apart < can_meet;
+        least = apart < least ? apart : least;
+    }
+    least_distance_ = least;
+    for (std::size_t i = 0; i < meeting_count; ++i) near_.push_back({p, row_[meeting[i]], distance_[meeting[i]]});
+    if (close_count == 0) return;
+    CloseTest close_test(inputs_, settings_, h_, pairs_, p, found_);
+    for (std::size_t i = 0; i < close_count; ++i) close_test.test(row_[close[i]], node_[close[i]], distance_[close[i]]);
+}
+
+}  // namespace skerry

@@ -1,0 +1,72 @@
+// Contacts of this step between the surfaces of two bodies, or of a body with itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "components/contact_table.h"
+#include "components/pair_table.h"
+#include "components/range.h"
+#include "systems/collision/inputs/collision_inputs.h"
+#include "systems/collision/narrow/candidate_lanes.h"
+
+namespace skerry {
+
+/// Tests the awake candidates of several pairs together, eight at a time: most pairs have few. Candidates whose gap may
+/// close within the step of length h are appended to `found`, in order, and those that can meet in it to `near`. It
+/// stores until when the tested candidates may sleep.
+class SurfaceContacts {
+public:
+    SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
+                    Column<ContactRow>& found, Column<NearCandidate>& near)
+        : inputs_(inputs), settings_(settings), h_(h), pairs_(pairs), found_(found), near_(near) {}
+
+    /// Adds the awake candidates in a range of the list of pair p; without use_budgets it adds all. Neither partner is
+    /// a cylinder.
+    void add(Index p, Range range);
+    /// Tests the candidates that were added.
+    void test();
+
+    /// Least distance of all candidates tested [m].
+    Real least_distance() const { return least_distance_; }
+
+private:
+    static constexpr std::size_t most_candidates = 256;  // so that their data stays in the first-level cache
+
+    template <class T>
+    using ByPlace = std::array<T, most_candidates>;
+
+    /// Places of the candidates of one kind, ascending.
+    struct Places {
+        std::size_t count = 0;
+        ByPlace<std::uint16_t> place;
+    };
+    /// The awake candidates of one pair, in the order of its list: points and triangles, then edges.
+    struct AwakePair {
+        Index pair;
+        std::size_t begin, end;  // places
+    };
+
+    void list_nodes();
+    void measure_distances(FeaturePair kind);
+    void test_pair(const AwakePair& awake);
+
+    const CollisionInputs& inputs_;
+    const CollisionSettings& settings_;
+    const Real h_;
+    PairTable& pairs_;
+    Column<ContactRow>& found_;
+    Column<NearCandidate>& near_;
+    Real least_distance_ = std::numeric_limits<Real>::infinity();
+
+    std::size_t count_ = 0, pair_count_ = 0;
+    ByPlace<AwakePair> pair_;       // each pair has at least one candidate
+    ByPlace<Index> row_;            // row in the list of the pair
+    ByPlace<Candidate> candidate_;  // copies
+    ByPlace<CandidateNodes> node_;
+    ByPlace<Real> distance_;        // [m]
+    std::array<Places, 2> places_;  // by FeaturePair
+};
+
+}  // namespace skerry
