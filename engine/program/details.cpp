@@ -18,6 +18,7 @@ std::string solver_lines(const RunResult& result) {
     const std::string method = std::string(name_of(result.settings.method)) + ", " +
                                std::string(name_of(result.settings.friction)) + ", " +
                                std::string(name_of(result.settings.contact_regions)) + " regions";
+    if (r.solved == 0) return summary_line("solver", method + ": no contacts to solve");
     std::string text =
         summary_line("regions", "mean " + short_number(r.mean_regions, 4) + ", most " +
                                     grouped(static_cast<std::uint64_t>(r.max_regions)) + ", the largest of " +
@@ -26,12 +27,10 @@ std::string solver_lines(const RunResult& result) {
                                        short_number(r.worst_error) + " (a region of " +
                                        grouped(static_cast<std::uint64_t>(r.worst_region)) + " contacts), " +
                                        grouped(r.unconverged) + " regions not converged");
-    if (r.solved > 0)
-        text += summary_line("", grouped(r.solved) + " regions solved, " +
-                                     percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) +
-                                     " in closed form, " +
-                                     percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) +
-                                     " by the warm start alone");
+    text += summary_line(
+        "", grouped(r.solved) + " regions solved, " +
+                percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) + " in closed form, " +
+                percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) + " by the warm start alone");
     return text;
 }
 
@@ -125,9 +124,7 @@ std::string details_of(const RunResult& result) {
     text += summary_line("volume ratio", "at least " + short_number(r.worst_volume_ratio) +
                                              (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
     text += summary_line("stages", "") + stage_table(result);
-    char hash[24];
-    std::snprintf(hash, sizeof hash, "0x%016" PRIx64, result.state_hash);
-    return text + summary_line("state hash", hash);
+    return text + summary_line("state hash", hash_text(result.state_hash));
 }
 
 }  // namespace skerry

@@ -1,6 +1,7 @@
 // Formats numbers, and lines of a summary, for people to read.
 #pragma once
 
+#include <cinttypes>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -56,6 +57,13 @@ inline std::string duration_text(double seconds) {
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");
+}
+
+/// Formats a hash as 0x and 16 digits.
+inline std::string hash_text(std::uint64_t hash) {
+    char text[24];
+    std::snprintf(text, sizeof text, "0x%016" PRIx64, hash);
+    return text;
 }
 
 /// Returns a line of a summary: the label in the first column, the text in the second. With an empty label the line

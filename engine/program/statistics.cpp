@@ -1,10 +1,9 @@
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include "engine/output/write_file.h"
 #include "engine/program/dynamics_text.h"
+#include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 #include "engine/program/start_text.h"
 #include "skerry/instruction_set.h"
@@ -12,12 +11,6 @@
 namespace skerry {
 
 namespace {
-
-std::string hash_text(std::uint64_t hash) {
-    char text[24];
-    std::snprintf(text, sizeof text, "0x%016" PRIx64, hash);
-    return text;
-}
 
 Json number_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json();

@@ -1,11 +1,10 @@
 #include "engine/program/sweep/case_hash.h"
 
-#include <cinttypes>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
 #include "components/hash.h"
+#include "engine/program/number_text.h"
 #include "engine/scene/assign.h"
 #include "engine/scene/parse_json.h"
 
@@ -32,9 +31,7 @@ std::string CaseHasher::hash(std::span<const std::string> assignments) {
     }
     add_text(json.dump(-1, ' ', false, Json::error_handler_t::replace), all);
     add_files(json, file_, all);
-    char text[24];
-    std::snprintf(text, sizeof text, "0x%016" PRIx64, all.value());
-    return text;
+    return hash_text(all.value());
 }
 
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {

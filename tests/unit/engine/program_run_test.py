@@ -32,6 +32,20 @@ class ProgramRunTest(ProgramCase):
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["warnings"], [])
 
+    def test_the_summary_is_short_and_details_are_printed_on_request(self):
+        short = self.skerry("run", self.scene).stdout
+        self.assertLessEqual(len(short.splitlines()), 15, short)
+        for part in ("real time", str(self.scene), "1 deformable, 1 collider", "tetrahedra", "contacts", "penetration",
+                     "balance", "warnings      none", "base: sticks", "--page FILE.html"):
+            self.assertIn(part, short)
+        details = ("regions", "solver", "stages", "solver/solve_regions", "volume ratio", "kinetic", "state hash")
+        for part in details:
+            self.assertNotIn(part, short)
+        long = self.skerry("run", self.scene, "--profile").stdout
+        for part in details:
+            self.assertIn(part, long)
+        self.skerry("run", self.scene, "--profile", "--quiet", code=2)
+
     def blocked(self, *names):
         """A name at which a file cannot be written, from a certain moment of the run on: a full disk to the program."""
         place = self.folder.joinpath(*names)

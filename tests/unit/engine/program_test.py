@@ -50,20 +50,6 @@ class ProgramTest(ProgramCase):
         self.assertEqual(found["trust"]["warnings"], [])
         self.assertNotIn("WARNING", done.stdout)
 
-    def test_the_summary_is_short_and_details_are_printed_on_request(self):
-        short = self.skerry("run", self.scene).stdout
-        self.assertLessEqual(len(short.splitlines()), 15, short)
-        for part in ("real time", str(self.scene), "1 deformable, 1 collider", "tetrahedra", "contacts", "penetration",
-                     "balance", "warnings      none", "base: sticks", "--page FILE.html"):
-            self.assertIn(part, short)
-        details = ("regions", "solver", "stages", "solver/solve_regions", "volume ratio", "kinetic", "state hash")
-        for part in details:
-            self.assertNotIn(part, short)
-        long = self.skerry("run", self.scene, "--profile").stdout
-        for part in details:
-            self.assertIn(part, long)
-        self.skerry("run", self.scene, "--profile", "--quiet", code=2)
-
     def test_a_run_that_is_not_to_be_relied_on_says_so(self):
         stacked = dict(SCENE["bodies"][0], name="upper", position=[0.03, 0.02, 0.32], velocity=[0.5, 0.2, -2])
         scene = self.write("stack.json", dict(SCENE, bodies=[*SCENE["bodies"], stacked]))

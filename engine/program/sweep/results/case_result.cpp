@@ -1,6 +1,5 @@
 #include "engine/program/sweep/results/case_result.h"
 
-#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -8,6 +7,7 @@
 #include <ostream>
 
 #include "engine/output/write_file.h"
+#include "engine/program/number_text.h"
 
 namespace skerry {
 
@@ -44,9 +44,7 @@ CaseResult result_of(const RunResult& run, double seconds_cpu) {
         result.message = run.status;
     }
     result.warnings = warnings_of(run);
-    char hash[24];
-    std::snprintf(hash, sizeof hash, "0x%016" PRIx64, run.state_hash);
-    result.state_hash = hash;
+    result.state_hash = hash_text(run.state_hash);
     result.figures = {
         {"seconds_simulated", run.seconds_simulated},
         {"steps", static_cast<double>(r.steps)},
