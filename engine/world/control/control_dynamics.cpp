@@ -39,7 +39,7 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
                "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
-        refuse(model, body, "dynamics", "a change for a body with attachments", "a body without attachments");
+        refuse(model, body, "dynamics", "a change for an attached body", "a body without attachments");
     if (std::ranges::any_of(model.joints.first, is_of_body) || std::ranges::any_of(model.joints.second, is_of_body))
         refuse(model, body, "dynamics", "a change for a body with joints", "a body without joints");
 }
