@@ -76,7 +76,7 @@ bool Hdf5File::has(const std::string& path) const {
 void Hdf5File::expect_group(const std::string& path, const std::string& hint) const {
     if (!has(path)) complain(path, "nothing", "a group", hint);
     const Hdf5Handle group(H5Gopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.ok()) complain(path, "something else", "a group", hint);
+    if (!group.ok()) complain(path, "an object that is not a group", "a group", hint);
 }
 
 namespace {
@@ -114,9 +114,9 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     if (count < 0 || count > std::numeric_limits<Index>::max())
         complain(path, std::to_string(count) + " values", expected);
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
-        complain(path, std::to_string(count) + " values", "values that the file can hold");
+        complain(path, std::to_string(count) + " values", "as many values as the file has room for");
     if (!all_stored(data, type, count))
-        complain(path, "fewer bytes than " + std::to_string(count) + " values take", expected);
+        complain(path, "fewer bytes than " + std::to_string(count) + " values need", expected);
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected);
@@ -140,12 +140,12 @@ void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t
     std::array<hsize_t, 2> size{0, 1};
     if (H5Sget_simple_extent_ndims(space.id()) != rank ||
         H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
-        complain(path, "another shape", expected);
+        complain(path, "a data set of another shape", expected);
     if (size[0] > static_cast<hsize_t>(std::numeric_limits<Index>::max()))
         complain(path, std::to_string(size[0]) + " rows", "at most 2147483647");
     const hsize_t count = size[0] * width;
     if (!can_hold(count * bytes) || !all_stored(data, type, static_cast<hssize_t>(count)))
-        complain(path, "fewer bytes than " + std::to_string(size[0]) + " rows take", expected);
+        complain(path, "fewer bytes than " + std::to_string(size[0]) + " rows need", expected);
     void* const values = place(static_cast<std::size_t>(size[0]));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         complain(path, "values that cannot be read", expected);

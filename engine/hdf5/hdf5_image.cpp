@@ -26,8 +26,8 @@ void Hdf5Image::expect(bool good, const std::string& path) const {
         Complaint{.file = name_,
                   .object = {},
                   .field = path,
-                  .found = "no room for it",
-                  .expected = "memory for the file",
+                  .found = "not enough memory",
+                  .expected = "enough memory for the file",
                   .hint = {}}
             .raise();
 }

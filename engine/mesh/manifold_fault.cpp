@@ -39,7 +39,7 @@ std::vector<Side> sides_of(std::span<const BoundaryTriangle> boundary) {
 }  // namespace
 
 std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
-    if (boundary.empty()) return "there is none";
+    if (boundary.empty()) return "no boundary triangle";
     const std::vector<Side> sides = sides_of(boundary);
     UnionFind rings;
     rings.start(3 * boundary.size());

@@ -58,7 +58,9 @@ Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedro
 void require_valid(const Mesh& mesh, const std::string& what) {
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
-            Complaint{what, "node " + std::to_string(n), "position", "a number that is not finite", "finite metres", {}}
+            Complaint{
+                what, "node " + std::to_string(n), "position", "a number that is not finite", "finite coordinates (m)",
+                {}}
                 .raise();
     const auto node_count = static_cast<Index>(std::min<std::size_t>(mesh.nodes.size(), 0x7fffffff));
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {

@@ -39,7 +39,7 @@ const char* name_of(std::filesystem::file_type type) {
         case std::filesystem::file_type::socket:
             return "a socket";
         default:
-            return "something that is no file";
+            return "something that is not a regular file";
     }
 }
 
@@ -69,7 +69,7 @@ Target target_of(const std::filesystem::path& file) {
     // Renaming would also replace a write-protected file. Such a file is refused, because it was protected on purpose.
     constexpr fs::perms any_may_write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
     if ((found.permissions() & any_may_write) == fs::perms::none || access(target.path.c_str(), W_OK) != 0)
-        complain(file, "a file that is protected against writing", "a file that can be replaced");
+        complain(file, "a write-protected file", "a file that can be replaced");
     target.permissions = found.permissions();
     return target;
 }
@@ -98,7 +98,7 @@ void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream
     const Temporary temporary{target.takes_bytes ? std::filesystem::path() : part};
     write(out);
     out.close();
-    if (!out) complain(file, "\"" + what(errno) + "\" while writing", "room for the whole file");
+    if (!out) complain(file, "\"" + what(errno) + "\" while writing", "enough space for the whole file");
     if (target.takes_bytes) return;
     std::error_code error;
     if (target.permissions != std::filesystem::perms::unknown)

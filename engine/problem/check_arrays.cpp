@@ -27,7 +27,8 @@ void check_arrays(const ContactProblem& problem) {
     expect(problem.column.size() == blocks && static_cast<std::size_t>(problem.row_offset.back()) == blocks, "column",
            values(problem.column), std::to_string(blocks) + " (blocks)");
     for (const Index column : problem.column)
-        expect(column >= 0 && static_cast<std::size_t>(column) < count, "column", std::to_string(column), "a contact");
+        expect(column >= 0 && static_cast<std::size_t>(column) < count, "column", std::to_string(column),
+               "the index of a contact");
 }
 
 }  // namespace skerry

@@ -52,7 +52,7 @@ SparseMatrix assemble(const MassParts& parts, Index part, const std::vector<Matr
 
 std::string freedom_text(const MassParts& parts, Index part, Index place) {
     for (std::size_t i = 0; i < parts.part.size(); ++i)
-        if (parts.part[i] == part && parts.place[i] == place) return "freedom " + std::to_string(i);
+        if (parts.part[i] == part && parts.place[i] == place) return "degree of freedom " + std::to_string(i);
     return {};
 }
 
@@ -66,7 +66,7 @@ MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass
             if (it.value() * it.value() > rounding * rounding * std::abs(diagonal[it.row()] * diagonal[column]))
                 return {"a matrix that is not symmetric at " + freedom_text(parts, part, static_cast<Index>(it.row())) +
                             " and " + freedom_text(parts, part, column),
-                        "a symmetric matrix, both halves of it"};
+                        "a symmetric matrix with both triangles stored"};
     return {};
 }
 
@@ -84,8 +84,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     bool definite = factors.info() == Eigen::Success;
     if (definite) definite = (factors.vectorD().array() > rounding * in_order.array()).all();
     if (definite) return {};
-    return {"a matrix that is not positive definite among the freedoms joined to " + freedom_text(parts, part, 0),
-            expected};
+    return {"a matrix that is not positive definite in the block of " + freedom_text(parts, part, 0), expected};
 }
 
 /// Adds the contributions of one part of M to W and q of the contact problem.

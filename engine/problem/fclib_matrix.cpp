@@ -17,7 +17,7 @@ void read_compressed(const Hdf5File& file, const std::string& group, bool by_row
     const std::vector<Index> begin = file.integers(group + "/p"), place = file.integers(group + "/i");
     const std::vector<Real> value = file.reals(group + "/x");
     const Index nzmax = file.integer(group + "/nzmax");
-    if (nzmax < 0) file.complain(group + "/nzmax", std::to_string(nzmax), "a size");
+    if (nzmax < 0) file.complain(group + "/nzmax", std::to_string(nzmax), "a number >= 0");
     expect_size(file, group + "/p", begin.size(), static_cast<std::size_t>(lines) + 1,
                 by_rows ? "rows + 1" : "columns + 1");
     expect_size(file, group + "/i", place.size(), static_cast<std::size_t>(nzmax), "nzmax");
@@ -62,15 +62,17 @@ void expect_size(const Hdf5File& file, const std::string& path, std::size_t foun
 MatrixSize read_matrix_size(const Hdf5File& file, const std::string& group) {
     file.expect_group(group);
     const MatrixSize size{file.integer(group + "/m"), file.integer(group + "/n")};
-    if (size.rows < 0) file.complain(group + "/m", std::to_string(size.rows), "a size");
-    if (size.columns < 0) file.complain(group + "/n", std::to_string(size.columns), "a size");
+    if (size.rows < 0) file.complain(group + "/m", std::to_string(size.rows), "a number of rows >= 0");
+    if (size.columns < 0) file.complain(group + "/n", std::to_string(size.columns), "a number of columns >= 0");
     return size;
 }
 
 MatrixEntries read_matrix(const Hdf5File& file, const std::string& group) {
     const MatrixSize size = read_matrix_size(file, group);
     const Index nz = file.integer(group + "/nz");
-    if (nz < -2) file.complain(group + "/nz", std::to_string(nz), "-1 (columns), -2 (rows) or the number of triplets");
+    if (nz < -2)
+        file.complain(group + "/nz", std::to_string(nz),
+                      "-1 (compressed columns), -2 (compressed rows) or the number of triplets");
     MatrixEntries matrix{size.rows, size.columns, {}};
     if (nz >= 0)
         read_triplets(file, group, nz, matrix);

@@ -10,16 +10,16 @@ namespace skerry {
 namespace {
 
 std::string description_of(const StepContacts& step, const SolverSettings& settings) {
-    std::string text = "gaps may close within the step; contacts that are pressed in are pushed out apart from this";
+    std::string text = "gaps may close within the step; existing penetration is corrected separately";
     bool two_coefficients = false;
     for (std::size_t i = 0; i < step.contacts.static_friction.size(); ++i)
         two_coefficients |= step.contacts.static_friction[i] != step.contacts.dynamic_friction[i];
     if (two_coefficients)
         text +=
-            "; static friction differs from dynamic friction, and mu is the dynamic one, so the solution is not one of "
-            "this problem";
+            "; static friction differs from dynamic friction, and mu is the dynamic one, so the engine's solution does "
+            "not solve this problem";
     if (settings.friction == Friction::pyramid)
-        text += "; the solution is that of the friction pyramid, not of the cone";
+        text += "; the engine's solution is for the friction pyramid, not for the cone";
     return text;
 }
 

@@ -83,7 +83,7 @@ void write_problem(const ContactProblem& problem, const std::filesystem::path& f
                   .hint = {}}
             .raise();
     };
-    if (problem.q.empty()) refuse("q", "no contacts", "one at least");
+    if (problem.q.empty()) refuse("q", "no contacts", "at least one contact");
     if (!reaction.empty() && reaction.size() != problem.q.size())
         refuse("reaction", std::to_string(reaction.size()) + " values", std::to_string(problem.q.size()));
     Hdf5Image image(file.string());

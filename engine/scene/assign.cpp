@@ -85,14 +85,13 @@ private:
     Json& inner(Json& of, const Step& step) const {
         if (!step.is_item) {
             if (of.is_null()) of = Json::object();
-            if (!of.is_object())
-                refuse(described(of) + " where " + in_quotes(step.key) + " is looked for", "an object");
+            if (!of.is_object()) refuse(described(of) + " where " + in_quotes(step.key) + " is looked up", "an object");
             return of[step.key];
         }
-        if (!of.is_array()) refuse(of.is_null() ? "nothing" : described(of), "a list, of which to take an item");
+        if (!of.is_array()) refuse(of.is_null() ? "nothing" : described(of), "a list with items");
         if (step.item >= of.size())
             refuse("item " + std::to_string(step.item) + " of " + std::to_string(of.size()),
-                   of.empty() ? "an item of a list that has some" : "0 to " + std::to_string(of.size() - 1));
+                   of.empty() ? "an item of a list that is not empty" : "0 to " + std::to_string(of.size() - 1));
         return of[step.item];
     }
 

@@ -43,8 +43,7 @@ public:
 
     bool key(string_t& name) override {
         if (open_.back().value->contains(name))
-            here().refuse("the key " + in_quotes(name) + " twice", "every key once",
-                          "which of the two counts would be a guess");
+            here().refuse("the key " + in_quotes(name) + " twice", "every key once", "delete one of the two");
         open_.back().key = name;
         return true;
     }
@@ -54,7 +53,7 @@ public:
         if (error.id == out_of_range_id) here().refuse("the number " + token, "a finite number");
         std::string hint;
         if (token.find('/') != std::string::npos || token.find('#') != std::string::npos)
-            hint = "comments are not JSON: scenes have \"description\" keys";
+            hint = "JSON has no comments; use a \"description\" key";
         else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
                  token.find("I") == token.size() - 1)
             hint = "JSON has no NaN and no Infinity";
@@ -97,7 +96,7 @@ private:
         // on a file full of brackets.
         constexpr std::size_t deepest = 100;
         if (open_.size() == deepest)
-            Place(file_).refuse("lists and objects more than " + std::to_string(deepest) + " deep", "a scene");
+            Place(file_).refuse("lists and objects nested more than " + std::to_string(deepest) + " deep", "a scene");
         open_.push_back({put(std::move(value)), {}});
         return true;
     }

@@ -51,7 +51,8 @@ void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& se
     if (body != nowhere) series.by_body = body;
     if (collider != nowhere && !series.collider) {
         if (body != nowhere)
-            place.refuse(in_quotes(*entry.by) + ", a body and a collider", "a name that only one of them has");
+            place.refuse(in_quotes(*entry.by) + ", the name of a body and of a collider",
+                         "a name that only a body or only a collider has");
         series.by_collider = collider;
     }
     if (series.by_body || series.by_collider) return;
@@ -96,8 +97,9 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
             if (series.pin >= body.pins.size())
                 entry.place.key(entry.pin ? "pin" : "body")
                     .refuse(body.pins.empty() ? "a body without pins" : "pin " + std::to_string(series.pin),
-                            body.pins.empty() ? "a body with pins"
-                                              : "a number of its pins, 0 to " + std::to_string(body.pins.size() - 1));
+                            body.pins.empty()
+                                ? "a body with pins"
+                                : "the number of one of its pins, 0 to " + std::to_string(body.pins.size() - 1));
         }
     }
     plan.series.push_back(std::move(series));
@@ -108,7 +110,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan) {
     const auto same = [&](const auto& other) { return other.name == entry.name; };
     if (std::ranges::any_of(plan.probes, same) || std::ranges::any_of(plan.series, same))
-        entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a name of its own for every probe");
+        entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a different name for every probe");
     if (entry.quantity != ProbeQuantity::contacts) return plan_series(entry, plan);
     const std::size_t body = find_body(plan, *entry.body, entry.place.key("body"));
     plan.probes.push_back(

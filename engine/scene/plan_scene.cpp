@@ -175,8 +175,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.pins = pins;
         body.place = entry.place;
         if (!so_far.names.insert(body.settings.name).second)
-            entry.place.key("name").refuse(in_quotes(body.settings.name) + " again",
-                                           "a name of its own for every body");
+            entry.place.key("name").refuse(in_quotes(body.settings.name) + " again", "a different name for every body");
         plan.bodies.push_back(std::move(body));
     }
 }

@@ -43,17 +43,18 @@ void check_keys(const Place& place, const ProbeEntry& probe) {
         if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
         std::vector<std::string> possible = keys.required;
         possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
-        place.key(key).refuse("a key that says nothing " + of,
-                              possible.empty() ? "none but name and quantity" : "one of " + listed(possible));
+        place.key(key).refuse("a key without meaning " + of,
+                              possible.empty() ? "only the keys name and quantity" : "one of " + listed(possible));
     }
     if (probe.quantity == ProbeQuantity::force && probe.body.has_value() == probe.collider.has_value())
         place.refuse(probe.body ? "both \"body\" and \"collider\"" : "neither \"body\" nor \"collider\"",
-                     "one of them: on whom the force acts");
+                     "one of them: the object on which the force acts");
     const bool odd = std::ranges::any_of(
         probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
     if (probe.quantity != ProbeQuantity::contacts && (odd || probe.name == "." || probe.name == "time"))
-        place.key("name").refuse(in_quotes(probe.name),
-                                 "a text that is not \"time\", without / and control characters: it heads columns");
+        place.key("name").refuse(
+            in_quotes(probe.name),
+            "a text that is not \"time\", without / and control characters, because it heads columns");
 }
 
 }  // namespace
@@ -63,21 +64,24 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
     using P = ProbeEntry;
     static const auto rule =
         Rule<P>("probe",
-                "What is recorded. Contacts of a part of a body, for the report: sticking or sliding, how often it "
-                "changes, how fast it slips. All other quantities are series for --probes (docs/outputs.md).")
-            .key("name", &P::name, {.meaning = "in the report, and of columns", .required = true})
+                "A recorded quantity. Contacts of a part of a body are for the report: sticking or sliding, number of "
+                "changes, slip speed. All other quantities are series for --probes (docs/outputs.md).")
+            .key("name", &P::name, {.meaning = "name in the report and in column headings", .required = true})
             .key("quantity", &P::quantity,
-                 {.meaning = "contacts (default); motion of a point or of the centre of mass; force of contacts on a "
-                             "body or a collider; reaction of a pin; energy of the world; largest stress; smallest "
-                             "ratio of volume to that at rest"})
-            .key("body", &P::body, {.meaning = "the name of a body"})
-            .key("collider", &P::collider, {.meaning = "of a force: the name of the collider it acts on"})
-            .key("by", &P::by, {.meaning = "of a force: only what this body or collider exerts"})
-            .key("box", &P::box, {.meaning = "the nodes inside, in the mesh's own frame; of a stress by default all"})
+                 {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
+                             "of contacts on a body or a collider; reaction of a pin; energy of the world; largest "
+                             "stress; smallest ratio of current volume to rest volume"})
+            .key("body", &P::body, {.meaning = "name of a body"})
+            .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})
+            .key("by", &P::by, {.meaning = "for a force: name of the only body or collider whose force counts"})
+            .key("box", &P::box,
+                 {.meaning =
+                      "box around the recorded nodes, in the mesh's own frame; for a stress all nodes by default"})
             .key("point", &P::point,
-                 {.meaning = "of a motion: in the mesh's own frame; by default the centre of mass", .unit = "m"})
+                 {.meaning = "for a motion: the point, in the mesh's own frame; the centre of mass by default",
+                  .unit = "m"})
             .key("pin", &P::pin,
-                 {.meaning = "of a reaction: which of the body's pins, from 0; the first by default",
+                 {.meaning = "for a reaction: number of the pin of the body, from 0; the first by default",
                   .limits = at_least(0)})
             .check(check_keys);
     return rule;

@@ -9,10 +9,11 @@ namespace skerry {
 namespace {
 
 constexpr Real all_groups = 4294967295;
-const KeyDoc group_doc{.meaning = "its collision groups, a bit each; 1 by default", .limits = within(0, all_groups)};
+const KeyDoc group_doc{.meaning = "collision groups of the object, one bit each; 1 by default",
+                       .limits = within(0, all_groups)};
 const KeyDoc mask_doc{.meaning =
-                          "the groups that it touches, a bit each; all by default. Two touch if each is in a group "
-                          "that the mask of the other has",
+                          "groups that the object can touch, one bit each; all by default. Two objects touch if each "
+                          "is in a group of the other's mask",
                       .limits = within(0, all_groups)};
 
 }  // namespace
@@ -20,11 +21,11 @@ const KeyDoc mask_doc{.meaning =
 template <>
 const Rule<PinEntry>& rule_of<PinEntry>() {
     static const auto rule =
-        Rule<PinEntry>("pin", "Nodes of a body that stand still or follow a motion.")
-            .key("box", &PinEntry::box, {.meaning = "the nodes inside, in the mesh's own frame"})
-            .key("nodes", &PinEntry::nodes, {.meaning = "node numbers, from 0", .limits = at_least(0)})
-            .key("motion", &PinEntry::motion, {.meaning = "how they move; by default they do not"})
-            .key("pivot", &PinEntry::pivot, {.meaning = "the point that the motion turns about", .unit = "m"})
+        Rule<PinEntry>("pin", "Nodes of a body that are fixed or follow a motion.")
+            .key("box", &PinEntry::box, {.meaning = "box around the pinned nodes, in the mesh's own frame"})
+            .key("nodes", &PinEntry::nodes, {.meaning = "numbers of the pinned nodes, from 0", .limits = at_least(0)})
+            .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; none by default"})
+            .key("pivot", &PinEntry::pivot, {.meaning = "centre of rotation of the motion", .unit = "m"})
             .exactly_one({"box", "nodes"});
     return rule;
 }
@@ -32,16 +33,17 @@ const Rule<PinEntry>& rule_of<PinEntry>() {
 template <>
 const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
     static const auto rule =
-        Rule<RepeatEntry>(
-            "repeat",
-            "Copies in a grid that starts at the body's position; they are called NAME_0, NAME_1, ..., x first.")
+        Rule<RepeatEntry>("repeat",
+                          "Copies in a grid that starts at the body's position. Their names are NAME_0, NAME_1, ...; x "
+                          "varies fastest.")
             .key("count", &RepeatEntry::count,
-                 {.meaning = "copies along x, y and z", .limits = within(1, 1000), .required = true})
-            .key("spacing", &RepeatEntry::spacing, {.meaning = "between copies", .unit = "m", .required = true})
+                 {.meaning = "number of copies along x, y and z", .limits = within(1, 1000), .required = true})
+            .key("spacing", &RepeatEntry::spacing,
+                 {.meaning = "distance between copies along x, y and z", .unit = "m", .required = true})
             .key("jitter", &RepeatEntry::jitter,
                  {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
             .key("seed", &RepeatEntry::seed,
-                 {.meaning = "of the shifts; the same seed gives the same scene", .limits = at_least(0)})
+                 {.meaning = "seed of the random shifts; the same seed gives the same scene", .limits = at_least(0)})
             .check([](const Place& place, const RepeatEntry& grid) {
                 // A larger number of copies would not fit into memory and is probably a typing mistake.
                 constexpr std::int64_t most_copies = 1000000;
@@ -57,36 +59,36 @@ template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
         Rule<BodyEntry>("body", "A body. The rotation is applied before the position.")
-            .key("name", &BodyEntry::name, {.meaning = "for messages, output and probes; body_NUMBER by default"})
-            .key("mesh", &BodyEntry::mesh, {.meaning = "its tetrahedra"})
+            .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; body_NUMBER by default"})
+            .key("mesh", &BodyEntry::mesh, {.meaning = "tetrahedral mesh of the body"})
             .key("shape", &BodyEntry::shape,
-                 {.meaning = "in place of a mesh: it is round, and moves as a whole (\"dynamics\": \"rigid\")"})
-            .key("material", &BodyEntry::material, {.meaning = "the name of one of the materials", .required = true})
+                 {.meaning = "shape of a rigid body without a mesh; needs \"dynamics\": \"rigid\""})
+            .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
             .key("materials", &BodyEntry::materials,
-                 {.meaning = "materials of tetrahedra by the label that the mesh file gives them; the others have "
-                             "\"material\", whose friction, restitution and damping the whole body has"})
-            .key("position", &BodyEntry::position, {.meaning = "of the mesh's origin", .unit = "m"})
-            .key("rotation", &BodyEntry::rotation, {.meaning = "about the mesh's origin"})
+                 {.meaning = "materials of tetrahedra by their label in the mesh file; all other tetrahedra have "
+                             "\"material\", which also gives friction, restitution and damping of the whole body"})
+            .key("position", &BodyEntry::position, {.meaning = "position of the mesh's origin", .unit = "m"})
+            .key("rotation", &BodyEntry::rotation, {.meaning = "rotation about the mesh's origin"})
             .key("positions", &BodyEntry::positions,
-                 {.meaning = "several positions: one copy at each, called NAME_0, NAME_1, ...", .unit = "m"})
+                 {.meaning = "positions of several copies of the body, called NAME_0, NAME_1, ...", .unit = "m"})
             .key("repeat", &BodyEntry::repeat, {.meaning = "copies in a grid"})
-            .key("velocity", &BodyEntry::velocity, {.meaning = "at the start", .unit = "m/s"})
+            .key("velocity", &BodyEntry::velocity, {.meaning = "initial velocity", .unit = "m/s"})
             .key("angular_velocity", &BodyEntry::angular_velocity,
-                 {.meaning = "at the start, about the centre of mass", .unit = "rad/s"})
+                 {.meaning = "initial angular velocity about the centre of mass", .unit = "rad/s"})
             .key("contact_distance", &BodyEntry::contact_distance,
                  {.meaning = "thickness of the contact shell; by default 2 % of the mean surface edge",
                   .unit = "m",
                   .limits = at_least(0)})
-            .key("self_contact", &BodyEntry::self_contact, {.meaning = "whether it touches itself; false by default"})
-            .key(
-                "dynamics", &BodyEntry::dynamics,
-                {.meaning = "how it moves: \"rigid\" as a whole, with the mass and inertia of its mesh; \"implicit\" "
-                            "deforming by little, in any step, for what is stiff; \"automatic\" is one of \"explicit\" "
-                            "(the default) and \"implicit\", by predicted cost"})
+            .key("self_contact", &BodyEntry::self_contact,
+                 {.meaning = "whether the body can touch itself; false by default"})
+            .key("dynamics", &BodyEntry::dynamics,
+                 {.meaning = "method of motion. \"explicit\" (default): any deformation, short steps; \"implicit\": "
+                             "small deformation, any step size, for stiff bodies; \"rigid\": no deformation, with the "
+                             "mass and inertia of the mesh; \"automatic\": explicit or implicit, by predicted cost"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
-            .key("element", &BodyEntry::element, {.meaning = "what carries its stress"})
-            .key("pin", &BodyEntry::pin, {.meaning = "nodes that are held"})
+            .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
+            .key("pin", &BodyEntry::pin, {.meaning = "pinned nodes"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});
@@ -97,24 +99,27 @@ template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
     using Entry = ColliderEntry;
     static const auto rule =
-        Rule<Entry>("collider", "A rigid shape that stands still or moves by a script.")
-            .key("name", &Entry::name, {.meaning = "for messages and output; collider_NUMBER by default"})
-            .key("shape", &Entry::shape, {.meaning = "its shape", .required = true})
-            .key("position", &Entry::position, {.meaning = "of the shape's origin", .unit = "m"})
-            .key("rotation", &Entry::rotation, {.meaning = "about the shape's origin"})
-            .key("motion", &Entry::motion, {.meaning = "how it moves; by default it does not"})
+        Rule<Entry>("collider", "A rigid shape that is fixed or follows a prescribed motion.")
+            .key("name", &Entry::name, {.meaning = "name in messages and output; collider_NUMBER by default"})
+            .key("shape", &Entry::shape, {.meaning = "shape of the collider", .required = true})
+            .key("position", &Entry::position, {.meaning = "position of the shape's origin", .unit = "m"})
+            .key("rotation", &Entry::rotation, {.meaning = "rotation about the shape's origin"})
+            .key("motion", &Entry::motion, {.meaning = "prescribed motion; none by default"})
             .key("friction", &Entry::friction,
-                 {.meaning = "by default the body's own; else the geometric mean of both counts",
+                 {.meaning = "friction coefficient. Default: that of the touching body; otherwise contacts use the "
+                             "geometric mean of both",
                   .alias = "mu",
                   .limits = at_least(0)})
             .key("static_friction", &Entry::static_friction,
-                 {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+                 {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
             .key("dynamic_friction", &Entry::dynamic_friction,
-                 {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+                 {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
             .key("restitution", &Entry::restitution,
-                 {.meaning = "by default the body's own; else the larger of both counts", .limits = within(0, 1)})
+                 {.meaning = "coefficient of restitution. Default: that of the touching body; otherwise contacts use "
+                             "the larger of both",
+                  .limits = within(0, 1)})
             .key("contact_distance", &Entry::contact_distance,
-                 {.meaning = "thickness of the contact shell of a mesh", .unit = "m", .limits = at_least(0)})
+                 {.meaning = "thickness of the contact shell of a mesh collider", .unit = "m", .limits = at_least(0)})
             .key("collision_group", &Entry::collision_group, group_doc)
             .key("collision_mask", &Entry::collision_mask, mask_doc)
             .together({"static_friction", "dynamic_friction"})
@@ -141,24 +146,27 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                   .alias = "nu",
                   .limits = {.at_least = {}, .above = -1, .at_most = {}, .below = 0.5}})
             .key("density", &M::density, {.meaning = "density", .unit = "kg/m^3", .alias = "rho", .limits = above(0)})
-            .key("friction", &M::friction, {.meaning = "Coulomb's coefficient", .alias = "mu", .limits = at_least(0)})
+            .key("friction", &M::friction,
+                 {.meaning = "Coulomb friction coefficient", .alias = "mu", .limits = at_least(0)})
             .key("static_friction", &M::static_friction,
-                 {.meaning = "friction of sticking contacts", .limits = at_least(0)})
+                 {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
             .key("dynamic_friction", &M::dynamic_friction,
-                 {.meaning = "friction of sliding contacts", .limits = at_least(0)})
+                 {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
             .key("restitution", &M::restitution,
-                 {.meaning = "of a surface point at an impact, not of the body as a whole", .limits = within(0, 1)})
+                 {.meaning = "coefficient of restitution of a surface point at an impact, not of the whole body",
+                  .limits = within(0, 1)})
             .key("damping", &M::damping,
-                 {.meaning = "decay rate of deformation velocities; momentum is kept",
+                 {.meaning = "decay rate of deformation velocities; momentum is conserved",
                   .unit = "1/s",
                   .limits = at_least(0)})
             .key("loss_factor", &M::loss_factor,
-                 {.meaning = "tangent of the angle by which strain is behind stress, at every frequency of a body",
+                 {.meaning =
+                      "tangent of the phase angle by which strain lags stress, at every natural frequency of a body",
                   .limits = within(0, largest_loss_factor)})
             .key("bulk_viscosity", &M::bulk_viscosity,
-                 {.meaning = "damping ratio of an element's own highest frequency, by its change of volume",
+                 {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
                   .limits = within(0, largest_bulk_viscosity)})
-            .key("model", &M::model, {.meaning = "the constitutive law"})
+            .key("model", &M::model, {.meaning = "constitutive law"})
             .together({"static_friction", "dynamic_friction"})
             .at_most_one({"friction", "static_friction"})
             .at_most_one({"mu", "static_friction"})
@@ -176,52 +184,60 @@ const Rule<Settings>& rule_of<Settings>() {
     using S = Settings;
     constexpr std::string_view always_on = "delete the key, which is internal now and always on";
     static const auto rule =
-        Rule<S>("settings", "How the world is stepped. Defaults work.")
+        Rule<S>("settings", "Settings of time steps and contacts. The defaults suit most scenes.")
             .key("gravity", &S::gravity, {.meaning = "gravity; [0, 0, -9.81] by default", .unit = "m/s^2"})
             .key("step_size", &S::step_size,
-                 {.meaning = "at most; by default the stable step of the stiffest body, which is never exceeded",
+                 {.meaning = "largest step size; default and upper bound: the stable step of the stiffest body",
                   .unit = "s",
                   .limits = above(0)})
-            .key("integrator", &S::integrator, {.meaning = "how velocities and positions are integrated in time"})
+            .key("integrator", &S::integrator, {.meaning = "time integration method"})
             .key("clusters", &S::clusters,
-                 {.meaning = "the few elements that would make all steps several times shorter move as clusters"})
+                 {.meaning =
+                      "whether the few elements that would make all steps several times shorter move as clusters"})
             .withdrawn(
                 "multirate",
                 "delete the key: clusters, which are on by default, keep steps long where few elements are stiff; "
                 "for a stiff body set \"dynamics\" to \"implicit\" or \"automatic\"")
-            .key("backend", &S::backend, {.meaning = "what runs the threads"})
-            .key("threads", &S::threads, {.meaning = "0: as many as there are", .limits = within(0, 1024)})
-            .key("contact_regions", &S::contact_regions, {.meaning = "how contacts are grouped"})
-            .key("method", &S::method, {.meaning = "the contact solver"})
-            .key("friction", &S::friction, {.meaning = "the friction law"})
-            .key("tolerance", &S::tolerance, {.meaning = "relative error of a region", .limits = above(0)})
-            .key("max_iterations", &S::max_iterations, {.meaning = "sweeps of a region", .limits = at_least(1)})
-            .key("recovery_speed", &S::recovery_speed,
-                 {.meaning = "what overlaps, or lies within the contact distance, is pushed apart no faster",
-                  .unit = "m/s",
-                  .limits = above(0)})
-            .key("start_overlaps", &S::start_overlaps,
-                 {.meaning = "what is done about bodies that overlap each other or colliders at the start: resolve "
-                             "(default) moves them apart where the way out is short and refuses them where it is not, "
-                             "refuse refuses them, ignore reports them and begins as it is"})
-            .key("theta", &S::theta,
-                 {.meaning = "of the steps of implicit bodies, from 0.5 to 1: 1 damps what vibrates, 0.55 a tenth as "
-                             "much; less than 1 with symplectic_euler only",
-                  .limits = at_least(0.5)})
+            .key("backend", &S::backend, {.meaning = "thread library"})
+            .key("threads", &S::threads,
+                 {.meaning = "number of threads; 0: all available threads", .limits = within(0, 1024)})
+            .key("contact_regions", &S::contact_regions, {.meaning = "grouping of contacts into regions"})
+            .key("method", &S::method, {.meaning = "contact solver"})
+            .key("friction", &S::friction, {.meaning = "friction law"})
+            .key("tolerance", &S::tolerance,
+                 {.meaning = "relative error at which the solver of a region stops", .limits = above(0)})
+            .key("max_iterations", &S::max_iterations,
+                 {.meaning = "largest number of sweeps over a region", .limits = at_least(1)})
             .key(
-                "implicit_step", &S::implicit_step,
-                {.meaning = "of implicit bodies that nothing holds, at most: they take one such step while others take "
-                            "several; 0 (default): all take the same; with symplectic_euler only",
-                 .unit = "s",
-                 .limits = at_least(0)})
+                "recovery_speed", &S::recovery_speed,
+                {.meaning =
+                     "largest speed at which surfaces that overlap or are within the contact distance are pushed apart",
+                 .unit = "m/s",
+                 .limits = above(0)})
+            .key("start_overlaps", &S::start_overlaps,
+                 {.meaning = "treatment of bodies that overlap each other or colliders at the start. resolve "
+                             "(default): moves them apart if the way out is short, otherwise an error; refuse: always "
+                             "an error; ignore: reports them and starts with the overlaps"})
+            .key("theta", &S::theta,
+                 {.meaning = "parameter of the implicit steps, from 0.5 to 1. 1 damps vibrations most, 0.55 a tenth as "
+                             "much; values below 1 need symplectic_euler",
+                  .limits = at_least(0.5)})
+            .key("implicit_step", &S::implicit_step,
+                 {.meaning =
+                      "largest step of implicit bodies that are not held; they take one such step while other bodies "
+                      "take several. 0 (default): all bodies take the same steps; other values need symplectic_euler",
+                  .unit = "s",
+                  .limits = at_least(0)})
             .key("sleep", &S::sleep,
-                 {.meaning = "bodies that hardly move for sleep_time, and neither more and more nor on and on, rest "
-                             "with all that they touch, until something presses on them; false: they go on moving"})
+                 {.meaning = "whether bodies fall asleep, together with all bodies that they touch, if for sleep_time "
+                             "they hardly move and neither speed up nor drift steadily; a new load wakes them"})
             .key("sleep_time", &S::sleep_time,
-                 {.meaning = "how long a body has to be still to be put to rest", .unit = "s", .limits = at_least(0)})
+                 {.meaning = "time for which a body must be still before it falls asleep",
+                  .unit = "s",
+                  .limits = at_least(0)})
             .key("continuous_collision", &S::continuous_collision,
-                 {.meaning = "a step in which surfaces would go through each other is tried again with what crossed as "
-                             "contacts"})
+                 {.meaning = "whether a step in which surfaces would pass through each other is repeated with the "
+                             "crossing features as contacts"})
             .withdrawn("freeze_contacts", "delete the key: every sweep evaluates all contacts")
             .withdrawn("step_safety", "delete the key, which is internal now; for shorter steps set \"step_size\"")
             .withdrawn("max_strain_step", "delete the key, which is internal now; for shorter steps set \"step_size\"")
@@ -245,26 +261,26 @@ template <>
 const Rule<SceneFile>& rule_of<SceneFile>() {
     static const auto rule =
         Rule<SceneFile>("scene", "A world of deformable bodies and colliders, and a run. SI units.")
-            .key("$schema", &SceneFile::schema, {.meaning = "where editors find this schema"})
-            .key("name", &SceneFile::name, {.meaning = "of the scene; by default that of the file"})
-            .key("description", &SceneFile::description, {.meaning = "what it shows"})
+            .key("$schema", &SceneFile::schema, {.meaning = "path or address of this schema, for editors"})
+            .key("name", &SceneFile::name, {.meaning = "name of the scene; the name of the file by default"})
+            .key("description", &SceneFile::description, {.meaning = "description of the scene"})
             .key("include", &SceneFile::include,
-                 {.meaning =
-                      "scene files that come first; their bodies, colliders, joints and materials are added, single "
-                      "values are replaced by those here"})
+                 {.meaning = "scene files to read first. Their bodies, colliders, joints and materials are added; "
+                             "their single values are replaced by those of this file"})
             .key("seconds", &SceneFile::seconds,
                  {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,
-                 {.meaning = "between frames of output; 1/60 by default", .unit = "s", .limits = above(0)})
-            .key("settings", &SceneFile::settings, {.meaning = "of the step"})
+                 {.meaning = "time between frames of output; 1/60 by default", .unit = "s", .limits = above(0)})
+            .key("settings", &SceneFile::settings, {.meaning = "settings of the step"})
             .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
-            .key("bodies", &SceneFile::bodies, {.meaning = "deformable bodies"})
-            .key("colliders", &SceneFile::colliders, {.meaning = "rigid shapes"})
-            .key("joints", &SceneFile::joints, {.meaning = "what joins rigid bodies"})
+            .key("bodies", &SceneFile::bodies, {.meaning = "deformable and rigid bodies"})
+            .key("colliders", &SceneFile::colliders,
+                 {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
+            .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
             .key("probes", &SceneFile::probes,
-                 {.meaning = "what is recorded: contacts for the report, series of numbers for --probes"})
+                 {.meaning = "recorded quantities: contacts for the report, series of numbers for --probes"})
             .key("probe_step", &SceneFile::probe_step,
-                 {.meaning = "between two looks at the probes, or rows of their series; frame_step by default",
+                 {.meaning = "time between samples of the probes, the rows of their series; frame_step by default",
                   .unit = "s",
                   .limits = above(0)});
     return rule;

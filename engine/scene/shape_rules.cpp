@@ -73,12 +73,13 @@ const Rule<mesh::TableShape>& rule_of<mesh::TableShape>() {
     using Table = mesh::TableShape;
     static const auto rule =
         Rule<Table>("table_mesh", "A table on four legs that stands on z = 0.")
-            .key("length", &Table::length, {.meaning = "of the top along x", .unit = "m", .limits = positive})
-            .key("width", &Table::width, {.meaning = "of the top along y", .unit = "m", .limits = positive})
+            .key("length", &Table::length, {.meaning = "length of the top along x", .unit = "m", .limits = positive})
+            .key("width", &Table::width, {.meaning = "width of the top along y", .unit = "m", .limits = positive})
             .key("height", &Table::height,
-                 {.meaning = "from the floor to the top's upper side", .unit = "m", .limits = positive})
-            .key("thickness", &Table::thickness, {.meaning = "of the top", .unit = "m", .limits = positive})
-            .key("leg", &Table::leg, {.meaning = "edge of a leg", .unit = "m", .limits = positive})
+                 {.meaning = "height of the upper side of the top above the floor", .unit = "m", .limits = positive})
+            .key("thickness", &Table::thickness, {.meaning = "thickness of the top", .unit = "m", .limits = positive})
+            .key("leg", &Table::leg,
+                 {.meaning = "edge length of the cross-section of a leg", .unit = "m", .limits = positive})
             .key("cells_per_leg", &Table::cells_per_leg, {.meaning = "elements across a leg", .limits = within(1, 50)});
     return rule;
 }
@@ -94,8 +95,8 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("skittle", &MeshEntry::skittle, {.meaning = "a skittle"})
             .key("table", &MeshEntry::table, {.meaning = "a table"})
             .key("file", &MeshEntry::file,
-                 {.meaning = "Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele, from the folder of the scene on; "
-                             "colliders also take .obj and .stl"})
+                 {.meaning = "path of a Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele file, relative to the folder "
+                             "of the scene; colliders also take .obj and .stl"})
             .key("scale", &MeshEntry::scale, {.meaning = "factor on all coordinates; 1 by default", .limits = positive})
             .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file"});
     return rule;
@@ -140,7 +141,7 @@ const Rule<MotionEntry>& rule_of<MotionEntry>() {
                     if (!(motion.keys[i].time > motion.keys[i - 1].time))
                         place.key("keys").item(i).key("time").refuse(
                             Json(motion.keys[i].time).dump(),
-                            "a time after that of the key before, " + Json(motion.keys[i - 1].time).dump());
+                            "a time after that of the previous key, " + Json(motion.keys[i - 1].time).dump());
             });
     return rule;
 }
@@ -149,7 +150,7 @@ template <>
 const Rule<Plane>& rule_of<Plane>() {
     static const auto rule =
         Rule<Plane>("plane", "A half space.")
-            .key("normal", &Plane::normal, {.meaning = "out of the ground, of any length but zero; +z by default"})
+            .key("normal", &Plane::normal, {.meaning = "outward normal, of any nonzero length; +z by default"})
             .key("point", &Plane::point, {.meaning = "a point of the plane; the origin by default", .unit = "m"})
             .check([](const Place& place, const Plane& plane) {
                 if (!(plane.normal.norm() > 0)) place.key("normal").refuse("a vector of length 0", "a direction");
@@ -179,7 +180,7 @@ const Rule<Capsule>& rule_of<Capsule>() {
         Rule<Capsule>("capsule", "A cylinder along z with round ends, centred.")
             .key("radius", &Capsule::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
             .key("length", &Capsule::length,
-                 {.meaning = "of the straight part", .unit = "m", .limits = positive, .required = true});
+                 {.meaning = "length of the straight part", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
 
@@ -195,12 +196,13 @@ const Rule<Cylinder>& rule_of<Cylinder>() {
 template <>
 const Rule<Bucket>& rule_of<Bucket>() {
     static const auto rule =
-        Rule<Bucket>("bucket", "An open cylinder to put things into; its floor is at z = 0 of its frame.")
+        Rule<Bucket>("bucket", "An open cylindrical container; its floor is at z = 0 of its frame.")
             .key("radius", &Bucket::radius,
                  {.meaning = "inner radius", .unit = "m", .limits = positive, .required = true})
             .key("height", &Bucket::height,
                  {.meaning = "inner height", .unit = "m", .limits = positive, .required = true})
-            .key("thickness", &Bucket::thickness, {.meaning = "of wall and floor", .unit = "m", .limits = positive});
+            .key("thickness", &Bucket::thickness,
+                 {.meaning = "thickness of wall and floor", .unit = "m", .limits = positive});
     return rule;
 }
 

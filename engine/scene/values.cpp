@@ -55,7 +55,7 @@ template <>
 const Rule<AxisAngle>& rule_of<AxisAngle>() {
     static const Rule<AxisAngle> rule =
         Rule<AxisAngle>("axis_and_angle", "A rotation about an axis.")
-            .key("axis", &AxisAngle::axis, {.meaning = "direction, of any length but zero", .required = true})
+            .key("axis", &AxisAngle::axis, {.meaning = "direction, of any nonzero length", .required = true})
             .key("degrees", &AxisAngle::degrees, {.meaning = "angle", .unit = "degrees"})
             .key("radians", &AxisAngle::radians, {.meaning = "angle", .unit = "rad"})
             .exactly_one({"degrees", "radians"})
@@ -138,7 +138,7 @@ void read_named(const Json& json, const Place& place, FunctionRef<bool(const std
     if (!json.is_object()) place.refuse(described(json), "an object: one key for each name");
     for (const auto& [name, value] : json.items()) {
         if (has(name))
-            place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene has");
+            place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene uses");
         item(name, value, place.key(name));
     }
 }
@@ -210,7 +210,8 @@ void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& d
     out.path = place.file().parent_path() / text;  // an absolute path remains unchanged
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
-        place.refuse("no file " + in_quotes(out.path.string()), "the path of a file, from the folder of the scene on");
+        place.refuse("no file " + in_quotes(out.path.string()),
+                     "the path of a file, relative to the folder of the scene");
     if (std::filesystem::is_directory(out.path, error))
         place.refuse("a folder, " + in_quotes(out.path.string()), "the path of a file");
 }
@@ -241,9 +242,11 @@ void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& d
     const std::string spellings = R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)";
     if (json.is_array()) {
         if (!json.empty() && std::ranges::all_of(json, [](const Json& item) { return item.is_number(); }))
-            place.refuse(described(json), spellings,
-                         json.size() == 4 ? "the quaternion cos(a/2), sin(a/2) (x, y, z) is the angle a about (x, y, z)"
-                                          : "angles about several axes are no rotation until their order is said");
+            place.refuse(
+                described(json), spellings,
+                json.size() == 4
+                    ? "write the quaternion cos(a/2), sin(a/2) (x, y, z) as the angle a about the axis (x, y, z)"
+                    : "angles about several axes define a rotation only together with their order");
         RotationRows rows;
         Value<RotationRows>::read(json, place, doc, rows);
         out.value = rows.value;

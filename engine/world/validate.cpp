@@ -68,7 +68,7 @@ struct ShapeCheck {
     }
     void operator()(const SurfaceMesh& surface) const {
         if (surface.triangles.empty())
-            refuse(object, "triangles", "none", "a closed surface of at least four triangles");
+            refuse(object, "triangles", "no triangles", "a closed surface of at least four triangles");
         for (const Vec3& node : surface.nodes) require_finite(object, "nodes", node);
         for (std::size_t t = 0; t < surface.triangles.size(); ++t) check(t, surface.triangles[t], surface.nodes.size());
     }
@@ -77,7 +77,7 @@ private:
     void check(std::size_t number, const std::array<Index, 3>& triangle, std::size_t nodes) const {
         for (Index corner : triangle)
             if (corner < 0 || corner >= static_cast<Index>(nodes))
-                refuse(object, "triangles", "node " + std::to_string(corner), "a row of its nodes");
+                refuse(object, "triangles", "node " + std::to_string(corner), "the index of a node of the mesh");
         const auto [a, b, c] = triangle;  // a triangle with two equal nodes would be the core of a round body
         if (a == b || b == c || c == a)
             refuse(object, "triangles",
@@ -90,7 +90,7 @@ private:
 void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& materials, const std::string& object) {
     if (!mesh.label.empty() && mesh.label.size() != mesh.tetrahedra.size())
         refuse(object, "mesh", std::to_string(mesh.label.size()) + " labels",
-               std::to_string(mesh.tetrahedra.size()) + ", one for each tetrahedron, or none");
+               std::to_string(mesh.tetrahedra.size()) + " labels, one for each tetrahedron, or none");
     const std::map<int, std::size_t> labels = mesh::count_labels(mesh);
     for (const auto& [label, material] : materials)
         if (!labels.contains(label))
@@ -106,7 +106,7 @@ void require_surface(const std::optional<Real>& friction, const std::optional<Re
         require(*dynamic_friction >= 0, object, "dynamic_friction", *dynamic_friction, "a number >= 0");
     if (static_friction)
         require(*static_friction >= dynamic_friction.value_or(friction.value_or(0)), object, "static_friction",
-                *static_friction, "a number not below dynamic_friction");
+                *static_friction, "a number >= dynamic_friction");
     if (restitution)
         require(*restitution >= 0 && *restitution <= 1, object, "restitution", *restitution, "a number from 0 to 1");
 }
@@ -117,7 +117,7 @@ void require_nodes(const std::string& object, std::span<const Index> nodes, Inde
     for (const Index node : nodes)
         if (node < 0 || node >= count)
             refuse(object, "nodes", "node " + std::to_string(node),
-                   "nodes of the body, 0 to " + std::to_string(count - 1));
+                   "node indices of the body, 0 to " + std::to_string(count - 1));
 }
 
 void require_finite(const std::string& object, const char* field, const Vec3& found) {
@@ -129,7 +129,7 @@ void validate(const Settings& settings) {
     if (settings.step_size)
         require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
     require(settings.threads >= 0, "settings", "threads", settings.threads,
-            "a number of threads, or 0 for those of the caller");
+            "a number of threads >= 0 (0: those of the caller's task arena)");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,
             "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
@@ -138,11 +138,11 @@ void validate(const Settings& settings) {
     require(settings.theta >= 0.5 && settings.theta <= 1, "settings", "theta", settings.theta,
             "a number from 0.5 to 1");
     require(settings.theta == 1 || settings.integrator == Integrator::symplectic_euler, "settings", "theta",
-            settings.theta, "1 with this integrator; less goes with symplectic_euler only");
+            settings.theta, "1 with this integrator; smaller values need symplectic_euler");
     require(settings.implicit_step >= 0 && std::isfinite(settings.implicit_step), "settings", "implicit_step",
             settings.implicit_step, "a time >= 0 (s)");
     require(settings.implicit_step == 0 || settings.integrator == Integrator::symplectic_euler, "settings",
-            "implicit_step", settings.implicit_step, "0 with this integrator; others go with symplectic_euler only");
+            "implicit_step", settings.implicit_step, "0 with this integrator; other values need symplectic_euler");
 }
 
 void validate(const Tuning& tuning) {
@@ -158,7 +158,8 @@ void validate(const Tuning& tuning) {
 
 void validate(const MaterialSettings& material) {
     const std::string object = "material";
-    if (material.model == MaterialModel::guard) refuse(object, "model", "guard", "a law that a material can have");
+    if (material.model == MaterialModel::guard)
+        refuse(object, "model", "guard", "another constitutive law (guard is for internal use)");
     require(material.young_modulus > 0, object, "young_modulus", material.young_modulus, "a modulus > 0 (Pa)");
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
@@ -169,14 +170,14 @@ void validate(const MaterialSettings& material) {
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
         refuse(object, "young_modulus, density",
-               shown(material.young_modulus) + " Pa and " + shown(material.density) + " kg/m^3: waves of " +
+               shown(material.young_modulus) + " Pa and " + shown(material.density) + " kg/m^3, with a wave speed of " +
                    shown(wave_speed) + " m/s",
-               "a material whose waves are slower than light (3e8 m/s)");
+               "a wave speed below the speed of light (3e8 m/s)");
     require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
     const Real still = material.static_friction.value_or(std::max(material.friction, dynamic));
     require(dynamic >= 0, object, "dynamic_friction", dynamic, "a number >= 0");
-    require(still >= dynamic, object, "static_friction", still, "a number not below dynamic_friction");
+    require(still >= dynamic, object, "static_friction", still, "a number >= dynamic_friction");
     require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution,
             "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
@@ -200,8 +201,8 @@ void require_apart(const Mesh& mesh, const std::string& object) {
             if (on_side != no_index)
                 refuse(object, "mesh",
                        "tetrahedra " + std::to_string(on_side) + " and " + std::to_string(faces[i].tetrahedron) +
-                           " on the same side of a face that both have",
-                       "one on each side at most");
+                           " on the same side of a shared face",
+                       "at most one tetrahedron on each side of a face");
             on_side = faces[i].tetrahedron;
         }
         first = i;
@@ -228,7 +229,7 @@ void require_mesh(const Mesh& mesh, const std::string& object) {
         for (Index corner : mesh.tetrahedra[e])
             if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
                 refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
-                       "rows of its nodes");
+                       "indices of nodes of the mesh");
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
 }
@@ -239,7 +240,7 @@ void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known) {
     const std::string object = titled("body", body.name);
     if (!mesh_is_known) require_mesh(mesh, object);
     if ((body.dynamics == BodyDynamics::rigid || body.dynamics == BodyDynamics::implicit_elastic) && body.self_contact)
-        refuse(object, "self_contact", "true of a body whose dynamics are " + std::string(name_of(body.dynamics)),
+        refuse(object, "self_contact", "true for a body with the dynamics " + std::string(name_of(body.dynamics)),
                "false");
     require_labels(mesh, body.materials, object);
     require_start(body, object);
@@ -250,10 +251,11 @@ namespace {
 /// `shape`: "sphere", ...
 void require_round(const std::string& shape, const BodySettings& body, const std::string& object) {
     if (body.dynamics != BodyDynamics::rigid)
-        refuse(object, "dynamics", std::string(name_of(body.dynamics)), "rigid: a " + shape + " does not deform");
-    if (body.self_contact) refuse(object, "self_contact", "true of a " + shape, "false");
+        refuse(object, "dynamics", std::string(name_of(body.dynamics)),
+               "rigid, because a " + shape + " does not deform");
+    if (body.self_contact) refuse(object, "self_contact", "true for a " + shape, "false");
     if (!body.materials.empty())
-        refuse(object, "materials", "materials by label", "none: a " + shape + " has one material");
+        refuse(object, "materials", "materials by label", "none, because a " + shape + " has one material");
     require_start(body, object);
 }
 
@@ -268,7 +270,7 @@ void validate(const Sphere& sphere, const BodySettings& body) {
 void validate(const Capsule& capsule, const BodySettings& body) {
     const std::string object = titled("body", body.name);
     ShapeCheck{object}(capsule);
-    require(capsule.length > 0, object, "length", capsule.length, "a length > 0 (m): without one it is a sphere");
+    require(capsule.length > 0, object, "length", capsule.length, "a length > 0 (m); for length 0 use a sphere");
     require_round("capsule", body, object);
 }
 
@@ -282,16 +284,16 @@ void validate(const Motion& motion, const std::string& object) {
     require_finite(object, "motion.velocity", motion.velocity);
     require_finite(object, "motion.angular_velocity", motion.angular_velocity);
     if (!motion.keys.empty() && (!motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0)))
-        refuse(object, "motion", "keys and a velocity", "one of them");
+        refuse(object, "motion", "keys and a velocity", "either keys or a velocity");
     for (std::size_t k = 0; k < motion.keys.size(); ++k) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
         constexpr Real most = 1e6;  // an angle of this size is known to about 1e-10 [rad]
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
-                "a turn of at most 1000000 rad");
+                "a rotation of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
-                "ascending times (s)");
+                "a time after that of the previous key (s)");
     }
 }
 
@@ -303,7 +305,7 @@ void validate_step(const Model& model, Index body, const std::string& name) {
     refuse(titled("body", name), "mesh, material",
            "edges of " + shown(model.bodies.mean_edge[b]) + " m, " + shown(model.materials.young_modulus[material]) +
                " Pa and " + shown(model.materials.constants[material].density) + " kg/m^3",
-           "sizes and a material whose stable step can be calculated: it is " + shown(step) + " s");
+           "a mesh and a material with a finite stable step > 0; theirs is " + shown(step) + " s");
 }
 
 void validate(const Motion& motion, const Vec3& pivot) {

@@ -66,9 +66,9 @@ void WorldState::require_between_steps(const char* call) const {
     Complaint{.file = {},
               .object = call,
               .field = {},
-              .found = "a call in the middle of advance",
-              .expected = "one between two calls of it",
-              .hint = "what advance calls back may look at the world, and not build, remove or advance"}
+              .found = "a call during advance()",
+              .expected = "a call between two calls of advance()",
+              .hint = "a callback run by advance() may read the world but must not add, remove or advance"}
         .raise();
 }
 
@@ -121,9 +121,9 @@ WorldState& World::StateOwner::operator*() const {
         Complaint{.file = {},
                   .object = "world",
                   .field = {},
-                  .found = "one that was moved from",
-                  .expected = "a world",
-                  .hint = "use the one that it was moved to"}
+                  .found = "a moved-from world",
+                  .expected = "a valid world",
+                  .hint = "use the world that it was moved to"}
             .raise();
     return *owned_;
 }
@@ -287,17 +287,17 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                   .field = "body",
                   .found = std::string("the ") + model.round_name(b) + " '" + model.body_records[b].name + "'",
                   .expected = "a body with a mesh",
-                  .hint = std::string("a ") + model.round_name(b) + " that is led is a collider"}
+                  .hint = std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider"}
             .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},
                   .object = "attach",
                   .field = "nodes",
-                  .found = std::to_string(nodes.size()) + " of the " + (rigid ? "rigid" : "implicit") + " body '" +
-                           model.body_records[b].name + "'",
-                  .expected = std::string("three or more that are not on one line: they hold ") +
-                              (rigid ? "it as a whole" : "the frame in which it deforms"),
+                  .found = std::to_string(nodes.size()) + " nodes of the " + (rigid ? "rigid" : "implicit") +
+                           " body '" + model.body_records[b].name + "'",
+                  .expected = std::string("three or more nodes that are not on one line, to hold ") +
+                              (rigid ? "the whole body" : "the body's rotating frame"),
                   .hint = {}}
             .raise();
     state_->require_between_steps("attach");

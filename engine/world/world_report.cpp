@@ -86,20 +86,21 @@ Real energy_of_rounding(const Model& model) {
 std::string DynamicsChoice::message() const {
     const DynamicsEstimate& e = estimate;
     const auto way = [](Real cost, Real step) {
-        return short_text(cost) + " s of a core a simulated second, in steps of " + short_text(step) + " s";
+        return short_text(cost) + " s of CPU time per simulated second, in steps of " + short_text(step) + " s";
     };
     const std::string implicit =
         way(e.implicit_cost, e.implicit_step) +
-        (e.deforming_step > e.implicit_step ? ", deforming in steps of " + short_text(e.deforming_step) + " s" : "");
+        (e.deforming_step > e.implicit_step ? ", with deformation steps of " + short_text(e.deforming_step) + " s"
+                                            : "");
     const bool is_implicit = dynamics == BodyDynamics::implicit_elastic;
     std::string text(name_of(dynamics));
     if (e.reason == DynamicsReason::given) return text;
-    if (e.reason == DynamicsReason::self_contact) return text + ", since it touches itself";
-    if (e.reason == DynamicsReason::strain) text += ", since it may deform by " + short_text(100 * e.strain) + " %";
+    if (e.reason == DynamicsReason::self_contact) return text + ", because it can touch itself";
+    if (e.reason == DynamicsReason::strain) text += ", because it may deform by " + short_text(100 * e.strain) + " %";
     text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +
-            (is_implicit ? "; explicit " + way(e.explicit_cost, e.explicit_step) : "; implicit " + implicit);
+            (is_implicit ? "; explicit: " + way(e.explicit_cost, e.explicit_step) : "; implicit: " + implicit);
     if (is_implicit && e.damped_above > 0)
-        text += "; what vibrates faster than " + short_text(e.damped_above) + " Hz is damped";
+        text += "; vibrations above " + short_text(e.damped_above) + " Hz are damped";
     return text;
 }
 
@@ -111,7 +112,7 @@ std::string StepReport::message() const {
         case StepStatus::ok:
             return {};
         case StepStatus::stopped:
-            return "stopped between two steps, as was asked for";
+            return "stopped between two steps on request";
         case StepStatus::not_finite:
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
@@ -119,15 +120,16 @@ std::string StepReport::message() const {
             return "the step was not taken: " + who + where + " would deform by " + short_text(value) +
                    " in one step, even in 1/1024 of the stable step; lower its velocities and loads";
         case StepStatus::too_far:
-            return "the step was not taken: " + who + " is so far from the origin that neighbouring positions are " +
-                   short_text(value) +
-                   " of its mean edge apart; put the origin near the bodies, by a local frame of the scene";
+            return "the step was not taken: " + who +
+                   " is so far from the origin that neighbouring representable positions are " + short_text(value) +
+                   " of its mean edge length apart; place the origin near the bodies, as in a local frame of the scene";
         case StepStatus::unsolved:
-            return "the step was not taken: Newton's method finds none of large strain for " + who +
-                   ", in a thousandth of the step, too; check its loads, velocities and shape, or make it explicit";
+            return "the step was not taken: Newton's method for large strain did not converge for " + who +
+                   ", even with a thousandth of the step; check its loads, velocities and shape, or set its dynamics "
+                   "to explicit";
         case StepStatus::too_stiff:
-            return "the step was not taken: " + who + " stands no step longer than " + short_text(value) +
-                   " s, with which time would not go on; check its material, size and shape";
+            return "the step was not taken: " + who + " has a stable step of only " + short_text(value) +
+                   " s, which is too short to advance the time; check its material, size and shape";
     }
     return {};
 }
@@ -135,11 +137,11 @@ std::string StepReport::message() const {
 std::string StepReport::warning() const {
     std::string text;
     if (limited > 0)
-        text = "step_size is longer than body '" + limited_by + "' stands: " + std::to_string(limited) +
-               " steps were taken at no more than " + short_text(limited_step) + " s";
+        text = "step_size exceeds the stable step of body '" + limited_by + "': " + std::to_string(limited) +
+               " steps were shortened to at most " + short_text(limited_step) + " s";
     if (inverted > 0)
         text += (text.empty() ? "" : "; ") + std::to_string(inverted) +
-                " elements turned inside out, the first of them element " + std::to_string(inverted_element) +
+                " elements were inverted, the first of them element " + std::to_string(inverted_element) +
                 " of body '" + inverted_name + "'";
     return text;
 }

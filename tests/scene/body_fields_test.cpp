@@ -111,8 +111,9 @@ TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scen
             CHECK(some[i].norm() > 0);
         }
     }
-    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{0, last + 1}), Catch::Contains("nodes of the body"));
-    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{-1}), Catch::Contains("nodes of the body"));
+    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{0, last + 1}),
+                      Catch::Contains("node indices of the body"));
+    CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{-1}), Catch::Contains("node indices of the body"));
 }
 
 }  // namespace skerry::test::body_fields_test

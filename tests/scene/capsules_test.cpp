@@ -379,7 +379,7 @@ TEST_CASE("what a capsule cannot be is refused by name", "[scene]") {
     const std::uint64_t before = c.world.state_hash();
     CHECK_THROWS_WITH(c.world.set_dynamics(body, BodyDynamics::explicit_elastic), Contains("'log'"));
     CHECK_THROWS_WITH(c.world.attach(body, std::vector<Index>{0, 1, 2, 3}),
-                      Contains("the capsule 'log'") && Contains("a capsule that is led is a collider"));
+                      Contains("the capsule 'log'") && Contains("replace the capsule by a collider"));
     CHECK(c.world.state_hash() == before);
 }
 

@@ -373,7 +373,7 @@ TEST_CASE("what a cylinder cannot be is refused by name", "[scene]") {
     const std::uint64_t before = c.world.state_hash();
     CHECK_THROWS_WITH(c.world.set_dynamics(body, BodyDynamics::explicit_elastic), Contains("'can'"));
     CHECK_THROWS_WITH(c.world.attach(body, std::vector<Index>{0, 1, 2, 3}),
-                      Contains("the cylinder 'can'") && Contains("a cylinder that is led is a collider"));
+                      Contains("the cylinder 'can'") && Contains("replace the cylinder by a collider"));
     CHECK(c.world.state_hash() == before);
 }
 

@@ -205,7 +205,7 @@ TEST_CASE("a rigid body that is set by hand stays rigid", "[scene][rigid]") {
           Approx(2 * 0.01 / 6 + Vec3(1, 2, 3).cross(Vec3(0.1, 0, 0)).z()).epsilon(1e-12));
     position[3].x() += 0.01;
     CHECK_THROWS_WITH(scene.world.set_positions(scene.body, position),
-                      Catch::Matchers::Contains("one that a rigid body has: moved and turned as a whole"));
+                      Catch::Matchers::Contains("the shape of the rigid body, translated and rotated as a whole"));
     CHECK((scene.world.positions(scene.body)[3] - position[3]).norm() > 0.009);
 }
 

@@ -87,8 +87,8 @@ TEST_CASE("a world is built and advanced between steps only, also by what it cal
     int calls = 0;
     const auto try_all = [&] {
         ++calls;
-        CHECK_THROWS_WITH(world.advance(0.01), Catch::Contains("advance: found a call in the middle of advance"));
-        CHECK_THROWS_WITH(scene.add(7), Catch::Contains("add_body: found a call in the middle"));
+        CHECK_THROWS_WITH(world.advance(0.01), Catch::Contains("advance: found a call during advance()"));
+        CHECK_THROWS_WITH(scene.add(7), Catch::Contains("add_body: found a call during advance()"));
         CHECK_THROWS_AS(world.add_material({}), SceneError);
         CHECK_THROWS_AS(world.add_collider(Plane{}), SceneError);
         CHECK_THROWS_AS(world.attach(scene.box[0], std::array<Index, 1>{0}), SceneError);
@@ -161,7 +161,7 @@ TEST_CASE("handles go with a world that is moved, and what is left refuses all u
     CHECK(moved.alive(scene.box[0]));
     CHECK(moved.advance(0.001).ok());
     const World& left = scene.world;
-    const auto said = Catch::Contains("world: found one that was moved from");
+    const auto said = Catch::Contains("world: found a moved-from world");
     CHECK_THROWS_WITH(scene.world.advance(0.001), said);
     CHECK_THROWS_WITH(scene.world.add_material({}), said);
     CHECK_THROWS_WITH(scene.world.remove(scene.box[0]), said);

@@ -191,8 +191,8 @@ struct DynamicsChoice {
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the chosen kind
     DynamicsEstimate estimate{};
 
-    /// Returns a text such as "implicit: 0.8 s of a core a simulated second, in steps of 0.00833 s; explicit 9 s of a
-    /// core a simulated second, in steps of 1.4e-05 s; what vibrates faster than 9.5 Hz is damped".
+    /// Returns a text such as "implicit: 0.8 s of CPU time per simulated second, in steps of 0.00833 s; explicit: 9 s
+    /// of CPU time per simulated second, in steps of 1.4e-05 s; vibrations above 9.5 Hz are damped".
     std::string message() const;
 };
 

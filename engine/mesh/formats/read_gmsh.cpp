@@ -85,7 +85,7 @@ Header read_header(FileReader& reader) {
         header.version = 2;
     else
         reader.complain("version", in_quotes(version), "1, 2.0 to 2.2, or 4.1",
-                        "gmsh OLD.msh -3 -format msh41 -o NEW.msh writes it anew");
+                        "convert the file with: gmsh OLD.msh -3 -format msh41 -o NEW.msh");
     const std::int64_t type = reader.parse_integer(words[1], "file type"),
                        size = reader.parse_integer(words[2], "data size");
     if (type != 0 && type != 1) reader.complain("file type", std::to_string(type), "0 (ASCII) or 1 (binary)");
@@ -104,7 +104,7 @@ Header read_header(FileReader& reader) {
 
 void require_end(FileReader& reader, const std::string& mark) {
     if (const std::string_view end = reader.filled_line(mark.c_str()); end != mark)
-        reader.complain({}, in_quotes(end), mark, "more rows than the section announces?");
+        reader.complain({}, in_quotes(end), mark, "the section may have more rows than it announces");
 }
 
 /// Sets the labels of the tetrahedra: the physical groups, which users number. If no tetrahedron is in a physical

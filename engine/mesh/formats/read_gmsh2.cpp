@@ -84,7 +84,7 @@ void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh
     const std::size_t nodes = gmsh_node_count(type, reader);
     const std::int64_t tags = reader.parse_integer(words[2], "tag count");
     if (tags < 0 || tags > static_cast<std::int64_t>(words.size()))
-        reader.complain("tag count", std::to_string(tags), "as many tags as the line has");
+        reader.complain("tag count", std::to_string(tags), "a count of tags that fits the line");
     require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes, "number type tag-count tags nodes");
     GmshTags own;
     if (tags > 0) own.physical = reader.parse_integer(words[3], "physical group");

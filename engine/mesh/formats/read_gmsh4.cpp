@@ -67,7 +67,7 @@ std::vector<std::int64_t> read_tags(FileReader& reader, bool binary) {
 void require_total(const FileReader& reader, std::size_t found, std::int64_t announced) {
     if (found != static_cast<std::size_t>(announced))
         reader.complain("count of rows", std::to_string(announced) + " in the header", std::to_string(found),
-                        "as many as its blocks announce");
+                        "the sum of the counts of its blocks");
 }
 
 /// Reads a block of nodes: first the numbers of all its nodes, then their positions.
@@ -112,7 +112,8 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
     require_total(reader, mesh.nodes.size(), header[1]);
     if (!mesh.nodes.empty() && (header[2] != range[0] || header[3] != range[1]))
         reader.complain("header", "node numbers " + std::to_string(header[2]) + " to " + std::to_string(header[3]),
-                        std::to_string(range[0]) + " to " + std::to_string(range[1]), "the numbers its blocks list");
+                        std::to_string(range[0]) + " to " + std::to_string(range[1]),
+                        "the range of the numbers in its blocks");
 }
 
 GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {

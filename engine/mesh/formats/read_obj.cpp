@@ -12,8 +12,9 @@ Index parse_corner(const FileReader& reader, std::string_view word, std::size_t 
     const auto count = static_cast<std::int64_t>(node_count);
     const std::int64_t row = number < 0 ? count + number : number - 1;
     if (row < 0 || row >= count)
-        reader.complain("node", std::to_string(number),
-                        "1 to " + std::to_string(count) + ", the nodes so far, or the same from the end");
+        reader.complain(
+            "node", std::to_string(number),
+            "1 to " + std::to_string(count) + ", the nodes so far, or a negative number that counts from the end");
     return static_cast<Index>(row);
 }
 

@@ -154,7 +154,7 @@ private:
             case Kind::uint64:
                 return static_cast<std::int64_t>(reader_.binary<std::uint64_t>(field));
             default:
-                reader_.complain(field, "a type with fractions", "an integer type");
+                reader_.complain(field, "a floating-point type", "an integer type");
         }
     }
 
@@ -185,7 +185,7 @@ private:
     /// offsets of all cells, then all nodes.
     void read_cells(bool& has_rows) {
         if (!has_points_) reader_.complain({}, "cells before points", "the points first");
-        if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of its name", "one");
+        if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of the same name", "one");
         const std::size_t first = read_count("count", 1), second = read_count("size", 1);
         reader_.peek_word() == "OFFSETS" ? read_new_cells(first, second) : read_old_cells(first, second);
     }
@@ -202,13 +202,13 @@ private:
             const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
-                                 "what the size in the header leaves");
+                                 "the rest of the size in the header");
             for (std::int64_t a = 0; a < nodes; ++a) cell_nodes_.push_back(read_node(type));
             offsets_.push_back(offsets_.back() + static_cast<std::size_t>(nodes));
         }
         if (offsets_.back() + cells != size)
             reader_.complain("size", std::to_string(size) + " in the header", std::to_string(offsets_.back() + cells),
-                             "cells and their nodes");
+                             "the count of cells and their nodes");
     }
 
     void read_new_cells(std::size_t offsets, std::size_t size) {

@@ -17,7 +17,7 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
 void require_size(const char* name, Real value) {
     if (!(std::isfinite(value) && value > 0))
         throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
-                                    ", expected metres above 0");
+                                    ", expected a length above 0 (m)");
 }
 
 void require_count(const char* name, int value) {

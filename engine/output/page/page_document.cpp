@@ -140,7 +140,7 @@ void require_page_library(const std::filesystem::path& file) {
               .object = "page",
               .field = {},
               .found = "a build without three.js",
-              .expected = "one made with it",
+              .expected = "a build with three.js",
               .hint = "install libjs-three or set SKERRY_THREE_JS, then configure and build again"}
         .raise();
 }

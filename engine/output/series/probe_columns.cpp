@@ -82,7 +82,7 @@ void require_nodes(const World& world, BodyHandle body, std::span<const Index> n
     const auto count = static_cast<Index>(world.positions(body).size());
     for (const Index n : nodes)
         if (n < 0 || n >= count)
-            refuse("nodes", "node " + std::to_string(n), "nodes of the body, 0 to " + std::to_string(count - 1));
+            refuse("nodes", "node " + std::to_string(n), "node indices of the body, 0 to " + std::to_string(count - 1));
 }
 
 void require_weights(const PointProbe& point) {

@@ -68,7 +68,7 @@ std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Sc
         refuse_series(file, extension.empty() ? "a name without extension" : "the extension " + extension,
                       ".csv, .h5 or .hdf5");
     if (scene.recorded.empty())
-        refuse_series(file, "a scene without a probe that has a series", "one in \"probes\" with a quantity",
+        refuse_series(file, "a scene without a probe that has a series", "a probe in \"probes\" with a quantity",
                       "motion, force, reaction, energy, stress or volume; docs/outputs.md");
     if (csv) return std::make_unique<CsvSeries>(file, scene);
     return std::make_unique<Hdf5Series>(file, scene);

@@ -50,8 +50,9 @@ void check_names(const std::vector<RecordedProbe>& probes) {
             probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
         if (probe.name.empty() || probe.name == "." || probe.name == "time" || odd)
             refuse(probe.name, "name", "\"" + probe.name + "\"",
-                   "a text that is not \"time\", without / and control characters: it heads columns");
-        if (!names.insert(probe.name).second) refuse(probe.name, "name", "the name again", "a name of its own");
+                   "a text that is not \"time\", without / and control characters, because it heads columns");
+        if (!names.insert(probe.name).second)
+            refuse(probe.name, "name", "the name again", "a different name for every probe");
     }
 }
 
@@ -92,8 +93,8 @@ std::string rows_to_keep(const std::filesystem::path& file, const std::string& h
                   .object = "output",
                   .field = "first line",
                   .found = "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
-                  .expected = "the headings of the same probes, to go on with",
-                  .hint = "another file, or none there"}
+                  .expected = "the headings of the same probes, so that rows can be appended",
+                  .hint = "choose another file or delete this one"}
             .raise();
     std::string kept;
     for (std::size_t begin = head.size(), end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -163,7 +164,7 @@ struct Recorder::Impl {
                   .object = "output",
                   .field = {},
                   .found = "\"" + reason + "\" while writing a row",
-                  .expected = "room for it",
+                  .expected = "enough space for the row",
                   .hint = {}}
             .raise();
     }

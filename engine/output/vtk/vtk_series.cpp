@@ -131,7 +131,7 @@ void VtkSeries::remove_earlier() {
             Complaint{.file = file.string(),
                       .object = "output",
                       .field = {},
-                      .found = "\"" + error.message() + "\" on removing it, a file of an earlier run",
+                      .found = "\"" + error.message() + "\" while removing this file of an earlier run",
                       .expected = "a file that can be replaced",
                       .hint = {}}
                 .raise();

@@ -29,7 +29,7 @@ void require_values(const Model& model, std::size_t body, const char* call, cons
     const auto count = static_cast<std::size_t>(model.bodies.nodes[body].size());
     if (values.size() != count)
         refuse(call, field, std::to_string(values.size()) + " values",
-               std::to_string(count) + ", one a node of " + title_of_body(model, body));
+               std::to_string(count) + ", one for each node of " + title_of_body(model, body));
     for (std::size_t n = 0; n < values.size(); ++n)
         if (!values[n].allFinite())
             refuse(call, field, "a value that is not finite at node " + std::to_string(n), "finite numbers");
@@ -64,8 +64,9 @@ void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> posi
     if (fit.misfit > rounding * model.bodies.mean_edge[body]) {
         char misfit[32];
         std::snprintf(misfit, sizeof misfit, "%g", fit.misfit);
-        refuse(title_of_body(model, body), "position", std::string("a shape from which it differs by ") + misfit + " m",
-               "one that a rigid body has: moved and turned as a whole");
+        refuse(title_of_body(model, body), "position",
+               std::string("node positions that differ by ") + misfit + " m from the rigid shape",
+               "the shape of the rigid body, translated and rotated as a whole");
     }
     place_nodes(world, body, position);
     set_rigid_pose(model, body, fit.center, fit.rotation);
@@ -81,8 +82,8 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
     const std::vector<std::array<Index, 4>>& tetrahedra = model.body_records[body].tetrahedra;
     for (std::size_t t = 0; t < tetrahedra.size(); ++t)
         if (!(volume_sign(tetrahedra[t], position) > 0) && volume_sign(tetrahedra[t], now) > 0)
-            refuse(object, field, "a shape in which tetrahedron " + std::to_string(t) + " has no volume, or less",
-                   "one that turns none of them inside out");
+            refuse(object, field, "positions for which tetrahedron " + std::to_string(t) + " has a volume <= 0",
+                   "positions that invert no tetrahedron");
 }
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
@@ -173,7 +174,7 @@ void World::set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angu
     state_->settle();
     const auto row = static_cast<std::size_t>(state_->model.row(body, "set_velocity"));
     if (!velocity.allFinite() || !angular_velocity.allFinite())
-        refuse(title_of_body(state_->model, row), "velocity", "what is not finite", "finite numbers");
+        refuse(title_of_body(state_->model, row), "velocity", "a value that is not finite", "finite numbers");
     const Vec3 center = center_of_mass(body);
     std::vector<Vec3> of_nodes;
     for (const Vec3& x : positions(body)) of_nodes.push_back(velocity + angular_velocity.cross(x - center));

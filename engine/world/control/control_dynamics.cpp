@@ -31,17 +31,17 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
     const auto row = static_cast<Index>(body);
     if (next == BodyDynamics::automatic)
         refuse(model, body, "dynamics", "automatic",
-               "explicit, implicit or rigid: who adds a body is helped to choose");
+               "explicit, implicit or rigid (automatic is possible only when a body is added)");
     if (next != BodyDynamics::explicit_elastic && model.bodies.self_contact[body])
-        refuse(model, body, "self_contact", "true", "false, to become " + std::string(name_of(next)));
+        refuse(model, body, "self_contact", "true", "false, as required by the dynamics " + std::string(name_of(next)));
     if (model.bodies.core_nodes[body] > 0)
         refuse(model, body, "dynamics", std::string(name_of(next)),
-               "rigid: a " + std::string(model.round_name(body)) + " does not deform");
+               "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
-        refuse(model, body, "dynamics", "a change of what is attached", "one of a body that nothing holds");
+        refuse(model, body, "dynamics", "a change for an attached body", "a body without attachments");
     if (std::ranges::any_of(model.joints.first, is_of_body) || std::ranges::any_of(model.joints.second, is_of_body))
-        refuse(model, body, "dynamics", "a change of what has a joint", "one of a body without joints");
+        refuse(model, body, "dynamics", "a change for a body with joints", "a body without joints");
 }
 
 /// Centre of mass and momenta of a free body.

@@ -36,17 +36,18 @@ Index rigid_body_of(const Model& model, BodyHandle body, const char* field) {
 
 void validate_motor(const JointMotor& motor) {
     if (motor.speed.has_value() == motor.position.has_value())
-        refuse_joint("motor", motor.speed ? "a speed and a position" : "neither a speed nor a position", "one of them");
+        refuse_joint("motor", motor.speed ? "a speed and a position" : "neither a speed nor a position",
+                     "either a speed or a position");
     const Real target = motor.speed.value_or(motor.position.value_or(0));
     if (!std::isfinite(target)) refuse_joint("motor", std::to_string(target), "a finite speed or position");
     if (!(std::isfinite(motor.strength) && motor.strength >= 0))
-        refuse_joint("motor.strength", std::to_string(motor.strength), "the most that it exerts, >= 0 (N m or N)");
+        refuse_joint("motor.strength", std::to_string(motor.strength), "a largest torque or force >= 0 (N m or N)");
     if (!(motor.fastest > 0)) refuse_joint("motor.fastest", std::to_string(motor.fastest), "a speed > 0");
 }
 
 void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
-    if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or none");
-    if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or none");
+    if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or no limit");
+    if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or no limit");
     if (lower.value_or(-unbounded) > upper.value_or(unbounded))
         refuse_joint("lower", std::to_string(*lower), "at most upper, " + std::to_string(*upper));
 }
@@ -54,16 +55,16 @@ void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
 void validate_joint(const JointSettings& joint) {
     require_finite("joint", "point", joint.point);
     require_finite("joint", "axis", joint.axis);
-    if (!(joint.axis.norm() > 0)) refuse_joint("axis", "no length", "a direction");
+    if (!(joint.axis.norm() > 0)) refuse_joint("axis", "a vector of length 0", "a direction");
     if (has_axis(joint.kind)) {
         if (joint.motor) validate_motor(*joint.motor);
         validate_limits(joint.lower, joint.upper);
         return;
     }
     const std::string kind(name_of(joint.kind));
-    if (joint.motor) refuse_joint("motor", "one of a " + kind + " joint", "one of a hinge or slider");
+    if (joint.motor) refuse_joint("motor", "a motor on a " + kind + " joint", "a motor on a hinge or slider");
     if (joint.lower || joint.upper)
-        refuse_joint("lower, upper", "one of a " + kind + " joint", "those of a hinge or slider");
+        refuse_joint("lower, upper", "limits on a " + kind + " joint", "limits on a hinge or slider");
 }
 
 JointFrame frame_on(const Model& model, Index body, const Vec3& point, const Mat3& axes) {
@@ -127,7 +128,7 @@ JointHandle Joints::add(const JointSettings& joint) {
     validate_joint(joint);
     const Index first = rigid_body_of(model, joint.first, "first");
     const Index second = joint.second ? rigid_body_of(model, *joint.second, "second") : no_index;
-    if (first == second) refuse_joint("second", "the first body again", "another body, or none: the world");
+    if (first == second) refuse_joint("second", "the first body again", "another body, or none for the world");
     JointTable& table = model.joints;
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);
@@ -213,8 +214,8 @@ void Joints::set_motor(JointHandle joint, const std::optional<JointMotor>& motor
     Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(joint, "set_motor"));
     if (!has_axis(model.joints.kind[row]))
-        refuse_joint("motor", "one of a " + std::string(name_of(model.joints.kind[row])) + " joint",
-                     "one of a hinge or slider");
+        refuse_joint("motor", "a motor on a " + std::string(name_of(model.joints.kind[row])) + " joint",
+                     "a motor on a hinge or slider");
     if (motor) validate_motor(*motor);
     const JointMotorRow wanted = row_of(motor);
     if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == wanted) return;
@@ -229,8 +230,8 @@ void Joints::set_limits(JointHandle joint, std::optional<Real> lower, std::optio
     Model& model = state.model;
     const auto row = static_cast<std::size_t>(model.row(joint, "set_limits"));
     if (!has_axis(model.joints.kind[row]))
-        refuse_joint("lower, upper", "those of a " + std::string(name_of(model.joints.kind[row])) + " joint",
-                     "those of a hinge or slider");
+        refuse_joint("lower, upper", "limits on a " + std::string(name_of(model.joints.kind[row])) + " joint",
+                     "limits on a hinge or slider");
     validate_limits(lower, upper);
     const Real least = lower.value_or(-unbounded), most = upper.value_or(unbounded);
     if (model.joints.lower[row] == least && model.joints.upper[row] == most) return;

@@ -99,7 +99,8 @@ void weigh(Model& model, std::size_t body) {
 void require_changeable(const MaterialRow& now, const MaterialRow& next) {
     if (now.constants.model != next.constants.model)
         refuse("model", std::string(name_of(next.constants.model)),
-               std::string(name_of(now.constants.model)) + ": the law stays, a new material can have another");
+               std::string(name_of(now.constants.model)) +
+                   ", because the law of a material is fixed; for another law, add a new material");
 }
 
 }  // namespace

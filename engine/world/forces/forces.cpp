@@ -73,8 +73,8 @@ Forces World::forces() const {
         Complaint{.file = {},
                   .object = "forces",
                   .field = {},
-                  .found = "a world that does not measure them",
-                  .expected = "measure_forces(true) before the call of advance that they are asked of",
+                  .found = "a world that does not measure forces",
+                  .expected = "a call of measure_forces(true) before advance()",
                   .hint = {}}
             .raise();
     return Forces(*state_);

@@ -12,7 +12,7 @@ namespace {
 
 void expect_ascending(const Hdf5File& file, const std::string& path, const auto& keys) {
     if (std::ranges::adjacent_find(keys, std::greater_equal<>()) != keys.end())
-        file.complain(path, "keys in disorder", "ascending keys");
+        file.complain(path, "unsorted keys", "ascending keys");
 }
 
 /// Checks that a step length is positive. Denormal numbers are refused too, since a step treats them as zero.
@@ -37,9 +37,9 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     expect_size(file, "/warm_start/normal", warm.normal.size(), warm.key.size());
     if (!warm.point.empty()) expect_size(file, "/warm_start/point", warm.point.size(), warm.key.size());
     if (warm.step.size() > 1)
-        file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one, or none");
+        file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one row, or none");
     if (!warm.key.empty() && warm.step.empty())
-        file.complain("/warm_start/step", "nothing", "the step of the impulses");
+        file.complain("/warm_start/step", "no row", "the step size of the warm-start impulses");
     for (const Real step : warm.step) expect_step(file, "/warm_start/step", step);
     expect_ascending(file, "/warm_start/key", warm.key);
 
@@ -50,14 +50,14 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     expect_rows_of(file, "/pairs/first", pairs.first, bodies);
     for (std::size_t p = 0; p < count; ++p) {
         if (model.bodies.kind[pairs.first[p]] != BodyKind::deformable)
-            file.complain("/pairs/first", at_row(pairs.first[p], p), "a body that deforms");
+            file.complain("/pairs/first", at_row(pairs.first[p], p), "a body that is not a mesh collider");
         const bool of_collider = pairs.kind[p] == PairKind::collider;
         const Index second = pairs.second[p];
         expect_rows_of(file, "/pairs/second", {&second, 1}, of_collider ? colliders : bodies);
         if (of_collider && model.colliders.geometry[second].shape == ColliderShape::mesh)
-            file.complain("/pairs/second", at_row(second, p), "a collider that is no mesh");
+            file.complain("/pairs/second", at_row(second, p), "a collider without a mesh");
         if (pairs.kind[p] == PairKind::self && second != pairs.first[p])
-            file.complain("/pairs/second", at_row(second, p), "the same body");
+            file.complain("/pairs/second", at_row(second, p), "the same body as /pairs/first");
     }
 
     // A search column may be empty, which starts a new search. Otherwise it must have one row per object.
@@ -126,7 +126,7 @@ void check_rows(const Hdf5File& file, const Model& model, const std::string& gro
     for (const Stencil& stencil : contacts.stencil)
         expect_rows_of(file, group + "stencil/node", stencil.node, model.nodes.position.size());
     for (const Index region : contacts.region)
-        if (region < no_index) file.complain(group + "region", std::to_string(region), "a region, or -1");
+        if (region < no_index) file.complain(group + "region", std::to_string(region), "a region index, or -1");
 }
 
 }  // namespace

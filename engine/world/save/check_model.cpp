@@ -55,7 +55,7 @@ void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Hand
         ++named;
         if (slot_of_row[static_cast<std::size_t>(row[slot])] != slot)
             file.complain(path + "/row", "row " + std::to_string(row[slot]) + " in slot " + std::to_string(slot),
-                          "the row that has this slot");
+                          "the row with this slot");
     }
     std::size_t with_slot = 0;
     for (const std::uint32_t slot : slot_of_row) with_slot += slot != no_slot;
@@ -98,30 +98,32 @@ void check_bodies(const Hdf5File& file, const Model& model) {
         };
         const bool deforms = bodies.kind[b] == BodyKind::deformable;
         if (deforms != (bodies.material[b] != no_index))
-            complain("material", std::to_string(bodies.material[b]), "a material of what deforms, and -1 of colliders");
+            complain("material", std::to_string(bodies.material[b]), "a material for a body, -1 for a mesh collider");
         if (deforms != (bodies.collider[b] == no_index))
-            complain("collider", std::to_string(bodies.collider[b]), "a collider of what it moves, else -1");
+            complain("collider", std::to_string(bodies.collider[b]), "a collider for a mesh collider, -1 for a body");
         if (!deforms && (model.colliders.body[bodies.collider[b]] != static_cast<Index>(b) ||
                          model.colliders.slot[bodies.collider[b]] != bodies.slot[b]))
-            complain("collider", std::to_string(bodies.collider[b]), "the collider that has this body");
+            complain("collider", std::to_string(bodies.collider[b]), "the collider with this body");
         if (const Index count = bodies.tetrahedron_count[b];
             count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
-            complain("tetrahedron_count", std::to_string(count), "as many as the blocks hold");
-        if (bodies.nodes[b].size() == 0) complain("nodes", "none", "at least one");
+            complain("tetrahedron_count", std::to_string(count), "the number of tetrahedra in the blocks");
+        if (bodies.nodes[b].size() == 0) complain("nodes", "no nodes", "at least one node");
         const Index core = bodies.core_nodes[b];
         if (core > 0 && (bodies.rigid[b].size() != 1 || bodies.implicit[b].size() > 0))
-            complain("core_nodes", std::to_string(core), "0 of a body that is not rigid");
+            complain("core_nodes", std::to_string(core), "0 for a body that is not rigid");
         if (core > bodies.nodes[b].size())
-            complain("core_nodes", std::to_string(core), "no more than the body has nodes");
+            complain("core_nodes", std::to_string(core), "at most the number of nodes of the body");
         if ((core > 0) != (bodies.round_radius[b] > 0))
-            complain("round_radius", std::to_string(bodies.round_radius[b]), "a length > 0 of what has a core, else 0");
+            complain("round_radius", std::to_string(bodies.round_radius[b]), "a length > 0 if core_nodes > 0, else 0");
         if (bodies.rigid[b].size() > (deforms ? 1 : 0))
-            complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows", "one of a rigid body, else none");
+            complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows",
+                     "at most one row for a body, none for a mesh collider");
         if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)
-            complain("blocks", std::to_string(bodies.blocks[b].size()), "none of a rigid body");
+            complain("blocks", std::to_string(bodies.blocks[b].size()), "0 for a rigid body");
         const Index implicit = bodies.implicit[b].size();
         if (implicit > 0 && (bodies.rigid[b].size() == 0 || implicit != bodies.nodes[b].size()))
-            complain("implicit", std::to_string(implicit) + " rows", "one a node of a body with a row of rigid_bodies");
+            complain("implicit", std::to_string(implicit) + " rows",
+                     "one row for each node, and none without a row of rigid_bodies");
     }
 }
 
@@ -131,7 +133,7 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     const ElementBlockTable& elements = model.elements;
     const auto expect_body = [&](const char* path, Index found, std::size_t body, Index row) {
         if (found != static_cast<Index>(body))
-            file.complain(path, at_row(found, row), "body " + std::to_string(body) + ", whose range it is in");
+            file.complain(path, at_row(found, row), "body " + std::to_string(body) + ", whose range contains this row");
     };
     const auto expect_nodes = [&](const char* path, const NodeLane& lanes, Range nodes, Index row) {
         for (const Index n : lanes.lane)
@@ -150,13 +152,12 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             expect_body("/node_blocks/body", blocks.body[k], b, k);
             if (blocks.begin[k] != next || blocks.end[k] <= next || blocks.end[k] - next > nodes_per_block ||
                 blocks.end[k] > nodes.end)
-                file.complain("/node_blocks/end", at_row(blocks.end[k], k),
-                              "blocks of at most 256 nodes that follow each other");
+                file.complain("/node_blocks/end", at_row(blocks.end[k], k), "consecutive blocks of at most 256 nodes");
             next = blocks.end[k];
         }
         if (next != step_nodes_of(nodes, model.bodies.core_nodes[b]).end)
             file.complain("/node_blocks/end", std::to_string(next),
-                          "all nodes of a body, 13 of a sphere or 12 of a capsule");
+                          "blocks of all nodes of a body (13 of a sphere, 12 of a capsule)");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
             for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)
@@ -169,12 +170,14 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             if (elements.first[e] != first || elements.count[e] < fewest_nodes ||
                 elements.count[e] > rows.end - elements.first[e])
                 file.complain("/elements/count", at_row(elements.count[e], e),
-                              "rows of /element_nodes that follow each other, four or more");
+                              "four or more consecutive rows of /element_nodes");
             first += elements.count[e];
             if (!elements.opens_patch[e] && e == of_body.begin)
-                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e), "1 where a body begins");
+                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e),
+                              "1 in the first block of a body");
         }
-        if (first != rows.end) file.complain("/elements/count", std::to_string(first), "all rows of a body");
+        if (first != rows.end)
+            file.complain("/elements/count", std::to_string(first), "blocks of all rows of a body in /element_nodes");
     }
     expect_rows_of(file, "/elements/material", elements.material, model.materials.slot.size());
 }
@@ -184,14 +187,15 @@ void check_scripts(const Hdf5File& file, const std::string& table, const auto& r
         const MotionScript& script = rows.script[i];
         if (script.key_begin < 0 || script.key_end < script.key_begin ||
             script.key_end > static_cast<Index>(rows.keyframe.size()))
-            file.complain("/" + table + "/script/key_end",
-                          std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
-                              std::to_string(i),
-                          "a range of /" + table + "/keyframe, which has " + std::to_string(rows.keyframe.size()));
+            file.complain(
+                "/" + table + "/script/key_end",
+                std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
+                    std::to_string(i),
+                "a range of /" + table + "/keyframe, whose number of rows is " + std::to_string(rows.keyframe.size()));
         for (Index k = script.key_begin + 1; k < script.key_end; ++k)
             if (!(rows.keyframe[k].time > rows.keyframe[k - 1].time))
                 file.complain("/" + table + "/keyframe",
-                              "a time that is not later than the one before, at row " + std::to_string(k),
+                              "a time that is not after the previous time, at row " + std::to_string(k),
                               "ascending times");
     }
 }
@@ -201,7 +205,7 @@ void check_moved(const Hdf5File& file, const Model& model) {
     for (std::size_t c = 0; c < model.colliders.slot.size(); ++c) {
         const Index body = model.colliders.body[c];
         if (body != no_index && model.bodies.collider[body] != static_cast<Index>(c))
-            file.complain("/colliders/body", at_row(body, c), "the body that has this collider");
+            file.complain("/colliders/body", at_row(body, c), "the body with this collider");
     }
     check_scripts(file, "colliders", model.colliders);
     const AttachmentTable& attachments = model.attachments;
@@ -229,7 +233,7 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
                                               : lives(model.body_map, slots.second) && slots.first < slots.second);
         if (!named || (i > 0 && !(keys[i - 1] < keys[i])))
             file.complain("/disabled_pairs/key", at_row(std::to_string(keys[i]), i),
-                          "pairs of two bodies, or of a body and a collider, that are there, ascending");
+                          "ascending keys of pairs of existing objects: two bodies, or a body and a collider");
     }
 }
 
@@ -256,7 +260,7 @@ void check_clusters(const Hdf5File& file, Model& model) {
     if (offset[0] != 0 || !std::ranges::is_sorted(offset) ||
         offset.back() != static_cast<Index>(clusters.nodes.item.size()))
         file.complain("/clusters/nodes/offset", "offsets that do not ascend from 0 to the number of items",
-                      "where each cluster begins, and the end");
+                      "ascending offsets from 0 to the number of items");
     clusters.cluster_of.assign(model.nodes.position.size(), no_index);
     clusters.place.assign(model.nodes.position.size(), no_index);
     std::size_t entries = 0;
@@ -290,15 +294,17 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
             file.complain(std::string("/rigid_bodies/") + column, found + (" at row " + std::to_string(r)), expected);
     };
     for (std::size_t r = 0; r < table.size(); ++r) {
-        require(table.mass[r] > 0 && std::isfinite(table.mass[r]), "mass", r, "no mass", "a mass > 0 (kg)");
-        require(table.moments[r].allFinite() && table.moments[r].minCoeff() > 0, "moments", r, "a moment that is none",
-                "three moments of inertia > 0 (kg m^2)");
-        require(is_rotation(table.axes[r]), "axes", r, "no rotation", "a rotation matrix");
-        require(is_rotation(table.rotation[r]), "rotation", r, "no rotation", "a rotation matrix");
-        require(table.rest_center[r].allFinite() && table.center[r].allFinite(), "center", r, "no place", "numbers");
+        require(table.mass[r] > 0 && std::isfinite(table.mass[r]), "mass", r, "a mass that is not positive and finite",
+                "a mass > 0 (kg)");
+        require(table.moments[r].allFinite() && table.moments[r].minCoeff() > 0, "moments", r,
+                "a moment of inertia that is not positive and finite", "three moments of inertia > 0 (kg m^2)");
+        require(is_rotation(table.axes[r]), "axes", r, "a matrix that is not a rotation", "a rotation matrix");
+        require(is_rotation(table.rotation[r]), "rotation", r, "a matrix that is not a rotation", "a rotation matrix");
+        require(table.rest_center[r].allFinite() && table.center[r].allFinite(), "center", r,
+                "a position that is not finite", "finite numbers");
         require(table.momentum[r].allFinite() && table.angular_momentum[r].allFinite(), "momentum", r,
-                "what is not finite", "numbers");
-        require(table.large[r] <= 1, "large", r, "what is neither", "0 or 1");
+                "a value that is not finite", "finite numbers");
+        require(table.large[r] <= 1, "large", r, "another value", "0 or 1");
     }
 }
 
@@ -323,27 +329,28 @@ void check_joints(const Hdf5File& file, const Model& model) {
         const auto is_rigid = [&](Index body) {
             return body == no_index || model.is_rigid(static_cast<std::size_t>(body));
         };
-        require(table.first[j] != no_index && is_rigid(table.first[j]), "first", "the world or a body that deforms",
+        require(table.first[j] != no_index && is_rigid(table.first[j]), "first", "the world or a deformable body",
                 "a rigid body");
         require(is_rigid(table.second[j]) && table.second[j] != table.first[j], "second",
-                "a body that deforms, or the first again", "another rigid one, or -1: the world");
+                "a deformable body or the first body again", "another rigid body, or -1 for the world");
         for (const JointFrame& frame : {table.first_frame[j], table.second_frame[j]})
-            require(frame.point.allFinite() && is_rotation(frame.axes), "first_frame, second_frame", "no frame",
+            require(frame.point.allFinite() && is_rotation(frame.axes), "first_frame, second_frame", "an invalid frame",
                     "a point and a rotation matrix");
-        require(table.lower[j] <= table.upper[j], "lower", "more than upper", "at most upper");
-        require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "less than nothing",
+        require(table.lower[j] <= table.upper[j], "lower", "a number above upper", "a number <= upper");
+        require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
-        require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "what is not finite",
-                "numbers");
+        require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",
+                "finite numbers");
     }
 }
 
 void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
-        const std::string found = "what is not finite at row " + std::to_string(row);
-        if (!table.displacement[row].allFinite()) file.complain("/implicit_nodes/displacement", found, "numbers (m)");
-        if (!table.velocity[row].allFinite()) file.complain("/implicit_nodes/velocity", found, "numbers (m/s)");
-        if (!table.left[row].allFinite()) file.complain("/implicit_nodes/left", found, "numbers (m)");
+        const std::string found = "a value that is not finite at row " + std::to_string(row);
+        if (!table.displacement[row].allFinite())
+            file.complain("/implicit_nodes/displacement", found, "finite numbers (m)");
+        if (!table.velocity[row].allFinite()) file.complain("/implicit_nodes/velocity", found, "finite numbers (m/s)");
+        if (!table.left[row].allFinite()) file.complain("/implicit_nodes/left", found, "finite numbers (m)");
     }
 }
 

@@ -25,7 +25,7 @@ std::string at_row(Index found, std::size_t row) {
 void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected) {
     if (found != expected)
         file.complain(std::string(path), std::to_string(found) + " rows",
-                      std::to_string(expected) + ", as its table has");
+                      std::to_string(expected) + ", the number of rows of its table");
 }
 
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows) {
@@ -44,7 +44,7 @@ void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const
     for (std::size_t i = 0; i < rows.size(); ++i)
         if ((rows[i] < 0 && !(none && rows[i] == no_index)) || rows[i] >= static_cast<Index>(count))
             file.complain(std::string(path), at_row(rows[i], i),
-                          "a row of " + std::to_string(count) + (none ? ", or -1" : ""));
+                          "a row index below " + std::to_string(count) + (none ? ", or -1" : ""));
 }
 
 void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most) {
@@ -65,12 +65,12 @@ void expect_partition(const Hdf5File& file, std::string_view path, std::span<con
         if (ranges[i].begin != end || ranges[i].end < end)
             file.complain(std::string(path),
                           at_row(std::to_string(ranges[i].begin) + " to " + std::to_string(ranges[i].end), i),
-                          "a range that begins at " + std::to_string(end) + ", where the one before ends");
+                          "a range that begins at " + std::to_string(end) + ", the end of the previous range");
         end = ranges[i].end;
     }
     if (end != static_cast<Index>(count))
         file.complain(std::string(path), "ranges that end at " + std::to_string(end),
-                      std::to_string(count) + ", the rows there are");
+                      std::to_string(count) + ", the number of rows");
 }
 
 }  // namespace skerry

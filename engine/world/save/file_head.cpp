@@ -45,7 +45,8 @@ void check_head(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) refuse_file(file, "no such file", expected_file());
-    if (!std::filesystem::is_regular_file(status)) refuse_file(file, "something that is no file", expected_file());
+    if (!std::filesystem::is_regular_file(status))
+        refuse_file(file, "something that is not a regular file", expected_file());
     std::ifstream in(file, std::ios::binary);
     if (!in) refuse_file(file, "a file that cannot be read", expected_file());
     std::string head(head_bytes, '\0');
@@ -61,11 +62,11 @@ void check_head(const std::filesystem::path& file) {
     const std::size_t second_line = head.find('\n');
     if (head.size() != head_bytes || second_line == std::string::npos ||
         std::sscanf(head.c_str() + second_line + 1, "An HDF5 file of %" SCNu64, &bytes) != 1)
-        refuse_file(file, "a head that is damaged", expected_file());
+        refuse_file(file, "a damaged header", expected_file());
     const std::uint64_t size = std::filesystem::file_size(file, error);
     if (error || size != head_bytes + bytes)
         refuse_file(file, std::to_string(size) + " bytes", std::to_string(head_bytes + bytes),
-                    size < head_bytes + bytes ? "the end is missing" : "something follows");
+                    size < head_bytes + bytes ? "the end is missing" : "there are more bytes after the end");
 
     Hash hash;
     std::vector<char> part(1 << 20);
@@ -77,7 +78,7 @@ void check_head(const std::filesystem::path& file) {
         left -= static_cast<std::uint64_t>(count);
     }
     if (head != text_of(bytes, hash.value()))
-        refuse_file(file, "bytes that do not have the checksum in its head", "the bytes that were written",
+        refuse_file(file, "bytes that do not match the checksum in the header", "the bytes that Skerry saved",
                     "the file is damaged");
 }
 

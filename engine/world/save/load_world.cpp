@@ -60,7 +60,7 @@ private:
 
     void put_value(const std::string& path, void* value, const RowType& type) override {
         read(path, type, [&](std::size_t count) {
-            if (count != 1) file_.complain(path, std::to_string(count) + " rows", "one");
+            if (count != 1) file_.complain(path, std::to_string(count) + " rows", "one row");
             return static_cast<std::byte*>(value);
         });
     }
@@ -145,7 +145,7 @@ World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader,
         validate(settings);
         validate(tuning);
     } catch (const SceneError& error) {
-        file.complain("/settings", error.what(), "settings that a world takes");
+        file.complain("/settings", error.what(), "valid settings");
     }
     const std::span<const Backend> here = available_backends();
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
@@ -185,7 +185,7 @@ void expect_hash(const Hdf5File& file, WorldState& world, Reader& reader) {
     char text[2][20];
     std::snprintf(text[0], sizeof text[0], "%016" PRIx64, found);
     std::snprintf(text[1], sizeof text[1], "%016" PRIx64, saved);
-    if (found != saved) file.complain("/state_hash", text[1], text[0], "the hash of what the file holds");
+    if (found != saved) file.complain("/state_hash", text[1], text[0], "the hash of the contents of the file");
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMe
 void expect_rows(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
                  const char* of) {
     if (found != expected)
-        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", as many as there are " + of);
+        file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
 }
 
 template <class T>
@@ -138,7 +138,7 @@ void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T
                        : offset[0] != 0 || !std::ranges::is_sorted(offset) ||
                              offset.back() != static_cast<Index>(rows.item.size()))
         file.complain(path + "/offset", "offsets that do not ascend from 0 to the number of items",
-                      "where each row begins, and the end");
+                      "ascending offsets from 0 to the number of items");
 }
 
 /// Checks that a saved mesh could be added to a world.
@@ -152,7 +152,7 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
                 if (n < 0 || n >= count)
                     file.complain(std::string("/meshes/") + field,
                                   "node " + std::to_string(n) + " of mesh " + std::to_string(m),
-                                  "a node of its " + std::to_string(count));
+                                  "a node index below " + std::to_string(count));
     };
     expect_corners("tetrahedra", parts.tetrahedra);
     expect_corners("surface", parts.surface);
@@ -166,7 +166,7 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
                 SurfaceMesh{{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}},
                 ColliderSettings{});
     } catch (const SceneError& error) {
-        file.complain(path, "mesh " + std::to_string(m) + " (" + error.what() + ")", "a mesh that a world takes");
+        file.complain(path, "mesh " + std::to_string(m) + " (" + error.what() + ")", "a valid mesh");
     }
 }
 
@@ -175,12 +175,12 @@ void check_cover(const MeshParts& parts, std::size_t places, const std::string& 
     const std::span<const Index> offset = parts.covered_offset;
     if (offset.size() != places + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
         offset.back() != static_cast<Index>(parts.covered_item.size()))
-        file.complain("/meshes/covered_offset", "offsets that do not fit to the elements of " + body,
-                      std::to_string(places + 1) + " that ascend from 0 to the number of items");
+        file.complain("/meshes/covered_offset", "offsets that do not match the elements of " + body,
+                      std::to_string(places + 1) + " ascending offsets from 0 to the number of items");
     for (const Index t : parts.covered_item)
         if (t < 0 || t >= static_cast<Index>(parts.tetrahedra.size()))
             file.complain("/meshes/covered_item", "tetrahedron " + std::to_string(t) + " of " + body,
-                          "one of its " + std::to_string(parts.tetrahedra.size()));
+                          "a tetrahedron index below " + std::to_string(parts.tetrahedra.size()));
 }
 
 /// Makes a handle from its saved parts. A null handle has no world number.
@@ -272,7 +272,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
     expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
     expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
-    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world");
+    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world, which is > 0");
     model.set_world(saved.world);
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
@@ -281,14 +281,14 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         const std::string body = "body " + std::to_string(b);
         const Index m = meshes.of_body[b];
         if (m < 0 || m >= static_cast<Index>(count))
-            file.complain("/meshes/of_body", std::to_string(m) + " of " + body,
-                          "a row of " + std::to_string(count) + " meshes");
+            file.complain("/meshes/of_body", std::to_string(m) + " for " + body,
+                          "the index of one of the " + std::to_string(count) + " meshes");
         const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(m));
         const Range nodes = model.bodies.nodes[b];
         const bool deforms = model.bodies.kind[b] == BodyKind::deformable;
         if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) || deforms == parts.tetrahedra.empty() ||
             static_cast<Index>(parts.tetrahedra.size()) != model.bodies.tetrahedron_count[b])
-            file.complain("/meshes/of_body", "a mesh of another size for " + body, "one that fits to /bodies");
+            file.complain("/meshes/of_body", "a mesh of another size for " + body, "a mesh whose size matches /bodies");
         check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
         std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
         BodyRecord& record = model.body_records.emplace_back();
@@ -298,13 +298,13 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         record.settled = saved.body_settled[b] != 0;
         const std::array<Real, 7>& e = saved.choice_estimate[b];
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
-            file.complain("/records/choice_estimate", "a number below zero, or none, of " + body, "numbers from 0 on");
+            file.complain("/records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");
         record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         record.surface.assign(parts.surface.begin(), parts.surface.end());
         const std::span<const Index> materials = saved.tetrahedron_material[b];
         if (!materials.empty() && materials.size() != parts.tetrahedra.size())
-            file.complain("/records/tetrahedron_material", std::to_string(materials.size()) + " of " + body,
+            file.complain("/records/tetrahedron_material", std::to_string(materials.size()) + " materials for " + body,
                           "none, or one for each of " + std::to_string(parts.tetrahedra.size()) + " tetrahedra");
         record.tetrahedron_material.assign(materials.begin(), materials.end());
         for (const Index at : parts.covered_offset) record.element_tetrahedra.offset.push_back(at);
@@ -321,7 +321,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         if ((body == no_index) == (saved.shape_kind[c] == ColliderShape::mesh) ||
             model.colliders.geometry[c].shape != saved.shape_kind[c])
             file.complain("/records/shape_kind", "another shape of collider " + std::to_string(c),
-                          "that of /colliders/geometry/shape");
+                          "the shape in /colliders/geometry/shape");
         if (body != no_index) {
             const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(meshes.of_body[body]));
             mesh = {{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}};
@@ -330,8 +330,9 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         try {
             validate(shape, ColliderSettings{});
         } catch (const SceneError& error) {
-            file.complain("/records/shape_size", "a shape of collider " + std::to_string(c) + " (" + error.what() + ")",
-                          "one that a world takes");
+            file.complain("/records/shape_size",
+                          "an invalid shape of collider " + std::to_string(c) + " (" + error.what() + ")",
+                          "a valid shape");
         }
         model.collider_records.push_back(
             {text_of(saved.collider_name[c]), std::move(shape), saved.collider_settled[c] != 0});

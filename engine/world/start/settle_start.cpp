@@ -45,7 +45,8 @@ public:
         std::vector<PairOverlap> found(overlaps.begin(), overlaps.end());
         constexpr int most_rounds = 100;
         for (int round = 0; !found.empty(); ++round, others_ = 0) {
-            if (round == most_rounds) refuse(found.front(), "what is around them leaves no room");
+            if (round == most_rounds)
+                refuse(found.front(), "the surrounding bodies and colliders leave no room to move them apart");
             for (const PairOverlap& each : found) {
                 require_way_out(each);
                 ask_for(each);
@@ -97,20 +98,20 @@ private:
                                 model_.bodies.kind[found.pair.second] == BodyKind::kinematic;
         if (in_surface)
             refuse(found,
-                   "a mesh collider is what its surface goes around; one that holds bodies, as a room does, has "
-                   "its triangles counter-clockwise seen from inside");
-        if (found.overlap.kind != OverlapKind::crossing) refuse(found, "which way out is meant cannot be told");
+                   "a mesh collider is solid inside its surface; to use it as a container, orient its triangles "
+                   "counter-clockwise as seen from inside");
+        if (found.overlap.kind != OverlapKind::crossing) refuse(found, "the way out is ambiguous");
         if (found.overlap.depth > deepest(found.pair))
-            refuse(found, "that is more than half of the thinner one, so that which way out is meant cannot be told");
+            refuse(found, "the depth exceeds half the thickness of the thinner object, so the way out is ambiguous");
         if (!(mobility(found.pair.first) + mobility_of_second(found.pair) > 0))
-            refuse(found, "neither may be moved: bodies that are attached or have made a step stay where they are");
+            refuse(found, "neither can be moved: attached bodies and bodies that have made a step keep their position");
     }
 
     void require_near(const PairOverlap& found) const {
         const auto check = [&](Index body) {
             if (search_.shift(body).norm() > search_.extent(body).maxCoeff())
                 refuse(found, "'" + model_.body_records[static_cast<std::size_t>(body)].name +
-                                  "' would have to go further than it is long");
+                                  "' would have to move farther than its own size");
         };
         check(found.pair.first);
         if (!found.pair.is_analytic) check(found.pair.second);

@@ -34,9 +34,9 @@ std::string StartOverlap::message() const {
         case OverlapKind::crossing:
             return both + " overlap by " + text(depth) + " m" + where;
         case OverlapKind::inside:
-            return one + " is inside " + other + where + ", " + text(depth) + " m from being out of it";
+            return one + " is inside " + other + where + ", " + text(depth) + " m deep";
         case OverlapKind::around:
-            return other + " is inside " + one + where + ", " + text(depth) + " m from being out of it";
+            return other + " is inside " + one + where + ", " + text(depth) + " m deep";
         case OverlapKind::coincident:
             return both + " coincide" + where;
     }
@@ -54,9 +54,9 @@ void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::
               .field = {},
               .found = "an overlap: " + overlap.message() + rest,
               .expected = "bodies that are apart from each other and from colliders",
-              .hint = why + "; '" + (second_leaves ? overlap.second_name : overlap.first_name) + "' is out " +
-                      text(overlap.depth) + " m along " + text(direction) +
-                      "; start_overlaps \"ignore\" begins as it is"}
+              .hint = why + "; to remove this overlap, move '" +
+                      (second_leaves ? overlap.second_name : overlap.first_name) + "' by " + text(overlap.depth) +
+                      " m along " + text(direction) + ", or set start_overlaps to \"ignore\" to start with it"}
         .raise();
 }
 

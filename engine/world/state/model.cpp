@@ -17,7 +17,7 @@ namespace {
               .object = call,
               .field = kind,
               .found = "a handle to nothing",
-              .expected = "one that lives in this world",
+              .expected = "a handle to an existing object of this world",
               .hint = "it was removed, or made in another world"}
         .raise();
 }

@@ -156,13 +156,14 @@ TEST_CASE("every malformed global file is refused by name of what is wrong", "[u
                }),
                {"G", "equality constraints"});
     check_says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }),
-               {"M", "-2", "diagonal of freedom 0", "positive definite"});
-    check_says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }), {"M", "not symmetric", "freedom 3", "freedom 4"});
+               {"M", "-2", "diagonal of degree of freedom 0", "positive definite"});
+    check_says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }),
+               {"M", "not symmetric", "degree of freedom 3", "degree of freedom 4"});
     // [4 4; 4 4] and its neighbour: singular, then indefinite
     check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 4; }),
-               {"M", "not positive definite", "freedom 3"});
+               {"M", "not positive definite", "degree of freedom 3"});
     check_says(spoil([](auto& f) { f.reals["M/x"][4] = f.reals["M/x"][5] = 40; }),
-               {"M", "not positive definite", "freedom 3"});
+               {"M", "not positive definite", "degree of freedom 3"});
 }
 
 TEST_CASE("an empty set of equality constraints is none", "[unit][problem]") {

@@ -50,11 +50,11 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
          {"W", "vectors", "spacedim", "W/m", "W/n", "W/nz", "W/nzmax", "W/p", "W/i", "W/x", "vectors/q", "vectors/mu"})
         check_says(spoil([&](auto& f) { f.leave_out(name); }), {fs::path(name).filename().c_str(), "nothing"});
     check_says(spoil([](auto& f) { f.root = "something"; }),
-               {"fclib_local", "nothing", "a group", "no contact problem"});
+               {"fclib_local", "nothing", "a group", "no FCLIB contact problem"});
     check_says(spoil([](auto& f) { f.empty_groups = {"V"}; }), {"V", "equality constraints"});
     check_says(spoil([](auto& f) { f.integers["W/m"] = f.integers["W/n"] = {7}; }), {"W", "m", "7", "multiple of 3"});
     check_says(spoil([](auto& f) { f.integers["W/m"] = {0}; }), {"W", "m", "0"});
-    check_says(spoil([](auto& f) { f.integers["W/m"] = {-3}; }), {"W", "m", "-3", "a size"});
+    check_says(spoil([](auto& f) { f.integers["W/m"] = {-3}; }), {"W", "m", "-3", "a number of rows >= 0"});
     check_says(spoil([](auto& f) { f.integers["W/n"] = {9}; }), {"n", "9", "6"});
     check_says(spoil([](auto& f) { f.integers["W/nz"] = {-3}; }), {"nz", "-3"});
     check_says(spoil([](auto& f) { f.integers["W/p"].pop_back(); }), {"W", "p", "6 values", "7"});
@@ -108,12 +108,12 @@ std::string refusal_of_empty_q(hid_t type, hsize_t size) {
 TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for",
           "[unit][problem]") {
     CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 2000000000),
-               Catch::Contains("2000000000 values, expected values that the file can hold"));
+               Catch::Contains("2000000000 values, expected as many values as the file has room for"));
     const hid_t wide = H5Tcopy(H5T_NATIVE_INT);
     H5Tset_size(wide, 1000000);
     CHECK_THAT(refusal_of_empty_q(wide, 6), Catch::Contains("values of 1000000 bytes, expected numbers"));
     H5Tclose(wide);
-    CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 6), Catch::Contains("fewer bytes than 6 values take"));
+    CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 6), Catch::Contains("fewer bytes than 6 values need"));
 }
 
 TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {

@@ -146,7 +146,7 @@ class ProgramTest(ProgramCase):
         protected = self.write("protected.json", "precious")
         protected.chmod(0o444)
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
-        self.assert_refused("run", endless, "--stats", protected, said=["protected.json", "protected against writing"])
+        self.assert_refused("run", endless, "--stats", protected, said=["protected.json", "a write-protected file"])
         self.assertEqual(protected.read_text(), "precious")
         with socket.socket(socket.AF_UNIX) as made:
             made.bind(str(self.folder / "socket"))

@@ -187,12 +187,12 @@ TEST_CASE("bad probes are refused by name, field, what was found and what was ex
     refused({"a/b", EnergyProbe{}}, "without /");
     refused({"line\nbreak", EnergyProbe{}}, "control characters");
     refused({"time", EnergyProbe{}}, "not \"time\"");
-    refused({"gone", BodyProbe{}}, "one that lives in this world");
-    refused({"gone", VolumeProbe{}}, "one that lives in this world");
-    refused({"gone", StressProbe{}}, "one that lives in this world");
-    refused({"gone", ReactionProbe{}}, "one that lives in this world");
-    refused({"gone", ColliderForceProbe{}}, "one that lives in this world");
-    refused({"gone", BodyForceProbe{swing.bar, BodyHandle{}}}, "one that lives in this world");
+    refused({"gone", BodyProbe{}}, "a handle to an existing object of this world");
+    refused({"gone", VolumeProbe{}}, "a handle to an existing object of this world");
+    refused({"gone", StressProbe{}}, "a handle to an existing object of this world");
+    refused({"gone", ReactionProbe{}}, "a handle to an existing object of this world");
+    refused({"gone", ColliderForceProbe{}}, "a handle to an existing object of this world");
+    refused({"gone", BodyForceProbe{swing.bar, BodyHandle{}}}, "a handle to an existing object of this world");
     refused({"node", StressProbe{swing.bar, {0, 4000}}}, "node 4000");
     refused({"node", StressProbe{swing.bar, {-1}}}, "node -1");
     refused({"weights", PointProbe{swing.bar, {0, 1, 2, 3}, {1, 1, 0, 0}}}, "sum is 2");

@@ -51,7 +51,7 @@ TEST_CASE("text that is not JSON is refused with its line and column", "[unit]")
         {"missing brace", "{\n  \"name\": \"a\",\n  \"seconds\": 2\n", {"line 4, column 1", "not valid JSON"}},
         {"missing comma", "{\n  \"name\": \"a\"\n  \"seconds\": 2}", {"line 3, column", "not valid JSON"}},
         {"trailing comma", "{\"name\": \"a\",}", {"line 1, column 14", "not valid JSON"}},
-        {"comment", "{\n// a comment\n}", {"line 2", "comments are not JSON"}},
+        {"comment", "{\n// a comment\n}", {"line 2", "JSON has no comments"}},
         {"NaN", "{\"seconds\": NaN}", {"line 1, column", "JSON has no NaN"}},
         {"infinity", "{\"seconds\": 1e999}", {"seconds: found the number 1e999", "expected a finite number"}},
         {"infinity in a list",
