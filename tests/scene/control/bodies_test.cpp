@@ -105,7 +105,7 @@ TEST_CASE("whether any body has loads is known after each is set, added and remo
     TwoBalls scene;
     World& world = scene.world;
     const std::vector<Vec3> some(scene.mesh.nodes.size(), Vec3(0, 0, 1e-3)), none(some.size(), Vec3::Zero());
-    const auto loaded = [&] { return WorldAccess::state_of(world).model.loaded; };
+    const auto loaded = [&] { return WorldAccess::state_of(world).model.forced; };
     CHECK_FALSE(loaded());
     world.set_loads(scene.first, some);
     world.set_loads(scene.first, some);
