@@ -15,7 +15,7 @@ namespace {
 // 2 to 12 contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). The ratios decide the order of
 // regions; the absolute values decide only the size of tasks [microseconds]
 constexpr Real single_cost = 0.06;
-constexpr Real region_cost = 0.1, contact_cost = 0.06;  // load, measure the warm start, write back
+constexpr Real region_cost = 0.1, contact_cost = 0.06;  // costs of loading, measuring the warm start and writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
 constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1 microsecond
 // With this number of tasks, the last worker finishes late by at most an eighth of the total time.
@@ -23,12 +23,12 @@ constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
 constexpr Real forgetting = 0.3;  // weight of the last step in the moving average of the sweeps
-constexpr Real caution = 1.2;     // factor on the moving average
+constexpr Real caution = 1.2;     // the prediction is this multiple of the moving average
 constexpr Real fewest_sweeps = 4;
 // Prediction for new regions: first_sweeps + sweeps_of_size times the square root of the number of contacts.
 constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
-constexpr std::size_t regions_per_block = 256;  // a block takes some microseconds
+constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes some microseconds
 
 /// Number of contacts plus number of joint blocks of a region.
 Index contact_count(const RegionTable& regions, Index region) {

@@ -10,11 +10,12 @@ namespace {
 constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_used
 constexpr Index tail_bin = colour_limit;  // bin of the tail; the bins of the hubs follow
 
-/// Number of blocks of a colour with this many contacts. Blocks have at most 64 contacts, and 2, 4, 8 or 16 workers can
-/// share them without remainder. Solving a block takes a microsecond; claiming a block takes a twentieth of that.
+/// Number of blocks into which a colour with this many contacts is divided. A block has at most 64 contacts. The number
+/// is a power of two or a multiple of 16, so that 2, 4, 8 or 16 workers get equal shares. Solving a block takes a
+/// microsecond; claiming a block takes a twentieth of a microsecond.
 Index blocks_of_colour(Index contacts) {
-    constexpr std::uint32_t most_contacts = 64,
-                            even = 16;  // `even`: number of workers that can share a phase without remainder
+    // `even`: largest number of workers that share a phase without remainder
+    constexpr std::uint32_t most_contacts = 64, even = 16;
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
     return static_cast<Index>(least <= even ? std::bit_ceil(least) : (least + even - 1) / even * even);
 }

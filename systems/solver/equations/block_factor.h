@@ -52,8 +52,8 @@ private:
     void eliminate_pattern(Index next);
     void place_blocks();
 
-    Column<Index> size_;            // number of unknowns, by part
-    Column<std::uint8_t> coupled_;  // by pair of parts, including fill-in
+    Column<Index> size_;            // by part: number of unknowns
+    Column<std::uint8_t> coupled_;  // by pair of parts: 1 if their blocks are nonzero, including fill-in
     Column<Index> beside_;          // by part: total size of the coupled parts that are not yet eliminated
     Column<Index> order_, rank_;    // elimination order, and the position of each part in it
     Ragged<Index> later_;           // by position in the order: parts that the elimination changes

@@ -17,7 +17,7 @@ namespace skerry {
 /// rigid body (six entries).
 struct BodyPush {
     Index part = no_index;
-    Index place = 0;  // index in the part of the first entry of this unknown
+    Index place = 0;  // index of the first entry of the unknown within the part
     bool turns = false;
     Real weight = 0;
     Vec3 arm = Vec3::Zero();  // for rigid bodies: sum of weight times vector from the centre [m]
@@ -35,11 +35,11 @@ public:
     };
     /// A velocity row of the region that contacts change, and its position in the equations.
     struct Unknown {
-        Index body, partner;  // identifiers of the body and of the body it touches there; no_index if there is none
+        Index body, partner;  // identifiers of the unknown's body and of the other touched body, or no_index
         Index row;
         Index rigid = no_index;  // row of RigidBodyTable if the unknown is a rigid motion
         Index slot = no_index;   // for nodes of implicit bodies: velocity row of the body's rigid motion
-        Real mass = 0;           // for nodes with their own mass [kg]
+        Real mass = 0;           // mass of the node, for nodes with their own mass [kg]
         Index part = no_index, place = 0;
     };
     /// Memory for a square matrix, its inverse and the pivots.

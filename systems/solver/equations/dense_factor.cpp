@@ -87,7 +87,7 @@ void exchange_rows(const DenseBlock& of, Index from, Index to) {
     for (Index k = 0; k < of.columns; ++k) std::swap(of.column(k)[from], of.column(k)[to]);
 }
 
-/// y -= factor x for vectors of length `count`
+/// Subtracts a multiple of a vector of length `count`: y -= factor x.
 void subtract_scaled(Real factor, const Real* x, Real* y, Index count) {
     Index k = 0;
     for (; k + 8 <= count; k += 8) subtract(factor * load(x + k, Real8{}), y + k);
@@ -144,7 +144,7 @@ struct TriangleInverse {
     /// written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
 };
-constexpr Index many_columns = panel;  // number of right-hand columns from which the inverse pays off; see `many` below
+constexpr Index many_columns = panel;  // least number of right-hand columns for which TriangleInverse pays off
 
 /// b = L^-1 b, where L is the unit lower triangle in the rows and columns [begin, end) of `factors`.
 void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b, bool many) {

@@ -20,14 +20,14 @@ struct DenseBlock {
     }
 };
 
-/// c -= a b
+/// Subtracts a product of matrices: c -= a b.
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c);
-/// y += a x. `shape` gives the size and layout of the matrix a, `numbers` its entries.
+/// Adds a matrix times a vector: y += a x. `shape` gives the size and layout of the matrix a, `numbers` its entries.
 void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y);
 /// Factors a = L U with row exchanges: row k is exchanged with row `pivot[k]`. Returns false if a pivot is zero or not
 /// finite.
 bool factor_dense(const DenseBlock& a, Index* pivot);
-/// b = a^-1 b, using the result of factor_dense.
+/// Solves a x = b with the factors from factor_dense. The solution overwrites b.
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b);
 
 }  // namespace skerry

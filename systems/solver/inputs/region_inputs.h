@@ -101,8 +101,9 @@ struct ImplicitInputs {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Change of a node's velocity by the elastic forces of its implicit body in this step, in world axes. It is zero
-    /// for nodes of other bodies. If the body is in equilibrium, the contact impulses cancel this change [m/s]
+    /// Change of a node's velocity by the kick of its implicit body in this step, in world axes; zero for nodes of
+    /// other bodies. The change comes from elastic forces. If the body is in equilibrium, the contact impulses cancel
+    /// this change [m/s]
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
@@ -121,7 +122,7 @@ struct RegionInputs {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
     Real gravity = 0;                    // magnitude of gravity, for the scale of the error measure [m/s^2]
-    // Ascending contact keys, which identify regions across steps. Without keys the scheduler has no history.
+    // Ascending contact keys. They identify regions across steps. Without keys the scheduler has no history.
     std::span<const ContactKey> key{};
     // Clusters: groups of nodes with a coupled mass matrix. Null or empty if every node has its own mass.
     const NodeClusters* clusters = nullptr;

@@ -38,7 +38,8 @@ struct SolverSettings {
     bool operator==(const SolverSettings&) const = default;
 };
 
-/// True if the method solves regions by accelerated sweeps (solve_ags). The shortcuts exist only for this method.
+/// True if regions are solved by accelerated sweeps (solve_ags). The shortcuts frictionless_rows and
+/// small_regions_in_lanes require these sweeps.
 inline bool sweeps_accelerated(const SolverSettings& settings) {
     return (settings.method == SolverMethod::ags || settings.method == SolverMethod::automatic) &&
            !settings.fixed_iterations;

@@ -142,8 +142,8 @@ struct LaneOutcome {
     LaneMask<T> solved;
 };
 
-/// Lane version of ErrorTest. It does not measure the error after the last iteration, because unfinished regions are
-/// solved again outside of lanes.
+/// Lane version of ErrorTest. The last iteration does not require a measurement, because unfinished regions are solved
+/// again outside of lanes.
 template <class T, int K>
 class LaneTest {
 public:

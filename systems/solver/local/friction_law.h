@@ -1,6 +1,6 @@
 // Friction laws as projections of a contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). Type V
-// is a world vector of size 3, or of size 4 with a last entry of zero. `normal` is a unit vector, `mu` the friction
-// coefficients.
+// is a world vector of size 3, or of size 4 with a last entry of zero. `normal` is a unit vector, `mu` holds the
+// coefficients of friction. *The paper* is Lazarevych, Szekely, Harders (docs/methods/contact.md 5).
 #pragma once
 
 #include <algorithm>

@@ -48,7 +48,7 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     // (docs/methods/contact.md 3.2). Weight alone gives a resting contact the speed g h. Elastic forces can push a node
     // down in every step, and rebounds would then keep the node bouncing forever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
-    constexpr Real clearly = 2;  // factor on the velocity change by forces
+    constexpr Real clearly = 2;  // an impact is faster than this multiple of the velocity change
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
@@ -62,8 +62,8 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
                turn = slip - slip_before;
     // If the forces nearly stop or reverse the sliding, no direction at the middle of the step is defined, and the
     // correction is zero. The factor `fading` makes the correction a continuous function of the velocities.
-    constexpr Real gone = 2, slope = 4;  // fading is 1 if the velocity change is at most a quarter of the sliding
-                                         // speed, and 0 from a half on
+    // `fading` is 1 if the velocity change is at most a quarter of the sliding speed, and 0 if it is at least a half.
+    constexpr Real gone = 2, slope = 4;
     const Real fading = gone - slope * turn.norm() / slip_before.norm();
     if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
     return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);

@@ -16,7 +16,7 @@ namespace skerry {
 struct LumpedContact {
     Vec4 normal;  // unit vector
     Vec4 offset;  // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
-    std::array<Real, 4> weight;  // weights of the moving nodes
+    std::array<Real, 4> weight;  // stencil weights of the moving nodes
     std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
     std::array<Index, 4> node;   // rows of the moving nodes in the region's list
     Index node_count;            // number of moving nodes; 0 if the contact moves only rigid bodies or nothing

@@ -15,7 +15,7 @@ namespace skerry {
 /// most g h^2 / 1000 per step, so the first term is the drift of a hundred steps. The second term is the rounding error
 /// of positions some kilometres from the origin [m]
 inline Real push_slop(Real gravity, Real h) {
-    constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2, and a length [m]
+    constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2; rounding error of positions [m]
     return of_kick * gravity * h * h + rounding;
 }
 
@@ -23,7 +23,8 @@ inline Real push_slop(Real gravity, Real h) {
 /// lifting the mass m by `depth`; this bound is at least a hundredth of recovery_speed (docs/methods/contact.md 3.4)
 /// [m/s]
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
-    constexpr Real of_fall = 0.03, of_limit = 0.01;  // fractions of sqrt(gravity depth) and of recovery_speed
+    constexpr Real of_fall = 0.03,
+                   of_limit = 0.01;  // the two bounds as fractions of sqrt(gravity depth) and of recovery_speed
     const Real cheap = std::max(of_fall * std::sqrt(gravity * depth), of_limit * settings.recovery_speed);
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }

@@ -37,8 +37,8 @@ struct RigidPart {
     Index term_count = 0;
     std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
     Columns3 mobility;  // W_ii [1/kg]
-    Columns3 frame;     // columns: normal and two tangents
-    LocalBlock block;   // W_ii in this frame, prepared for solve_block
+    Columns3 frame;     // contact frame; its columns are the normal and two tangents
+    LocalBlock block;   // W_ii in the contact frame, prepared for solve_block
     Real along_normal;  // n W_ii n for the normal n, with deformable bodies taken as rigid [1/kg]
     Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
 };

@@ -77,7 +77,7 @@ Real find_slip_safely(SlipCurve& curve) {
 /// Newton's method does not converge quickly, find_slip_safely takes over.
 Real find_slip(SlipCurve& curve, Real start) {
     Real s = start;
-    constexpr int fast_limit = 6;  // three times the usual number of iterations
+    constexpr int fast_limit = 6;  // limit of Newton iterations, three times the usual number
     for (int iteration = 0; iteration < fast_limit && s > 0; ++iteration) {
         curve.evaluate(s);
         if (!(curve.rn > 0)) break;
@@ -121,7 +121,7 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[1] = c;
     }
     // For a rank-deficient block, rounding errors make this eigenvalue slightly positive or negative.
-    constexpr Real rank_rounding = 1e-14;  // fraction of the trace
+    constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);
     block.coupling[0] = block.cosine * w1 - block.sine * w2;
@@ -147,7 +147,7 @@ Vec3 solve_block(LocalBlock& block, const Vec3& b, Real mu) {
     Real shrink = 1;
     if (!curve.inside_cone()) {
         block.slip = find_slip(curve, block.slip);
-        shrink = curve.mu * curve.rn / curve.rt_length;  // scales the impulse exactly onto the cone
+        shrink = curve.mu * curve.rn / curve.rt_length;  // moves the impulse exactly onto the cone
     }
     const Real r1 = shrink * curve.rt[0], r2 = shrink * curve.rt[1];
     return {curve.rn, block.cosine * r1 + block.sine * r2, -block.sine * r1 + block.cosine * r2};

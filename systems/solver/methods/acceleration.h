@@ -69,11 +69,11 @@ public:
 
 private:
     static constexpr Real gain = 0.7;  // a squared change below this fraction of the smallest one counts as progress
-    static constexpr Index plain_sweeps =
-        200;  // number of plain sweeps in a phase; doubled with each phase, including the first
+    // Number of plain sweeps in a phase. It is doubled with each phase, including the first.
+    static constexpr Index plain_sweeps = 200;
     static constexpr Index most_doublings = 7, most_plain = 20000;
-    static constexpr Real damped =
-        0.8;  // relaxation factor in every second phase, for problems on which plain sweeps cycle
+    // Relaxation factor in every second phase, for problems on which plain sweeps cycle.
+    static constexpr Real damped = 0.8;
 
     void observe(Index iteration, Real change) {
         if (change < gain * best_) {

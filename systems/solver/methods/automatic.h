@@ -16,8 +16,8 @@ inline Real sweep_cost(Index contacts, Index couplings) {
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
-    constexpr Real step_cost = 2000, pair_cost = 20,
-                   triple_cost = 0.5;  // per step, per pair of contacts (equations), per triple (factorisation)
+    // Costs per step, per pair of contacts (to fill the equations), and per triple of contacts (to factor them) [ns]
+    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;
     const Real count = static_cast<Real>(contacts);
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
@@ -96,7 +96,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Real least_sweeps = 16;  // most regions converge within this number
+    constexpr Real least_sweeps = 16;  // most regions converge within this number of sweeps
     constexpr bool looks_later = HasNewtonSteps<Op>;
     Real trial = looks_later ? 0 : newton_trial(op);
     Real pause = std::max(trial, least_sweeps);

@@ -8,7 +8,10 @@
 
 namespace skerry {
 
-enum class ConjugateBeta { fletcher_reeves, polak_ribiere };  // equations (17), (18) of the paper
+enum class ConjugateBeta {
+    fletcher_reeves,
+    polak_ribiere
+};  // formulas for the factor beta, (17) and (18) of the paper
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     Real sum = 0;

@@ -12,7 +12,7 @@ namespace skerry {
 struct SolveLimits {
     Real tolerance = 1e-3;
     Index max_iterations = 200;
-    bool fixed_iterations = false;  // do exactly max_iterations without error tests
+    bool fixed_iterations = false;  // true: do exactly max_iterations without error tests
     Real relaxation = 1;
 };
 
@@ -23,8 +23,8 @@ inline constexpr Real suspicious_start = 0.5;
 /// grown by an eighth. A measurement costs half a sweep. Convergence is detected late by at most an eighth of the
 /// iterations plus five.
 inline Index next_check(Index iteration) {
-    constexpr Index first = 2, later = 8,
-                    offset = 4;  // divisors of the iteration number, and offset of the second rule
+    // The interval is half of the iterations so far, later an eighth of them plus an offset.
+    constexpr Index first = 2, later = 8, offset = 4;
     return iteration + 1 + std::min(iteration / first, offset + iteration / later);
 }
 

@@ -151,7 +151,7 @@ private:
     /// none, takes the length with the smallest merit.
     void search_along_change() {
         constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // fraction of the merit at the start
+        constexpr Real enough = 0.9;  // the merit must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
         Real least = std::numeric_limits<Real>::infinity(), best_length = 1;

@@ -19,7 +19,7 @@ namespace skerry {
 /// Contact problem u = W r + q with W in compressed rows of blocks. W is used as given, even if it is slightly
 /// asymmetric.
 struct BlockSystem {
-    std::span<const Index> row_offset;  // contact count + 1 entries
+    std::span<const Index> row_offset;  // first block of each row; contact count + 1 entries
     std::span<const Index> column;
     std::span<const Mat3> block;  // [1/kg]
     std::span<const Vec3> q;      // [m/s]
@@ -39,7 +39,7 @@ struct BlockMemory {
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // contact count + 1 entries
+    std::vector<Index> offset;    // first block of each row; contact count + 1 entries
     std::vector<Index> neighbor;  // position of the other contact of each off-diagonal block
     std::vector<Columns> block;   // off-diagonal blocks W_ij
     std::vector<Vec4> impulse;    // [N s]

@@ -102,8 +102,8 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            if (!moves_rigidly(equations, term))
-                continue;  // the nodes of this body are unknowns of their own, or the body is held
+            // The body is held, or it deforms. The velocities of a deforming body's nodes include its rigid motion.
+            if (!moves_rigidly(equations, term)) continue;
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }

@@ -80,11 +80,12 @@ public:
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
-    /// Energy norm of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const {
         return part(i).along_normal > 0 ? speed * speed / part(i).along_normal : 0;
     }
-    /// One contact step of the split impulse (push_contact.h). Returns the energy norm of the impulse change [J]
+    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
+    /// [J]
     [[gnu::always_inline]] Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         const Real mobility = part(i).along_normal;
         if (!(mobility > 0)) return 0;
@@ -114,7 +115,7 @@ private:
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
-    // Functions for Newton steps.
+    // Functions of the Newton steps.
     BodyEquations& newton_memory();
     void assemble(BodyEquations& equations) const;
     /// Copies the velocities of the region to `velocity`, in the order of the unknowns.

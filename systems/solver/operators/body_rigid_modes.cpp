@@ -74,7 +74,7 @@ SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index 
     constexpr Real softness = 0.3;
     // A round ends when the square root of the merit falls below this fraction of the error at its start.
     constexpr Real enough = 0.01;
-    constexpr Real gain = 0.5;           // another round follows if the error falls below this fraction
+    constexpr Real gain = 0.5;  // another round follows if the error falls below this fraction of its last value
     constexpr Index most_in_round = 14;  // limit of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();

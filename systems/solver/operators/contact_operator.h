@@ -15,7 +15,7 @@ namespace skerry {
 /// Largest number of workspace vectors that a method may use. Each has one entry per contact.
 inline constexpr std::size_t workspace_limit = 4;
 
-/// Result of a method.
+/// Result of a solver method.
 struct SolveResult {
     Index iterations = 0;
     Real error = 0;
@@ -61,17 +61,17 @@ concept ContactOperator = SweptOperator<Op> &&
     op.refresh();                                              // recomputes the stored velocities from the impulse
     // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;              // a sweep that returns only the size of its change
-    op.residual(out);                                               // -u; b - A lambda in the paper
-    op.multiply(in, out);                                           // W d
-    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // projection onto the friction law
+    { op.sweep(number) } -> std::convertible_to<Real>;  // a sweep that returns only the size of its change
+    op.residual(out);                                   // writes -u of each contact; the paper calls it b - A lambda
+    op.multiply(in, out);                               // W d
+    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // projection of an impulse onto the friction law
     { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) in equation (19) of the paper
     { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
     // Scalar substitute for W_ii: a third of the trace of W_ii; 0 if the contact can move nothing [1/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;
     { constant.law() } -> std::same_as<Friction>;
-    constant.assemble(matrix);  // dense W with 3 size() rows
+    constant.assemble(matrix);  // writes the dense matrix W with 3 size() rows
 };
 
 /// Sets present += factor (present - previous), and previous to the old value of present.

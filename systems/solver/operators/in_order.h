@@ -17,9 +17,8 @@ namespace skerry {
 template <class W>
 concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
-    {
-        walk.number_of(count)
-        } -> std::convertible_to<std::size_t>;  // number in the region of the contact at this position
+    // number in the region of the contact at a position
+    { walk.number_of(count) } -> std::convertible_to<std::size_t>;
     walk.contacts(count, body);
     walk.nodes(count, body);
     { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // sum over the contacts, always in the same order

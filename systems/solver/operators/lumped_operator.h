@@ -37,9 +37,10 @@ public:
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact_velocity(contact(i), memory_.velocity.data()); }
-    /// Energy norm of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const { return contact(i).inverse_diagonal * speed * speed; }
-    /// One contact step of the split impulse (push_contact.h). Returns the energy norm of the impulse change [J]
+    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
+    /// [J]
     Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         return push_contact(contact(i), bias, velocity, impulse, apply_by(walk_));
     }

@@ -35,8 +35,8 @@ public:
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Applies an impulse to all nodes that are on no implicit body. Implicit bodies do not deform; this is used for
-    /// corrections of positions and for rigid-body modes.
+    /// Applies an impulse to all nodes that are on no implicit body. Implicit bodies do not deform, as is required in
+    /// corrections of positions.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)

@@ -119,8 +119,8 @@ void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
     op.refresh();
 }
 
-/// Start: uses the warm start, or zero impulses if their error is smaller. Returns true and sets `outcome` if no sweeps
-/// are needed: either no contact closes, or the error of the warm start is within the tolerance.
+/// Start: uses the warm start, unless its error is large and zero impulses have a smaller error. Returns true and sets
+/// `outcome` if no sweeps are needed: either no contact closes, or the error of the warm start is within the tolerance.
 template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;

@@ -17,9 +17,8 @@ template <class Op>
 concept RegionOperator = ContactOperator<Op> &&
     requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
     { op.velocity(i) } -> std::same_as<Vec4>;  // velocity u of contact i for the present impulse
-    {
-        op.push_size(i, number)
-        } -> std::same_as<Real>;  // energy norm of a push that changes the normal speed by this number [J]
+    // squared energy norm of a push that changes the normal speed of contact i by this number [J]
+    { op.push_size(i, number) } -> std::same_as<Real>;
     { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;  // one contact step on the pseudo velocities
 };
 
@@ -30,7 +29,7 @@ struct PushedContacts {
     bool any_turns() const { return false; }
     /// Speed at which rotation reduces the gap of a contact; at most 0 [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
-    /// Does one sweep over the joints. Returns the energy norm of the change [J]
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4>) const { return 0; }
 };
 
@@ -62,7 +61,7 @@ public:
 
 private:
     struct Asked {
-        Real size;  // sum of the energy norms of all requested pushes [J]
+        Real size;  // sum of the squared energy norms of all requested pushes [J]
         bool by_turns;
     };
 
@@ -76,8 +75,8 @@ private:
     }
 
     Asked ask() {
-        bool by_turns =
-            false;  // Only regions of one thread have capsules or cylinders, so no two threads write this flag.
+        // Only regions of one thread have capsules or cylinders, so no two threads write this flag.
+        bool by_turns = false;
         const Real size = region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
             Real part = 0;
             for (std::size_t i = begin; i < end; ++i) {

@@ -25,7 +25,7 @@ public:
     /// Speed along the normal at which rotation reduces the gap of contact i, beyond the approach by the velocities and
     /// the pseudo velocities `push`. The value is at most 0, and 0 below the rounding error [m/s]
     Real loss(std::size_t i, std::span<const Vec4> push) const;
-    /// Does one sweep over the joints. Returns the energy norm of the change [J]
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4> push) const;
 
 private:

@@ -49,8 +49,8 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 if (inputs.clustered())
                     note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
                          memory.region_clusters);
-                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] >
-                    0)  // nodes without inverse mass belong to held bodies
+                // Nodes with zero inverse mass belong to held bodies.
+                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
                     note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
             }
         }

@@ -72,7 +72,7 @@ struct RegionMemory {
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
-    // for regions that touch clusters of nodes or rigid bodies
+    // Data of regions that touch clusters of nodes or rigid bodies.
     Ragged<Index> region_clusters, region_rigid;       // by region; empty if no region touches any
     Column<std::size_t> node_base;                     // by region: index of its first node row
     Column<Index> region_of_cluster, region_of_rigid;  // by cluster and by body: last region that touched it
@@ -86,13 +86,13 @@ struct RegionMemory {
     Column<Index> place;  // position in the node list of its region; invalid if that list holds another node there
     // by region
     Column<Real> cost;           // predicted [microseconds]
-    Column<Real> cost_parts;     // partial sums of the costs
-    RegionHistoryTable history;  // of the last step
-    RegionHistoryTable present;  // of this step
+    Column<Real> cost_parts;     // partial sums of `cost`
+    RegionHistoryTable history;  // sweeps of each region up to the last step
+    RegionHistoryTable present;  // sweeps of each region including this step
     // by task
     Column<RegionTask> task;
     LargeRegions large;
-    // for regions that touch rigid bodies
+    // Pools of working memory for regions that touch rigid bodies.
     Pool<NewtonEquations> newton;
     Pool<ContactRuns> runs;
     std::atomic<bool> pushed = false;  // true if some region has written push_out in this step

@@ -13,8 +13,8 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
     const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
-    if (result.converged || !std::isfinite(result.error))
-        rows.keep();  // without convergence region.memory already holds the best impulses
+    // Without convergence region.memory already holds the best impulses.
+    if (result.converged || !std::isfinite(result.error)) rows.keep();
     return result;
 }
 
