@@ -11,31 +11,32 @@
 namespace skerry {
 namespace {
 
-// Cost model T = c0 + c1 K S of docs/methods/regions.md 4.1. Measured with chains of 2 to 12 contacts and sheets of 18
-// to 1922, on one core of a shared machine (AVX-512). Ratios decide the order; absolute values only the size of a task
-// [microseconds]
+// Cost model T = c0 + c1 K S of docs/methods/regions.md 4.1, with K contacts and S sweeps. It was measured on chains of
+// 2 to 12 contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). The ratios decide the order of
+// regions; the absolute values decide only the size of tasks [microseconds]
 constexpr Real single_cost = 0.06;
-constexpr Real region_cost = 0.1, contact_cost = 0.06;  // load, evaluate the warm start, write back
+constexpr Real region_cost = 0.1, contact_cost = 0.06;  // costs of loading, measuring the warm start and writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
-constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1
-// The last worker then finishes late by at most an eighth of the total.
+constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1 microsecond
+// With this number of tasks, the last worker finishes late by at most an eighth of the total time.
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
-constexpr Real forgetting = 0.3;  // weight of the latest step in the moving average
-constexpr Real caution = 1.2;     // factor on the average
+constexpr Real forgetting = 0.3;  // weight of the last step in the moving average of the sweeps
+constexpr Real caution = 1.2;     // the prediction is this multiple of the moving average
 constexpr Real fewest_sweeps = 4;
-constexpr Real first_sweeps = 8, sweeps_of_size = 2;  // of new regions; the second per square root of the contacts
+// Prediction for new regions: first_sweeps + sweeps_of_size times the square root of the number of contacts.
+constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
-constexpr std::size_t regions_per_block = 256;  // takes some microseconds
+constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes some microseconds
 
-/// Number of contacts plus blocks of joints.
+/// Number of contacts plus number of joint blocks of a region.
 Index contact_count(const RegionTable& regions, Index region) {
     return regions.contacts.offset[region + 1] - regions.contacts.offset[region] +
            static_cast<Index>(regions.joints_of(static_cast<std::size_t>(region)).size());
 }
 
-/// Identifier of a region with joints only; sorted behind all others.
+/// Identifier of a region that has only joints. These identifiers are larger than those of all other regions.
 ContactKey id_of_joint(Index block) {
     constexpr std::uint64_t last = ~std::uint64_t{0};
     return {last, static_cast<std::uint64_t>(block)};
@@ -58,11 +59,11 @@ Real predicted_cost(Index contacts, Real average, bool lanes, const SolverSettin
            static_cast<Real>(contacts) * (contact_cost + sweep * predicted_sweeps(contacts, average, settings));
 }
 
-/// Sorts large regions by cost. Small ones use a counting sort by size, largest first, which keeps equal sizes
-/// together.
+/// Sorts the regions: those too large for lanes by descending cost, then the small ones by descending size. The
+/// counting sort places small regions of equal size next to each other.
 void sort_regions(std::span<const Index> contacts, const Column<Real>& cost, RegionTable& regions) {
     const Index count = static_cast<Index>(regions.size());
-    std::array<Index, largest_lane_region + 2> begin{};  // start of each size in the order; large ones first
+    std::array<Index, largest_lane_region + 2> begin{};  // start of each size class in the order, largest first
     const auto place = [&](Index r) { return std::max<Index>(0, largest_lane_region + 1 - contacts[r]); };
     for (Index r = 0; r < count; ++r) ++begin[static_cast<std::size_t>(place(r)) + 1];
     const Index large = begin[1];
@@ -81,7 +82,7 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
     const RegionHistoryTable& history = memory.history;
     present.resize(count);
     parallel_for(executor, count, regions_per_block, [&](std::size_t begin, std::size_t end) {
-        // Every block finds its start in the history by search, then advances in both lists.
+        // Each block finds its start in the history by binary search. Then it advances in both lists.
         std::size_t old = 0;
         for (std::size_t r = begin; r < end; ++r) {
             const Index contacts = contact_count(regions, static_cast<Index>(r));
@@ -89,7 +90,7 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
             present.sweeps[r] = no_history;
             present.age[r] = 0;
             if (key.empty()) continue;
-            // Contacts ascend by key and regions by first contact, so both lists ascend.
+            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in both lists.
             const ContactKey id =
                 regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
             regions.id[r] = present.id[r] = id;
@@ -122,7 +123,7 @@ void schedule_regions(Executor& executor, const SolverSettings& settings, Region
     const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
-    // This loop avoids a branch that is hard to predict.
+    // This loop has no branch that is hard to predict.
     memory.task.resize(regions.size());
     std::size_t tasks = 0;
     Index begin = 0;

@@ -1,5 +1,5 @@
-// Grouping of regions into tasks, and their order (docs/methods/regions.md 4). Predictions and history only change when
-// a region is solved; they never change its result.
+// Order of the regions, and grouping into tasks (docs/methods/regions.md 4). Predictions and history affect only the
+// time at which a region is solved, never its result.
 #pragma once
 
 #include "components/column.h"
@@ -10,15 +10,15 @@
 
 namespace skerry {
 
-/// Writes regions.id from the keys of the contacts and finds the effort of each region in the last step. Without keys
-/// no history is available.
+/// Writes regions.id from the keys of the contacts, and finds the number of sweeps that each region needed in earlier
+/// steps. Without keys there is no history.
 void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions);
 
-/// Writes regions.order and groups it into tasks. Regions too large for lanes come first, by falling predicted cost.
-/// Small regions follow by size, so that lanes fill; single contacts are last.
+/// Writes regions.order and groups it into tasks. Regions too large for lanes come first, by descending predicted cost.
+/// Small regions follow by descending size, so that lanes fill up. Single contacts are last.
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions);
 
-/// Records the effort of each region for the next step.
+/// Records the number of sweeps of each region for the next step.
 void remember_regions(RegionMemory& memory, const RegionTable& regions);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Solves all regions of the step, concurrently (docs/methods/region_solver.md 8, docs/methods/regions.md 4).
+// Solver of all regions of a step, which run concurrently (docs/methods/region_solver.md 8, docs/methods/regions.md 4).
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@ namespace skerry {
 
 struct RegionMemory;
 
-/// Working memory of the stage, kept between steps. It allocates only if a step is larger than all before.
+/// Working memory of solve_regions, reused from step to step. It allocates only if a step is larger than all earlier
+/// steps.
 class SolverMemory {
 public:
     SolverMemory();
@@ -23,10 +24,10 @@ private:
     std::unique_ptr<RegionMemory> data_;
 };
 
-/// Solves every region to the tolerance: in closed form for a single contact, otherwise by the method of the settings.
-/// Regions run as concurrent jobs, largest first, small ones in batches; no two regions write the same node. Fills the
-/// outcome columns of `regions` (iterations, error, status and others) and regions.pushed. Returns false if there are
-/// no regions (skipped).
+/// Solves every region to its tolerance: a single contact in closed form, other regions by the method of the settings.
+/// Regions run as concurrent jobs, largest first; small regions are solved in batches. No two regions write the same
+/// node. Fills the outcome columns of `regions` (iterations, error, status and others) and regions.pushed. Returns
+/// false if there are no regions.
 bool solve_regions(Executor& executor, const RegionInputs& contacts, const SolverSettings& settings, Real h,
                    SolverMemory& memory, RegionTable& regions, const RegionOutputs& out);
 

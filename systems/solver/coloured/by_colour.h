@@ -1,5 +1,5 @@
-// Walk of a large region: a team of workers visits its contacts in the order of a colouring. Impulses have the bits of
-// one thread that visits the contacts in that order; sums are taken block by block.
+// Parallel walk over a large region: a team of workers visits its contacts in the order of a colouring. The impulses
+// are bitwise those of one thread that visits the contacts in this order. Sums are accumulated block by block.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace skerry {
 
-/// Block size of loops over nodes, and over contacts before they are ordered. Copying this many rows of 32 bytes takes
-/// several times as long as claiming the block.
+/// Number of rows per block in loops over nodes, and in loops over contacts before the contacts are ordered. Copying
+/// this many rows of 32 bytes takes several times as long as claiming the block.
 inline constexpr std::size_t row_block = 256;
 
 inline Index row_block_count(std::size_t rows) {
     return static_cast<Index>((rows + row_block - 1) / row_block);
 }
 
-/// Calls body(begin, end, block) for blocks of row_block rows.
+/// Calls body(begin, end, block) for consecutive blocks of row_block rows.
 template <class Body>
 void for_row_blocks(Team& team, std::size_t count, Body&& body) {
     team.run_blocks(row_block_count(count), [&](Index block) {
@@ -30,10 +30,10 @@ void for_row_blocks(Team& team, std::size_t count, Body&& body) {
     });
 }
 
-/// Partial result of a block, with one member per type of sum.
+/// Partial sums of one block. The tuple has one member per type of sum.
 using BlockSum = std::tuple<Real, SweepChange, LoadSums>;
 
-/// Number of blocks of an order.
+/// Number of blocks of a coloured order.
 inline std::size_t block_count(const ColouredOrder& order) {
     return order.block_offset.size() - 1;
 }
@@ -42,12 +42,12 @@ class ByColour {
 public:
     static constexpr bool own_masses = true;
 
-    /// `partial`: block_count(order) rows.
+    /// The span `partial` must have block_count(order) rows.
     ByColour(const ColouredOrder& order, Team& team, std::span<BlockSum> partial)
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
-    /// Visits phase after phase, even if their order is irrelevant, so that each worker finds its contacts in its
+    /// Visits phase after phase even if the visiting order is irrelevant. Each worker then finds its contacts in its
     /// cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
@@ -88,7 +88,7 @@ private:
 
 using ColouredOperator = LumpedOperatorBy<ByColour>;
 static_assert(ContactOperator<ColouredOperator>);
-// compiled once, in by_colour.cpp
+// These templates are instantiated once, in by_colour.cpp.
 extern template class RegionOperatorBase<ColouredOperator, ByColour, LumpedMemory>;
 extern template class LumpedOperatorBy<ByColour>;
 

@@ -8,12 +8,14 @@ namespace skerry {
 namespace {
 
 constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_used
-constexpr Index tail_bin = colour_limit;  // the bins of hubs follow it
+constexpr Index tail_bin = colour_limit;  // bin of the tail; the bins of the hubs follow
 
-/// Splits a colour evenly into blocks of about 64 contacts, in a number that 2, 4, 8 or 16 workers can share without
-/// remainder. A block takes a microsecond, claiming it a twentieth of that.
+/// Number of blocks into which a colour with this many contacts is divided. A block has at most 64 contacts. The number
+/// is a power of two or a multiple of 16, so that 2, 4, 8 or 16 workers get equal shares. Solving a block takes a
+/// microsecond; claiming a block takes a twentieth of a microsecond.
 Index blocks_of_colour(Index contacts) {
-    constexpr std::uint32_t most_contacts = 64, even = 16;  // workers that share a phase evenly
+    // `even`: largest number of workers that share a phase without remainder
+    constexpr std::uint32_t most_contacts = 64, even = 16;
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
     return static_cast<Index>(least <= even ? std::bit_ceil(least) : (least + even - 1) / even * even);
 }
@@ -26,7 +28,8 @@ void for_each_node(const ContactNodes& nodes, Visit&& visit) {
     }
 }
 
-/// The lowest colour that none of the nodes has, or colour_limit. take() gives it to the nodes.
+/// Finds the lowest colour that no excluded node has, or colour_limit if there is none. take() gives this colour to
+/// nodes.
 struct FreeColour {
     ColouringMemory& memory;
     std::uint64_t used = 0;
@@ -47,8 +50,8 @@ void count_degrees(std::span<const ContactNodes> contact, Index node_count, Colo
     for (const ContactNodes& nodes : contact) for_each_node(nodes, [&](Index node) { ++memory.degree[node]; });
 }
 
-/// Fills the bins: contacts with a hub go to the bin of their first hub, others to a colour. Returns the number of
-/// hubs.
+/// Assigns each contact to a bin: the bin of its first hub if it has one, otherwise the bin of a colour. Returns the
+/// number of hubs.
 Index fill_bins(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const bool has_hubs =
         std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
@@ -84,7 +87,7 @@ Index fill_bins(std::span<const ContactNodes> contact, Index node_count, Colouri
     return hub_count;
 }
 
-/// Lists the contacts of each hub in order.
+/// Lists the contacts of each hub in ascending order.
 void list_hubs(Index hub_count, ColouringMemory& memory) {
     memory.hub_offset.assign(static_cast<std::size_t>(hub_count) + 1, 0);
     for (Index hub = 0; hub < hub_count; ++hub)
@@ -97,7 +100,7 @@ void list_hubs(Index hub_count, ColouringMemory& memory) {
     }
 }
 
-/// Colours the blocks of the hubs and lists them by colour, then by number.
+/// Gives each hub block a colour, then sorts the hubs by colour and number.
 void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, ColouringMemory& memory) {
     list_hubs(hub_count, memory);
     std::fill(memory.colours_used.begin(), memory.colours_used.end(), 0);
@@ -117,8 +120,8 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
     });
 }
 
-/// Lays out phases and blocks. Replaces the count of each bin by the place of its first contact, or no_index for the
-/// tail.
+/// Computes the phases and blocks of the order. In bin_begin it replaces the contact count of a bin by the position of
+/// the bin's first contact in the order. For bins that go to the tail it writes no_index.
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -169,7 +172,7 @@ public:
         }
     }
 
-    /// Adds the tail. Returns the place of its first contact.
+    /// Adds the phase of the tail. Returns the position of the tail's first contact in the order.
     Index add_tail() {
         leave(memory_.bin_begin[tail_bin]);
         const Index begin = place_;
@@ -196,14 +199,15 @@ private:
     Index place_ = 0;
 };
 
-/// Lists the contacts by the lowest of their nodes, then by number.
+/// Sorts the contacts by their lowest node, then by contact number.
 void sort_by_node(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const auto lowest = [&](const ContactNodes& nodes) {
         Index node = std::max(nodes[0], Index(0));
         for_each_node(nodes, [&](Index other) { node = std::min(node, other); });
         return node;
     };
-    // Contacts without a node are sorted as if they had node 0, which need not exist.
+    // Contacts without a node are sorted as if they had node 0. The arrays get an entry for node 0 even if no node
+    // exists.
     memory.node_offset.assign(static_cast<std::size_t>(std::max(node_count, Index(1))) + 2, 0);
     for (const ContactNodes& nodes : contact) ++memory.node_offset[lowest(nodes) + 2];
     for (std::size_t n = 2; n < memory.node_offset.size(); ++n) memory.node_offset[n] += memory.node_offset[n - 1];
@@ -212,8 +216,8 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Places contacts of a colour in the order of their nodes: a worker with the same share of each colour then uses the
-/// same nodes again. Contacts of hubs and of the tail keep their order.
+/// Writes the contacts to their positions in the order. Contacts of a colour are sorted by node: a worker that gets the
+/// same share of every colour then reuses the same nodes. Contacts of hubs and of the tail stay in ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

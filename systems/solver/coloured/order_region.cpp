@@ -3,7 +3,7 @@
 namespace skerry {
 namespace {
 
-/// Writes the moving nodes of all contacts. Returns true if they are unchanged.
+/// Writes the moving nodes of all contacts. Returns true if they equal those of the last call.
 bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& team, ColouredRegion& region) {
     const bool as_many = region.moving.size() == row.size();
     region.moving.resize(row.size());
@@ -23,8 +23,8 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
     return same;
 }
 
-/// Numbers the nodes in the order of their first appearance. `place` caches the number by row of NodeTable. A stale
-/// entry is detected because the list holds a different node there.
+/// Numbers the nodes in the order of their first appearance. `place` caches the number of a node by its row of
+/// NodeTable. An entry left from another call is detected because region.node holds a different node at that number.
 void number_nodes(std::span<Index> place, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());

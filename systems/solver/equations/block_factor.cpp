@@ -28,7 +28,7 @@ void BlockFactor::couple(Index g, Index h) {
     coupled_[pair(g, h)] = coupled_[pair(h, g)] = 1;
 }
 
-/// Returns the part that is cheapest to eliminate; the first one of equals.
+/// Returns the remaining part with the cheapest elimination. If several are equally cheap, returns the first of them.
 Index BlockFactor::next_to_eliminate() const {
     Index next = no_index;
     Real least = std::numeric_limits<Real>::infinity();
@@ -42,7 +42,7 @@ Index BlockFactor::next_to_eliminate() const {
     return next;
 }
 
-/// Couples all remaining parts that are coupled to `next`.
+/// Eliminates part `next` in the pattern: all remaining parts that are coupled to it become coupled to each other.
 void BlockFactor::eliminate_pattern(Index next) {
     rank_[static_cast<std::size_t>(next)] = static_cast<Index>(order_.size());
     order_.push_back(next);
@@ -87,7 +87,8 @@ bool BlockFactor::analyse() {
     return true;
 }
 
-/// Layout of each part: its diagonal block, the blocks to the right, then those below as one matrix.
+/// Lays out the entries in memory, part by part: the diagonal block, the blocks to its right, then the blocks below it
+/// as one matrix.
 void BlockFactor::place_blocks() {
     first_.resize(coupled_.size());
     stride_below_.resize(size_.size());

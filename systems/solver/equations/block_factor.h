@@ -1,5 +1,5 @@
-// Factor of a sparse matrix of dense blocks of different sizes, in an order with little fill-in. The pattern is
-// symmetric, the numbers need not be.
+// LU factorisation of a sparse matrix that consists of dense blocks of different sizes. The elimination order gives
+// little fill-in. The pattern of blocks is symmetric, the entries need not be.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,35 @@
 
 namespace skerry {
 
-/// Memory is kept: solving a problem of a size seen before allocates nothing.
+/// A part is a group of unknowns with one row and one column of blocks. Memory is reused: solving a problem of a size
+/// seen before allocates nothing.
 class BlockFactor {
 public:
     /// Removes all parts.
     void start();
-    /// Adds a row and a column of blocks with this many numbers. Returns its index.
+    /// Adds a part with `size` unknowns. Returns the index of the part.
     Index add_part(Index size);
-    /// Marks the blocks of two parts as nonzero. Call it after close_parts().
+    /// Marks the blocks of parts g and h as nonzero. Call it after close_parts().
     void couple(Index g, Index h);
     void close_parts();
-    /// Finds the elimination order. Returns false if the factor needs too much memory; then call nothing else.
+    /// Finds the elimination order. Returns false if the factor would need too much memory. No other function may be
+    /// called then.
     bool analyse();
-    /// Number of multiplications of a factorisation.
+    /// Number of multiplications of one factorisation.
     Real work() const { return work_; }
 
     Index part_count() const { return static_cast<Index>(size_.size()); }
     Index size(Index g) const { return size_[static_cast<std::size_t>(g)]; }
-    /// Numbers of all blocks; zero after analyse().
+    /// Entries of all blocks of the matrix. They are zero after analyse().
     Column<Real>& numbers() { return number_; }
     DenseBlock block(Index g, Index h);
-    /// Right-hand side, then the solution. The numbers of a part begin at first().
+    /// Right-hand side before solve(), solution after it. The entries of part g begin at first(g).
     Column<Real>& right() { return right_; }
     std::size_t first(Index g) const { return first_right_[static_cast<std::size_t>(g)]; }
-    /// Sets right() = A x, where `blocks` holds the numbers of A in the layout of numbers().
+    /// Sets right() = A x. `blocks` holds the entries of A in the layout of numbers().
     void multiply(std::span<const Real> blocks, std::span<const Real> x);
-    /// Factors and solves in place: the factor overwrites the blocks. Returns false if a pivot breaks down.
+    /// Factors the matrix and solves for right(). The factor overwrites the blocks. Returns false if a pivot is zero or
+    /// not finite.
     bool solve();
 
 private:
@@ -49,13 +52,13 @@ private:
     void eliminate_pattern(Index next);
     void place_blocks();
 
-    Column<Index> size_;            // by part
-    Column<std::uint8_t> coupled_;  // by pair of parts, including fill-in
-    Column<Index> beside_;          // by part: total size of the coupled parts that are not eliminated
-    Column<Index> order_, rank_;    // elimination order, and the place of each part in it
-    Ragged<Index> later_;           // by place in the order: parts that the elimination changes
-    Column<std::size_t> first_;     // by pair of parts: index in `number_`
-    Column<Index> stride_below_;    // by part: stride of its blocks below the diagonal
+    Column<Index> size_;            // by part: number of unknowns
+    Column<std::uint8_t> coupled_;  // by pair of parts: 1 if their blocks are nonzero, including fill-in
+    Column<Index> beside_;          // by part: total size of the coupled parts that are not yet eliminated
+    Column<Index> order_, rank_;    // elimination order, and the position of each part in it
+    Ragged<Index> later_;           // by position in the order: parts that the elimination changes
+    Column<std::size_t> first_;     // by pair of parts: index of the block's first entry in `number_`
+    Column<Index> stride_below_;    // by part: column stride of its blocks below the diagonal
     Column<std::size_t> first_right_;
     Column<Real> number_, right_;
     Column<Index> pivot_;

@@ -8,7 +8,7 @@
 namespace skerry {
 namespace {
 
-/// J of a push: maps the numbers of the part to the velocity of the contact. Without rotation only three columns are
+/// Jacobian J of a push: it maps the unknowns to the contact velocity. For a node only the first three columns are
 /// used.
 Eigen::Matrix<Real, 3, 6> jacobian_of(const BodyPush& push) {
     Eigen::Matrix<Real, 3, 6> jacobian;

@@ -1,6 +1,6 @@
-// Linear systems of Newton steps on contacts between bodies, with the velocities of the bodies as unknowns
-// (docs/methods/region_solver.md 5.9). The matrix is the inertia K plus the response of the contacts. The cost grows
-// with the height of a stack, not with the number of contacts between two bodies.
+// Linear systems of Newton steps on contacts between bodies. The unknowns are velocities of the bodies
+// (docs/methods/region_solver.md 5.9). The matrix is the inertia matrix K plus the response of the contacts. The cost
+// grows with the height of a stack, not with the number of contacts between two bodies.
 #pragma once
 
 #include <array>
@@ -13,16 +13,17 @@
 
 namespace skerry {
 
-/// Effect of a contact on one unknown: a node (three numbers of a part), or a rigid body (velocity and spin).
+/// Effect of a contact on one unknown: the velocity of a node (three entries of a part), or the velocity and spin of a
+/// rigid body (six entries).
 struct BodyPush {
     Index part = no_index;
-    Index place = 0;  // index of its first number in the part
+    Index place = 0;  // index of the first entry of the unknown within the part
     bool turns = false;
     Real weight = 0;
-    Vec3 arm = Vec3::Zero();  // of rigid bodies, times weight [m]
+    Vec3 arm = Vec3::Zero();  // for rigid bodies: sum of weight times vector from the centre [m]
 };
 
-/// Memory is kept. Vectors "by number" have the order of BlockFactor::right.
+/// Equations of one region. Memory is reused between regions. Vectors "by number" have the order of BlockFactor::right.
 class BodyEquations {
 public:
     struct Pushes {
@@ -32,16 +33,16 @@ public:
         void add(const BodyPush& of) { push[static_cast<std::size_t>(count++)] = of; }
         std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
     };
-    /// A velocity row of the region that contacts move, and its place in the equations.
+    /// A velocity row of the region that contacts change, and its position in the equations.
     struct Unknown {
-        Index body, partner;  // identifiers of the body itself, and of the body it touches there or no_index
+        Index body, partner;  // identifiers of the unknown's body and of the other touched body, or no_index
         Index row;
-        Index rigid = no_index;  // row of RigidBodyTable if the unknown is the rigid motion
-        Index slot = no_index;   // row of the rigid motion of its body, for nodes of implicit bodies
-        Real mass = 0;           // for nodes with their own mass [kg]
+        Index rigid = no_index;  // row of RigidBodyTable if the unknown is a rigid motion
+        Index slot = no_index;   // for nodes of implicit bodies: velocity row of the body's rigid motion
+        Real mass = 0;           // mass of the node, for nodes with their own mass [kg]
         Index part = no_index, place = 0;
     };
-    /// Memory for a matrix and its inverse.
+    /// Memory for a square matrix, its inverse and the pivots.
     struct Square {
         DenseBlock matrix, inverse;
         Index* pivot;
@@ -53,36 +54,38 @@ public:
     Square square(Index numbers);
     /// Effects of each contact on the unknowns, by contact.
     Column<Pushes>& pushes() { return pushes_; }
-    /// Estimated cost of one step; infinite if steps are impossible [ns]
+    /// Estimated cost of one Newton step; infinite if Newton steps are impossible [ns]
     Real cost() const { return cost_; }
     void set_cost(Real cost) { cost_ = cost; }
 
-    /// Stores the present blocks of the factor as K.
+    /// Stores the present blocks of the factor as inertia matrix K.
     void keep_inertia();
     void start_from_inertia();
-    /// Adds J^T block J of a contact.
+    /// Adds J^T block J of a contact to the matrix.
     void add(Index contact, const Mat3& block);
-    /// Returns J v of a contact.
+    /// Returns the velocity J v of a contact.
     Vec3 velocity(Index contact, std::span<const Real> v) const;
-    /// Sets the right-hand side to K x. Returns x K x.
+    /// Sets the right-hand side to K x. Returns x . K x.
     Real set_right(std::span<const Real> x);
-    /// Adds J^T r of a contact to the right-hand side.
+    /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
-    /// Begins a round (fixed multipliers): no sliding directions are known, no contact is to stop.
+    /// Begins a round, which is a sequence of Newton steps with fixed start impulses: forgets all sliding directions
+    /// and marks no contact to be stopped.
     void start_round();
 
-    Real softness = 0;         // compliance of contacts in a round, as a fraction of D
-    bool rigid_modes = false;  // true: deformable bodies move as rigid bodies
+    Real softness = 0;         // compliance of the contacts in a round, as a fraction of D
+    bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
     Column<Vec3> offset;       // by contact: part of its velocity that is not J v [m/s]
 
-    // Vectors by number: the motion sought, the motion made by its impulses, their difference, the Newton step, and the
-    // motion before the step [m/s, rad/s]
+    // Vectors by number. present: the iterate of the motion; answered: the motion that the impulses for `present`
+    // produce; change: answered - present; step: the Newton step; before: `present` before the step [m/s, rad/s]
     Column<Real> present, answered, change, step, before;
     Column<Mat3> answer;  // by contact: derivative of the impulse in the last matrix
-    // Contact data: sliding direction when the matrix was last built, or zero; and 1 if it is to stop in the next step.
+    // Data by contact. way: sliding direction when the matrix was last built, or zero. stops: 1 if the next step shall
+    // stop the contact.
     Column<Vec3> way;
     Column<std::uint8_t> stops;
-    Index rises = 0;  // number of steps of a round that were accepted although they raised the merit
+    Index rises = 0;  // number of steps in this round that were accepted although they raised the merit
 
 private:
     BlockFactor factor_;
@@ -94,7 +97,7 @@ private:
     Real cost_ = 0;
 };
 
-/// Equations of Newton steps: with bodies as they are, and with all of them as rigid bodies.
+/// Equations of Newton steps: `own` with all degrees of freedom, `rigid_modes` with all bodies as rigid bodies.
 struct NewtonEquations {
     BodyEquations own, rigid_modes;
 };

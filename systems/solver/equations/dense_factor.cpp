@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-constexpr Index panel = 8;  // number of columns eliminated one by one before the rest is updated
+constexpr Index panel = 8;  // number of columns that are factored one by one before the remaining columns are updated
 
 Real8 load(const Real* from, Real8) {
     return *reinterpret_cast<const Real8InMemory*>(from);
@@ -28,8 +28,8 @@ void subtract(Real what, Real* from) {
     *from -= what;
 }
 
-/// Ways to store a column of registers of a product: subtract it, subtract only its last rows because those above are
-/// done, or overwrite.
+/// Operations that write one register of a product into a column of c: subtract it, subtract only its last rows (the
+/// rows above are done), or overwrite the column.
 constexpr auto take_off = [](const auto& what, Real* from) { subtract(what, from); };
 struct TakeOffLast {
     Index count;
@@ -40,7 +40,8 @@ struct TakeOffLast {
 };
 constexpr auto put_there = [](const Real8& what, Real* to) { put(what, to); };
 
-/// Computes a column of registers of a b and passes it to `finish` with the same rows of c. Part: Real8 or Real.
+/// Computes the rows of the product a b from `row` on that fill one register: 8 rows if Part is Real8, 1 row if Part is
+/// Real. Passes each column of the result to `finish`, with the address of the same rows of c.
 template <class Part>
 void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c, Index row, const auto& finish) {
     const Real* const start = a.data + row;
@@ -69,7 +70,7 @@ void multiply_rows(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c
     }
 }
 
-/// Range from the first to behind the last column that has a nonzero number in these eight rows.
+/// Smallest range [first, last) with all columns of a that have a nonzero entry in rows row .. row + 7.
 std::pair<Index, Index> columns_that_count(const DenseBlock& a, Index row) {
     const auto counts = [&](Index k) {
         const Real* const at = a.column(k) + row;
@@ -86,14 +87,14 @@ void exchange_rows(const DenseBlock& of, Index from, Index to) {
     for (Index k = 0; k < of.columns; ++k) std::swap(of.column(k)[from], of.column(k)[to]);
 }
 
-/// y -= factor x
+/// Subtracts a multiple of a vector of length `count`: y -= factor x.
 void subtract_scaled(Real factor, const Real* x, Real* y, Index count) {
     Index k = 0;
     for (; k + 8 <= count; k += 8) subtract(factor * load(x + k, Real8{}), y + k);
     for (; k < count; ++k) y[k] -= factor * x[k];
 }
 
-/// Factors the columns [begin, end) of a; rows are exchanged in the whole matrix.
+/// Factors the columns [begin, end) of a. Row exchanges apply to the whole matrix.
 bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     for (Index k = begin; k < end; ++k) {
         Real* const column = a.column(k);
@@ -110,7 +111,8 @@ bool factor_panel(const DenseBlock& a, Index begin, Index end, Index* pivot) {
     return true;
 }
 
-/// Inverse of the triangle of a whole panel. It turns the solution for many columns into products of registers.
+/// Inverse of a triangular diagonal block with `panel` columns. With it, the solution for many right-hand columns
+/// becomes a matrix product in registers.
 struct TriangleInverse {
     static_assert(panel == 8);
     alignas(Real8) Real number[panel * panel] = {};  // column by column
@@ -138,12 +140,13 @@ struct TriangleInverse {
         }
         return of;
     }
-    /// Sets b to this inverse times b. In-place is safe: four columns are read before they are written.
+    /// Replaces b by this inverse times b. In-place is safe: the columns of b are read four at a time before they are
+    /// written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
 };
-constexpr Index many_columns = panel;  // number of columns from which the inverse pays off; `many` below
+constexpr Index many_columns = panel;  // least number of right-hand columns for which TriangleInverse pays off
 
-/// b = L^-1 b of the unit lower triangle of the factors' rows and columns [begin, end).
+/// b = L^-1 b, where L is the unit lower triangle in the rows and columns [begin, end) of `factors`.
 void solve_lower(const DenseBlock& factors, Index begin, Index end, const DenseBlock& b, bool many) {
     if (end - begin == panel && many) {
         TriangleInverse::lower(factors, begin).multiply(b.part(begin, 0, panel, b.columns));
@@ -168,8 +171,8 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-/// Calls `of(begin, count)` for ranges of columns, skipping gaps of at least eight zero columns. A node that no contact
-/// presses couples to nothing across.
+/// Calls `of(begin, count)` for ranges of columns of b, skipping gaps of at least eight zero columns. Columns are zero
+/// for nodes without a pressed contact, which do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
@@ -191,7 +194,8 @@ void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
 void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
     for (; row + 8 <= c.rows; row += 8) {
-        // Contacts couple each node of a face to few nodes of the other face, and these are consecutive.
+        // In these rows only a few consecutive columns are nonzero: contacts couple each node of a face to few,
+        // consecutive nodes of the other face.
         const auto [first, last] = columns_that_count(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
                              take_off);
@@ -257,7 +261,7 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    // Uses the count of all columns: bits must not depend on the position of zeros.
+    // The choice depends on the number of all columns. The bits of the result must not depend on the position of zeros.
     const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });

@@ -1,6 +1,6 @@
-// Dense matrices in memory of the caller: factors, solutions and products without allocation, for the blocks of a
-// sparse factor (body_equations.h). Storage is by columns, `stride` numbers apart. Sums are taken in index order, so
-// that bits do not depend on the width of registers.
+// Dense LU factorisation, solution and products in memory of the caller, without allocation. They are used for the
+// blocks of a sparse factor (block_factor.h). Matrices are stored by columns, `stride` numbers apart. Sums are taken in
+// index order, so that the bits do not depend on the width of registers.
 #pragma once
 
 #include <cstddef>
@@ -20,14 +20,14 @@ struct DenseBlock {
     }
 };
 
-/// c -= a b.
+/// Subtracts a product of matrices: c -= a b.
 void subtract_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c);
-/// y += a x. `shape` gives size and layout of a, `numbers` its values.
+/// Adds a matrix times a vector: y += a x. `shape` gives the size and layout of the matrix a, `numbers` its entries.
 void add_product(const DenseBlock& shape, const Real* numbers, const Real* x, Real* y);
-/// Factors a = L U with row exchanges: `pivot[k]` is the row exchanged with row k. Returns false if a pivot is zero or
-/// not finite.
+/// Factors a = L U with row exchanges: row k is exchanged with row `pivot[k]`. Returns false if a pivot is zero or not
+/// finite.
 bool factor_dense(const DenseBlock& a, Index* pivot);
-/// b = a^-1 b, from the factors.
+/// Solves a x = b with the factors from factor_dense. The solution overwrites b.
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b);
 
 }  // namespace skerry

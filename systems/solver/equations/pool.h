@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// One memory per worker. Results do not depend on which one a region gets.
+/// The pool has one memory per worker. Results must not depend on which memory a region gets.
 template <class Memory>
 class Pool {
     struct Slot {
@@ -17,7 +17,7 @@ class Pool {
     };
 
 public:
-    /// Returns its memory to the pool on destruction.
+    /// A leased memory. The destructor returns the memory to the pool.
     class Lease {
     public:
         Lease() = default;
@@ -42,7 +42,7 @@ public:
     void make_room(std::size_t workers) {
         while (slots_.size() < workers) slots_.push_back(std::make_unique<Slot>());
     }
-    /// Leases a free memory. One is always free, because each worker solves one region at a time.
+    /// Leases a free memory. At least one is free, because each worker solves one region at a time.
     Lease lease() {
         while (true)
             for (const std::unique_ptr<Slot>& slot : slots_)

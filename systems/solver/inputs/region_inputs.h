@@ -1,4 +1,4 @@
-// Inputs and outputs of the stage solve_regions, as spans.
+// Inputs and outputs of the stage solve_regions, as spans of table columns.
 #pragma once
 
 #include <span>
@@ -16,8 +16,8 @@
 
 namespace skerry {
 
-/// State of the rigid bodies at the start of the step, after the kick (the change of velocity by the forces of the
-/// step). All spans except `position` have one entry per row of RigidBodyTable.
+/// State of the rigid bodies at the start of the step, and the kick: the change of velocity by the forces of the step.
+/// Spans have one entry per row of RigidBodyTable, except `position` and `core_nodes`.
 struct RigidInputs {
     RigidNodes nodes{};
     std::span<const Vec3> position{};  // by node [m]
@@ -27,23 +27,24 @@ struct RigidInputs {
     std::span<const Vec3> momentum{}, kick{};
     std::span<const Vec3> moments{};
     std::span<const Mat3> rotation{};
-    std::span<const Index> body{}, core_nodes{};  // row of BodyTable; by row of BodyTable
-    // Row of AttachmentTable, or no_index; empty if no body is held. A deformable body in a held frame has a rigid row
-    // with zero velocity, and its nodes carry their whole velocity (docs/methods/implicit_bodies.md 7).
+    std::span<const Index> body{}, core_nodes{};  // `body`: row of BodyTable; `core_nodes`: by row of BodyTable
+    // Row of AttachmentTable that prescribes the motion of the body (the body is held), or no_index. The span is empty
+    // if no body is held. A deformable body in a held frame has a rigid row with zero velocity; its nodes store their
+    // total velocity (docs/methods/implicit_bodies.md 7).
     std::span<const Index> holder{};
 
     bool any() const { return nodes.any(); }
-    /// Inverse mass; 0 for a held body [1/kg]
+    /// Inverse mass of a body; 0 if the body is held [1/kg]
     Real inverse_mass(std::size_t r) const { return holder.empty() || holder[r] == no_index ? 1 / mass[r] : 0; }
     Vec3 velocity(std::size_t r) const { return (momentum[r] + kick[r]) / mass[r]; }
     bool is_capsule(Index r) const { return core_of(r) == 2; }
     bool is_cylinder(Index r) const { return core_of(r) == cylinder_core_nodes; }
-    /// Radius of a round body [m]
+    /// Rounding radius of a round body [m]
     Real radius(Index r) const {
         return nodes.round_radius[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
 
-    /// Number of core nodes of the body at a row of RigidBodyTable; 0 if no body has a core.
+    /// Number of core nodes of the body at row `r` of RigidBodyTable; 0 if no body has a core.
     Index core_of(Index r) const {
         return core_nodes.empty() ? 0 : core_nodes[static_cast<std::size_t>(body[static_cast<std::size_t>(r)])];
     }
@@ -66,13 +67,15 @@ struct RigidInputs {
     }
 };
 
-/// Implicit bodies: deformations relative to their moving frames. The frames are rows of RigidBodyTable.
+/// State of the implicit bodies: deformation velocities relative to moving frames. The frames are rows of
+/// RigidBodyTable.
 struct ImplicitInputs {
-    std::span<const Range> body_implicit{};      // by row of BodyTable
-    const ImplicitCoupling* coupling = nullptr;  // null or without nodes: no contact touches an implicit body
-    // Velocities after the kick and at the start of the step, in the mesh frame, by row of ImplicitNodeTable [m/s]
+    std::span<const Range> body_implicit{};      // by row of BodyTable: rows of ImplicitNodeTable
+    const ImplicitCoupling* coupling = nullptr;  // null or empty if no contact touches an implicit body
+    // Velocity after the kick, and velocity at the start of the step, in the mesh frame, by row of ImplicitNodeTable
+    // [m/s]
     std::span<const Vec3> velocity{}, velocity_before{};
-    std::span<const Mat3> axes{}, rotation{};  // by row of RigidBodyTable
+    std::span<const Mat3> axes{}, rotation{};  // rotations by row of RigidBodyTable
 
     static ImplicitInputs bind(const Binder& binder, const BodyTable& body, const RigidBodyTable& rigid,
                                const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling) {
@@ -85,21 +88,22 @@ struct ImplicitInputs {
     }
 
     bool any() const { return coupling != nullptr && coupling->nodes.size() > 0; }
-    /// Row of the node in ImplicitNodeTable, or no_index.
+    /// Returns the node's row of ImplicitNodeTable, or no_index if its body is not implicit.
     Index row(Index node, const RigidNodes& nodes) const {
         if (!any()) return no_index;
         const auto body = static_cast<std::size_t>(nodes.node_body[static_cast<std::size_t>(node)]);
         const Range rows = body_implicit[body];
         return rows.size() == 0 ? no_index : rows.begin + node - nodes.body_nodes[body].begin;
     }
-    /// Velocity of a node relative to the motion of its frame, in world axes. `row` is a row of ImplicitNodeTable,
-    /// `body` a row of RigidBodyTable [m/s]
+    /// Velocity of a node relative to the rigid motion of its frame, in world axes. `row` is a row of
+    /// ImplicitNodeTable, `body` a row of RigidBodyTable [m/s]
     Vec3 deforming(Index row, Index body) const {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Velocity change of a node by the kick of its implicit body, in world axes; zero for other nodes. It comes from
-    /// elasticity; contacts in equilibrium with the body cancel it [m/s]
+    /// Change of a node's velocity by the kick of its implicit body in this step, in world axes; zero for nodes of
+    /// other bodies. The change comes from elastic forces. If the body is in equilibrium, the contact impulses cancel
+    /// this change [m/s]
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
@@ -117,25 +121,25 @@ struct RegionInputs {
     std::span<const Real> static_friction, dynamic_friction, restitution;
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
-    Real gravity = 0;                    // norm of gravity, for the scale of the error measure [m/s^2]
-    // Ascending keys that identify regions across steps. Without keys the scheduler has no history.
+    Real gravity = 0;                    // magnitude of gravity, for the scale of the error measure [m/s^2]
+    // Ascending contact keys. They identify regions across steps. Without keys the scheduler has no history.
     std::span<const ContactKey> key{};
-    // Clusters of nodes with coupled masses; null or empty: every node has its own mass.
+    // Clusters: groups of nodes with a coupled mass matrix. Null or empty if every node has its own mass.
     const NodeClusters* clusters = nullptr;
-    std::span<const Vec3> cluster_kick{};  // impulse of this step by item of clusters->nodes [N s]
-    RigidInputs rigid{};                   // rigid bodies; none by default
-    ImplicitInputs implicit{};             // deformations of the implicit bodies among them; none by default
-    std::span<const JointBlock> joints{};  // joints of rigid bodies; none by default
-    // Rows of BodyTable of the two bodies of a contact, or no_index; kind and still time by row of BodyTable. Empty: no
-    // body is known to be still.
+    std::span<const Vec3> cluster_kick{};  // impulse of this step's forces, by item of clusters->nodes [N s]
+    RigidInputs rigid{};                   // no rigid bodies by default
+    ImplicitInputs implicit{};             // deformations of the implicit bodies; none by default
+    std::span<const JointBlock> joints{};  // joints between rigid bodies; none by default
+    // first_body and second_body: rows of BodyTable of the two bodies of a contact, or no_index. body_kind and
+    // still_time: by row of BodyTable. If these spans are empty, no body counts as still.
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
-    TouchPlaces touch{};                 // contact points on cylinders
+    TouchPlaces touch{};                 // data of contact points on cylinders
 
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
-    /// `velocity`: velocities of the nodes at the start of the step.
+    /// The column `velocity` holds the node velocities at the start of the step.
     static RegionInputs bind(const Binder& binder, const ContactTable& contact, const NodeTable& node,
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
                              const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
@@ -166,13 +170,13 @@ struct RegionInputs {
 };
 
 struct RegionOutputs {
-    std::span<Vec3> impulse;        // by contact: warm start in, solution out [N s]
-    std::span<Vec3> velocity_next;  // by node: predicted in, solved out [m/s]
-    std::span<Vec3> push_out;       // by node, except nodes of rigid bodies [m/s]
-    // Rows of RigidBodyTable, zero before the solve.
+    std::span<Vec3> impulse;        // by contact: warm start as input, solution as output [N s]
+    std::span<Vec3> velocity_next;  // by node: predicted velocity as input, solution as output [m/s]
+    std::span<Vec3> push_out;       // pseudo velocity by node, except nodes of rigid bodies [m/s]
+    // Contact impulses, moments and pseudo velocities by row of RigidBodyTable, zero before the solve.
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
-    std::span<Vec3> joint_impulse{};      // by joint block: warm start in, solution out
+    std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints) {

@@ -11,29 +11,35 @@ struct SolverSettings {
     Friction friction = Friction::cone;
     WarmStart warm_start = WarmStart::on;
     Real tolerance = 1e-3;  // e_nat, docs/methods/errors.md 2
-    // Used instead in regions whose bodies are all still, if smaller (docs/methods/errors.md 7).
+    // Tolerance of regions whose bodies are all still. It applies if it is smaller than `tolerance`
+    // (docs/methods/errors.md 7).
     Real still_tolerance = 1;
-    Index max_iterations = 200;  // limit of sweeps per region
-    // Do exactly max_iterations sweeps. With pgs, separate and global regions then give bitwise equal results.
+    Index max_iterations = 200;  // upper limit of the sweeps per region
+    // If true, each region does exactly max_iterations sweeps. With method pgs, solving contacts in separate regions or
+    // in one global region then gives bitwise equal results.
     bool fixed_iterations = false;
-    Real relaxation = 1.0;          // over-relaxation of the sweep
-    Real restitution_speed = 0.05;  // slower impacts do not bounce (docs/methods/contact.md 3.2) [m/s]
-    // beta: share of a negative gap that the split impulse corrects per step (docs/methods/contact.md 3.4).
+    Real relaxation = 1.0;          // over-relaxation factor of the sweeps
+    Real restitution_speed = 0.05;  // impacts slower than this do not bounce (docs/methods/contact.md 3.2) [m/s]
+    // beta: fraction of a negative gap that the split impulse corrects per step (docs/methods/contact.md 3.4).
     Real recovery = 0.15;
-    Real recovery_speed = 0.5;  // upper bound of the recovery speed [m/s]
-    // Regions from this size on are solved one by one in their coloured order by all workers.
+    Real recovery_speed = 0.5;  // upper bound of the speed of this correction [m/s]
+    // Regions with at least this many contacts are solved one after the other, each by all workers in its coloured
+    // order.
     Index parallel_region_contacts = 2000;
-    // Shortcuts (docs/methods/skipping.md 1, 2). Switching one off changes results only within the tolerance.
-    bool certify_warm_start = true;  // skip the sweeps if the warm start solves the region
+    // Switches of shortcuts (docs/methods/skipping.md 1, 2). Switching one off changes results only within the
+    // tolerance.
+    bool certify_warm_start = true;  // skip the sweeps if the error of the warm start is within the tolerance
     bool skip_separating = true;     // return zero impulses if no contact closes
-    bool frictionless_rows = true;   // scalar rows if no contact of the region has friction
-    // Regions of 2 to 12 contacts: solve eight in SIMD lanes (method ags, cone, equal static and dynamic friction).
+    bool frictionless_rows = true;   // solve one scalar row per contact if no contact of the region has friction
+    // Solve regions of 2 to 12 contacts in SIMD lanes, eight regions at a time. This needs method ags or automatic, the
+    // friction cone, and equal static and dynamic friction.
     bool small_regions_in_lanes = true;
 
     bool operator==(const SolverSettings&) const = default;
 };
 
-/// True if regions are solved by accelerated sweeps (solve_ags). The shortcuts have their own versions of that method.
+/// True if regions are solved by accelerated sweeps (solve_ags). The shortcuts frictionless_rows and
+/// small_regions_in_lanes require these sweeps.
 inline bool sweeps_accelerated(const SolverSettings& settings) {
     return (settings.method == SolverMethod::ags || settings.method == SolverMethod::automatic) &&
            !settings.fixed_iterations;

@@ -1,6 +1,7 @@
-// Small regions in SIMD lanes. Each lane holds one region of at most K contacts, in the dense form that lumped masses
-// allow (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3): u_i = q_i + sum_j C_ij r_j with scalars C_ij. T
-// is Real8, or Real for the scalar version that a test compares with.
+// Problem data of small regions in SIMD lanes. Each lane holds one region of at most K contacts. Lumped masses allow
+// the dense form u_i = q_i + sum_j C_ij r_j with scalars C_ij, contact velocities u, velocities without impulses q and
+// impulses r (docs/methods/contact.md 2.1, docs/methods/region_solver.md 3). T is Real8, or Real for the scalar version
+// that a test compares with.
 #pragma once
 
 #include <array>
@@ -11,11 +12,11 @@
 
 namespace skerry {
 
-/// The number of contacts of a lane is padded to the next of these sizes.
+/// The number of contacts in a lane is padded to the next of these sizes.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 
-/// Index in lane_sizes for a region with this number of contacts, 2 .. largest_lane_region.
+/// Index in lane_sizes of the smallest size for this number of contacts (2 .. largest_lane_region).
 inline constexpr std::size_t lane_size_class(std::size_t contacts) {
     std::size_t c = 0;
     while (static_cast<std::size_t>(lane_sizes[c]) < contacts) ++c;
@@ -25,20 +26,20 @@ inline constexpr std::size_t lane_size_class(std::size_t contacts) {
 template <class T, int K>
 struct LaneProblem {
     T coupling[K][K];              // C [1/kg]
-    LaneVec3<T> normal[K];         // unit vector; zero at unused places
-    LaneVec3<T> free_velocity[K];  // q [m/s]
-    LaneVec3<T> impulse[K];        // start value, then the solution [N s]
-    T diagonal[K];                 // D of docs/methods/contact.md 2.1; zero at unused places [1/kg]
-    T inverse_diagonal[K];         // zero at unused places [kg]
+    LaneVec3<T> normal[K];         // unit vector; zero for unused contacts
+    LaneVec3<T> free_velocity[K];  // q, velocity without impulses [m/s]
+    LaneVec3<T> impulse[K];        // start value as input, then the solution [N s]
+    T diagonal[K];                 // D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
+    T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
     T scale;      // scale of e_nat [sqrt(J)]
     T tolerance;  // tolerance of e_nat
 };
 
-/// Input of one region for a lane.
+/// Input data of one region.
 struct LaneRegion {
     std::span<const LumpedContact> contact;
-    std::span<const Vec4> free_velocity;  // q by contact [m/s]
+    std::span<const Vec4> free_velocity;  // by contact: q, velocity without impulses [m/s]
     std::span<Vec4> impulse;              // [N s]
     std::size_t node_count;
     Real scale, tolerance;
@@ -68,10 +69,10 @@ Vec4 lane_of(const LaneVec3<T>& all, int lane) {
     return {lane_of(all.x, lane), lane_of(all.y, lane), lane_of(all.z, lane), 0};
 }
 
-/// Writes C = J M^-1 J^T of the region into its lane. Unused places keep their values.
+/// Writes the matrix C = J M^-1 J^T of the region into its lane. Entries of unused contacts keep their values.
 template <class T, int K>
 void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
-    std::array<Real, 4 * K> step;  // by node: its velocity change per impulse of contact i [1/kg]
+    std::array<Real, 4 * K> step;  // by node: velocity change per unit impulse of contact i [1/kg]
     std::fill_n(step.begin(), region.node_count, 0);
     for (std::size_t i = 0; i < region.contact.size(); ++i) {
         const LumpedContact& one = region.contact[i];
@@ -87,7 +88,7 @@ void fill_coupling(const LaneRegion& region, int lane, LaneProblem<T, K>& proble
     }
 }
 
-/// Clears the problem, so that unused lanes and places need no impulse.
+/// Resets the problem, so that unused lanes and contacts have zero impulses.
 template <class T, int K>
 void clear(LaneProblem<T, K>& problem) {
     problem = LaneProblem<T, K>();
@@ -101,7 +102,7 @@ void fill_lane(const LaneRegion& region, int lane, LaneProblem<T, K>& problem) {
     set_lane(problem.tolerance, lane, region.tolerance);
     for (std::size_t i = 0; i < region.contact.size(); ++i) {
         const LumpedContact& contact = region.contact[i];
-        if (contact.node_count == 0) continue;  // no impulse of this contact could move anything
+        if (contact.node_count == 0) continue;  // an impulse of this contact moves no node
         set_lane(problem.normal[i], lane, contact.normal);
         set_lane(problem.free_velocity[i], lane, region.free_velocity[i]);
         set_lane(problem.impulse[i], lane, region.impulse[i]);

@@ -1,6 +1,6 @@
-// Accelerated Gauss-Seidel on regions in SIMD lanes: docs/methods/region_solver.md 2, 3 in the dense form. Lanes are
-// independent: no operation combines them, and solved lanes do not change. So the result of a region does not depend on
-// the other lanes.
+// Accelerated Gauss-Seidel sweeps on regions in SIMD lanes: docs/methods/region_solver.md 2, 3 in the dense form. No
+// operation combines lanes, and solved lanes do not change. The result of a region therefore does not depend on the
+// other lanes.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 
 namespace skerry {
 
-/// Up to this number of sweeps the watchdog of solve_ags does not act, so both do the same iteration.
+/// Largest number of sweeps in lanes. Up to this number the watchdog of solve_ags does not act, so solve_lanes and
+/// solve_ags do the same iteration.
 inline constexpr Index lane_sweep_limit = watchdog_patience;
 
 inline bool any_lane(bool mask) {
@@ -29,7 +30,7 @@ LaneVec3<T> select(const LaneMask<T>& mask, const LaneVec3<T>& a, const LaneVec3
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
-/// u_i for the present impulse.
+/// Velocity u_i of contact i for the present impulses [m/s]
 template <class T, int K>
 LaneVec3<T> lane_velocity(const LaneProblem<T, K>& problem, int i) {
     LaneVec3<T> u = problem.free_velocity[i];
@@ -37,7 +38,7 @@ LaneVec3<T> lane_velocity(const LaneProblem<T, K>& problem, int i) {
     return u;
 }
 
-/// Lane version of project_coulomb with equal coefficients. NaN stays NaN.
+/// Lane version of project_coulomb with equal static and dynamic coefficients. NaN inputs give NaN.
 template <class T>
 LaneVec3<T> project_lanes(const LaneVec3<T>& z, const LaneVec3<T>& normal, const T& mu) {
     const T zero{};
@@ -64,7 +65,7 @@ LaneVec3<T> project_lanes_onto_cone(const LaneVec3<T>& z, const LaneVec3<T>& nor
     return select<T>(mu * length <= -along, {zero, zero, zero}, inside);
 }
 
-/// e_nat of docs/methods/errors.md 2.
+/// Error e_nat of docs/methods/errors.md 2.
 template <class T, int K>
 T lane_error(const LaneProblem<T, K>& problem) {
     T sum{};
@@ -80,7 +81,7 @@ T lane_error(const LaneProblem<T, K>& problem) {
     return square_root(sum) / problem.scale;
 }
 
-/// One sweep. Lanes outside of `swept` keep their impulses.
+/// Does one sweep. Lanes outside the mask `swept` keep their impulses.
 template <class T, int K>
 SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
                              Real relaxation) {
@@ -98,8 +99,8 @@ SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* prev
     return sum;
 }
 
-/// Lane version of a Delassus operator: the dense form, without velocities carried along. A lane that is no longer
-/// swept keeps its impulses.
+/// Lane version of a Delassus operator. It uses the dense form and stores no node velocities. Lanes outside the mask
+/// `swept_` keep their impulses.
 template <class T, int K>
 class LaneOperator {
 public:
@@ -114,7 +115,7 @@ public:
         return sweep_lanes<T, K>(problem_, previous_, swept_, relaxation);
     }
     T error() const { return lane_error<T, K>(problem_); }
-    /// `tolerance`: one number, or one per lane.
+    /// `tolerance` is one number for all lanes, or one number per lane.
     LaneMask<T> suggests_check(const T& change, const auto& tolerance) const {
         return change <= (tolerance * tolerance) * (problem_.scale * problem_.scale);
     }
@@ -141,8 +142,8 @@ struct LaneOutcome {
     LaneMask<T> solved;
 };
 
-/// Lane version of ErrorTest. The last iteration does not force a measurement: unfinished regions are solved again
-/// outside of lanes.
+/// Lane version of ErrorTest. The last iteration does not require a measurement, because unfinished regions are solved
+/// again outside of lanes.
 template <class T, int K>
 class LaneTest {
 public:
@@ -160,7 +161,7 @@ public:
         outcome_.error = solved ? error : outcome_.error;
         outcome_.iterations = solved ? zero + static_cast<Real>(iteration) : outcome_.iterations;
         constexpr Real infinite = std::numeric_limits<Real>::infinity();
-        // keep lanes whose error is finite and above the tolerance, or is not due
+        // A lane continues if no measurement is due, or if the measured error is finite and above the tolerance.
         op_.keep_sweeping(op_.swept() & !(due & !((error > tolerance_) & (error < zero + infinite))));
         if (!any_lane(op_.swept())) return true;
         if (all_due) check_ = next_check(iteration);
@@ -175,8 +176,8 @@ private:
     Index check_ = 1;
 };
 
-/// Sweeps the `active` lanes until each is solved to its tolerance, or for max_iterations sweeps. The impulse of a lane
-/// that is not solved is not usable.
+/// Sweeps the `active` lanes until the error of each is within its tolerance, but at most max_iterations times. The
+/// impulses of an unsolved lane must not be used.
 template <class T, int K>
 LaneOutcome<T> solve_lanes(LaneProblem<T, K>& problem, const LaneMask<T>& active, Index max_iterations,
                            Real relaxation) {

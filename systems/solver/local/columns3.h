@@ -1,4 +1,4 @@
-// A 3x3 matrix by columns, padded to vector registers.
+// A 3x3 matrix stored as columns that are padded to vector registers.
 #pragma once
 
 #include <array>

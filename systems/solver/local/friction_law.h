@@ -1,5 +1,6 @@
-// Friction laws as projections of one contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). V is
-// a world vector of size 3, or 4 with a last entry of zero. `normal` is a unit vector, `mu` Coulomb's coefficient.
+// Friction laws as projections of a contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). Type V
+// is a world vector of size 3, or of size 4 with a last entry of zero. `normal` is a unit vector, `mu` holds the
+// coefficients of friction. *The paper* is Lazarevych, Szekely, Harders (docs/methods/contact.md 5).
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 namespace skerry {
 
-/// A world vector padded to a vector register; the last entry is zero.
+/// A world vector padded to a vector register. The last entry is zero.
 using Vec4 = Eigen::Matrix<Real, 4, 1>;
 
 inline Vec4 padded(const Vec3& v) {
@@ -24,13 +25,15 @@ inline Vec3 shortened(const Vec4& v) {
     return v.head<3>();
 }
 
-/// Static and dynamic coefficient: an impulse inside the static cone sticks, one outside slides with the dynamic one.
+/// Static and dynamic friction coefficients. An impulse inside the static cone sticks. An impulse outside of it slides
+/// with the dynamic coefficient.
 struct FrictionLimits {
     Real stick, slide;
 };
 
-/// Exact Coulomb solution of one isotropic contact; `z` is the impulse that would stop it. The tangential part is
-/// scaled down to the limit, the normal part is kept (docs/methods/friction.md 2.1). NaN stays NaN.
+/// Exact Coulomb solution of one contact with isotropic mobility. `z` is the impulse that would stop the contact. The
+/// tangential part is scaled down to the friction limit; the normal part is unchanged (docs/methods/friction.md 2.1).
+/// NaN inputs give NaN.
 template <class V>
 inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -44,7 +47,8 @@ inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     return pressed + (mu.slide * along / std::sqrt(length_squared)) * tangential;
 }
 
-/// Variant for the paper's pyramid (eq. 6): each tangential component is clamped separately.
+/// Version of project_coulomb for the friction pyramid (eq. 6 of the paper). Each tangential component is clamped
+/// separately.
 template <class V>
 inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -60,13 +64,15 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     return result;
 }
 
-/// Euclidean projection onto the cone |z_t| <= mu z_n: P_K of docs/methods/friction.md 2.5, for the error measures.
+/// Euclidean projection of z onto the cone |z_t| <= mu z_n, for the error measures: P_K of docs/methods/friction.md
+/// 2.5.
 template <class V>
 inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
     const V tangential = z - along * normal;
     const Real length = tangential.norm();
-    // Test the polar cone first: a pulling impulse without tangential part passes both tests if mu is zero.
+    // The test of the polar cone comes first. If mu is zero, a negative normal impulse without tangential part passes
+    // both tests.
     if (mu * length <= -along) return V::Zero();
     if (length <= mu * along) return z;
     const Real nearest = (along + mu * length) / (1 + mu * mu);
@@ -79,9 +85,9 @@ inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Fricti
     return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
 }
 
-/// W(lambda) of the paper's (19), read as in docs/methods/contact.md 5.6: the part of the residual along which the
-/// impulse may move without violating its limits. A zero impulse can only grow; one at the friction limit cannot move
-/// further outwards.
+/// W(lambda) of equation (19) of the paper, interpreted as in docs/methods/contact.md 5.6. It is the part of the
+/// residual along which the impulse may move without violating its limits. A zero impulse can only grow. An impulse at
+/// the friction limit cannot move outwards.
 template <class V>
 inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu,
                             Friction friction) {
@@ -89,7 +95,8 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
     const Real growth = normal.dot(residual);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
-    constexpr Real rounding = 1e-9;  // relative; a projected impulse this close to the surface counts as on it
+    constexpr Real rounding =
+        1e-9;  // relative distance from the cone surface below which a projected impulse counts as on the surface
     const Real limit = mu.slide * along * (1 - rounding);
     if (friction != Friction::pyramid) {
         const V tangential = impulse - along * normal;

@@ -1,5 +1,5 @@
-// Law of one block of three joint rows. Locked rows are equations; the axis has limits and a motor
-// (docs/methods/joints.md 2, 3).
+// Law of one block of three joint rows. The relative velocity of a locked row is zero. The third row may be a free axis
+// with limits and a motor (docs/methods/joints.md 2, 3).
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,15 @@
 
 namespace skerry {
 
-/// Limits and target velocity of the axis [m/s or rad/s], and the greatest impulse `most` of its motor [N s or N m s]
+/// Velocity limits `low`, `high` and motor velocity `target` of the axis [m/s or rad/s], and the greatest impulse
+/// `most` of the motor [N s or N m s]
 struct AxisBounds {
     Real low = -std::numeric_limits<Real>::infinity(), high = std::numeric_limits<Real>::infinity();
     Real target = 0, most = 0;
 };
 
-/// Returns r with u = w r + b. The motor drives u to `target` within its greatest impulse; limits low and high always
-/// hold.
+/// Returns the impulse r of the axis, where u = w r + b is the axis velocity and w the mobility. The motor drives u to
+/// `target` within its greatest impulse. The limits `low` and `high` hold regardless of the motor.
 inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
     if (!(w > 0)) return 0;
     const Real motor = axis.most > 0 ? std::clamp((axis.target - b) / w, -axis.most, axis.most) : 0;
@@ -26,17 +27,17 @@ inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
     return motor;
 }
 
-/// Three rows with their block of W, in their own frame.
+/// Three joint rows with their diagonal block of W, in the frame of the joint.
 struct JointLaw {
-    bool axis_free;  // the third row is an axis; otherwise it is locked like the others
+    bool axis_free;  // true: the third row is a free axis; false: it is locked, too
     AxisBounds axis{};
     Mat3 block;          // block of W
-    Mat3 inverse;        // inverse of its locked part
+    Mat3 inverse;        // inverse of the locked part of the block
     Real axis_mobility;  // mobility of the axis while the locked rows hold (Schur complement)
 
     void prepare(const Mat3& of, bool with_axis);
 
-    /// Returns r with u = W r + b and u zero in the locked rows.
+    /// Returns the impulse r with u = W r + b, where u is zero in the locked rows.
     Vec3 answer(const AxisBounds& bounds, const Vec3& b) const {
         if (!axis_free) return -(inverse * b);
         const Vec3 held(b.x(), b.y(), 0), towards(block(0, 2), block(1, 2), 0);
@@ -48,7 +49,8 @@ struct JointLaw {
     }
     Vec3 answer(const Vec3& b) const { return answer(axis, b); }
 
-    /// Residual of the law at r and u, with a scalar in place of W (docs/methods/errors.md 1).
+    /// Residual of the joint law at impulse r and velocity u, with the scalar `mobility` in place of W
+    /// (docs/methods/errors.md 1).
     Vec3 natural_map(const Vec3& r, const Vec3& u, Real mobility) const {
         Vec3 residual = u / mobility;
         if (axis_free) residual.z() = r.z() - answer_axis(axis, mobility, u.z() - mobility * r.z());

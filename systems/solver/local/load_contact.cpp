@@ -6,8 +6,8 @@
 namespace skerry {
 namespace {
 
-/// Velocity of the contact at the start of the step and as predicted, without deformation of implicit bodies by the
-/// kick [m/s]
+/// Contact velocity at the start of the step, and predicted velocity after the kick. The predicted velocity excludes
+/// the kick of the deformations of implicit bodies [m/s]
 struct AroundKick {
     Vec3 before, now;
 };
@@ -44,11 +44,11 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     if (restitution == 0) return closing;
     const auto [before, coming] = around_kick(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
-    // An approach that is not clearly faster than the velocity change by forces in one step is no impact
-    // (docs/methods/contact.md 3.2). Weight alone gives g h to a resting contact. Elastic forces can throw a node down
-    // in each step, and the floor would throw it up again for ever.
+    // A contact is an impact only if it approaches clearly faster than the forces of one step change its velocity
+    // (docs/methods/contact.md 3.2). Weight alone gives a resting contact the speed g h. Elastic forces can push a node
+    // down in every step, and rebounds would then keep the node bouncing forever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
-    constexpr Real clearly = 2;  // factor
+    constexpr Real clearly = 2;  // an impact is faster than this multiple of the velocity change
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;
@@ -60,9 +60,10 @@ Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> 
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,
                turn = slip - slip_before;
-    // A contact that is about to stop or reverse has no sliding direction halfway: no correction. In between it fades
-    // out, to keep the step continuous.
-    constexpr Real gone = 2, slope = 4;  // full up to a quarter of the speed, none from half of it on
+    // If the forces nearly stop or reverse the sliding, no direction at the middle of the step is defined, and the
+    // correction is zero. The factor `fading` makes the correction a continuous function of the velocities.
+    // `fading` is 1 if the velocity change is at most a quarter of the sliding speed, and 0 if it is at least a half.
+    constexpr Real gone = 2, slope = 4;
     const Real fading = gone - slope * turn.norm() / slip_before.norm();
     if (!(fading > 0) || turn.isZero(0)) return Vec3::Zero();
     return 0.5 * std::min(Real(1), fading) * (turn - (slip.dot(turn) / slip.squaredNorm()) * slip);

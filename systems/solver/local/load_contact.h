@@ -1,4 +1,4 @@
-// Builds the solver's data of a contact from the rows of the step's tables.
+// Builds the solver's data of a contact from the tables of the step.
 #pragma once
 
 #include <algorithm>
@@ -10,20 +10,20 @@
 
 namespace skerry {
 
-/// b_n of docs/methods/contact.md 3.1. The gap may close within the step; an impact rebounds with the restitution. Gaps
-/// below zero are left to the split impulse (push_contact.h).
+/// Normal bias b_n of docs/methods/contact.md 3.1. It allows the gap to close within the step, and makes an impact
+/// rebound with the coefficient of restitution. Negative gaps are corrected by the split impulse (push_contact.h) [m/s]
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
-/// Half of the turn of the sliding velocity by the forces of this step: its component perpendicular to the sliding
-/// direction. The friction law uses the velocity after the impulse. Without this correction it would act along the
-/// sliding direction at the end of the kick, a first-order error, instead of the middle. Zero without sliding, friction
-/// or turn [m/s]
+/// Half of the change of the sliding velocity by the forces of this step, perpendicular to the sliding direction. The
+/// friction law uses the velocity at the end of the step. With this correction friction acts along the sliding
+/// direction at the middle of the step; otherwise the direction would have a first-order error. Zero if there is no
+/// friction, no sliding or no change of direction [m/s]
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
-/// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` is the predicted
-/// velocity of the nodes. Nodes for which `elsewhere(node, weight)` is true move with a rigid body; they are no nodes
-/// of the contact.
+/// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` holds the predicted
+/// node velocities. A node moves with a rigid body if `elsewhere(node, weight)` returns true; such a node is omitted
+/// from the LumpedContact.
 template <class Local, class Elsewhere>
 LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                            const SolverSettings& settings, Real h, Local&& local, Elsewhere&& elsewhere) {
@@ -52,9 +52,9 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }
-    // A moving node with a share below 1e-6 would have to move a million times faster than the contact to stop it, so
-    // it cannot.
-    constexpr Real smallest_share = 1e-12;  // ratio of squared weights
+    // If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than the
+    // contact. The contact then counts as immovable.
+    constexpr Real smallest_share = 1e-12;  // smallest ratio of squared weights
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};

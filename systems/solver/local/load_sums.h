@@ -1,5 +1,5 @@
-// Sums over the contacts of a region, collected while loading: they tell whether anything is to be solved, and give the
-// scale of the error.
+// Sums over the contacts of a region, collected while loading. They show whether the region needs a solve, and give the
+// scale of its error.
 #pragma once
 
 #include "systems/solver/local/lumped_contact.h"
@@ -7,14 +7,14 @@
 namespace skerry {
 
 struct LoadSums {
-    Real asked = 0;              // squared natural map of zero impulses, over closing contacts [J]
-    Real moving = 0;             // squared contact velocities over D, including contacts that do not close [J]
-    Real inverse_diagonals = 0;  // sum of 1/D [kg]
-    bool separating = true;      // no contact closes: zero impulses solve it
-    bool frictionless = true;    // no contact has friction
-    bool one_friction = true;    // the static and dynamic coefficients of every contact are equal
+    Real asked = 0;   // sum of D |F|^2 over closing contacts, where F is the natural map at zero impulses [J]
+    Real moving = 0;  // sum of |u|^2 / D over all contacts, closing or not [J]
+    Real inverse_diagonals = 0;  // sum of 1/D over the contacts [kg]
+    bool separating = true;      // true if no contact closes, so that zero impulses are the solution
+    bool frictionless = true;    // true if no contact has friction
+    bool one_friction = true;    // true if each contact has equal static and dynamic coefficients
 
-    /// `u`: velocity of the contact without impulses.
+    /// `u` is the velocity of the contact without impulses [m/s]
     void add(const LumpedContact& contact, Friction friction, const Vec4& u) {
         frictionless &= contact.friction.stick == 0;
         one_friction &= contact.friction.stick == contact.friction.slide;
@@ -37,9 +37,9 @@ struct LoadSums {
     }
 };
 
-/// Scale of e_nat. It leaves out velocities that no impulse stops (docs/methods/errors.md 2.1, 2.2). Otherwise the
-/// error allowed per step would not decrease with the step for sliding or slightly open contacts, and would add up over
-/// the steps [sqrt(J)]
+/// Scale by which the error e_nat is divided. It excludes velocities that no impulse stops, such as sliding
+/// (docs/methods/errors.md 2.1, 2.2). With them, the allowed error per step would not decrease with the step length for
+/// sliding or slightly open contacts, and these errors would add up over the steps [sqrt(J)]
 Real error_scale(const LoadSums& sums, Real gravity, Real h, Real tolerance);
 
 }  // namespace skerry

@@ -1,5 +1,6 @@
-// One contact of lumped masses: its block of W is a scalar times the identity (docs/methods/contact.md 2.1). Solving it
-// is a gather of node velocities, a projection and a scatter.
+// One contact between nodes with lumped masses. Its diagonal block of W is a scalar times the identity
+// (docs/methods/contact.md 2.1). A contact step gathers node velocities, projects the impulse, and scatters its change
+// to the nodes.
 #pragma once
 
 #include <array>
@@ -10,28 +11,28 @@
 
 namespace skerry {
 
-/// Data of one contact for a sweep, side by side. The stencil omits nodes that do not move; `offset` holds their
+/// Data of one contact for a sweep, stored contiguously. Nodes that do not move are omitted; `offset` contains their
 /// velocity.
 struct LumpedContact {
-    Vec4 normal;                 // unit vector
-    Vec4 offset;                 // fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
-    std::array<Real, 4> weight;  // weights of the moving nodes
-    std::array<Real, 4> step;    // weight times inverse mass [1/kg]
-    std::array<Index, 4> node;   // rows of the region's own nodes
-    Index node_count;            // 0: it moves no node outside of rigid bodies
+    Vec4 normal;  // unit vector
+    Vec4 offset;  // velocity of fixed nodes - surface velocity + bias along the normal - midpoint_slip [m/s]
+    std::array<Real, 4> weight;  // stencil weights of the moving nodes
+    std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
+    std::array<Index, 4> node;   // rows of the moving nodes in the region's list
+    Index node_count;            // number of moving nodes; 0 if the contact moves only rigid bodies or nothing
     Real diagonal;               // D of docs/methods/contact.md 2.1 [1/kg]
-    Real inverse_diagonal;       // 0: no impulse of this contact could move anything [kg]
-    Real bias;                   // part of the offset along the normal [m/s]
+    Real inverse_diagonal;       // 1/D; 0 if no impulse of this contact can move anything [kg]
+    Real bias;                   // b_n of docs/methods/contact.md 3.1, included in `offset` [m/s]
     FrictionLimits friction;
 };
 
-/// Returns start + sum of weight times velocity over the moving nodes.
+/// Returns `start` plus the weighted sum of the velocities of the moving nodes.
 [[gnu::always_inline]] inline Vec4 add_node_velocities(const LumpedContact& contact, const Vec4* velocity, Vec4 start) {
     for (Index a = 0; a < contact.node_count; ++a) start += contact.weight[a] * velocity[contact.node[a]];
     return start;
 }
 
-/// u = W r + q of one contact.
+/// Velocity u = W r + q of one contact, from the present node velocities [m/s]
 inline Vec4 contact_velocity(const LumpedContact& contact, const Vec4* velocity) {
     return add_node_velocities(contact, velocity, contact.offset);
 }
@@ -40,7 +41,7 @@ inline void apply_impulse(const LumpedContact& contact, const Vec4& impulse, Vec
     for (Index a = 0; a < contact.node_count; ++a) velocity[contact.node[a]] += contact.step[a] * impulse;
 }
 
-/// Scalar c: the block of W of two contacts is c times the identity [1/kg]
+/// Scalar c, where the block of W for contacts a and b is c times the identity [1/kg]
 inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
     Real coupling = 0;
     for (Index k = 0; k < a.node_count; ++k)
@@ -49,8 +50,8 @@ inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
     return coupling;
 }
 
-/// Gauss-Seidel step of one contact (docs/methods/friction.md 2.2); `apply` moves nodes by an impulse. Returns D
-/// |change|^2.
+/// Gauss-Seidel step of one contact (docs/methods/friction.md 2.2). `apply` changes the node velocities by an impulse.
+/// Returns D |change of the impulse|^2 [J]
 template <class Apply>
 inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
                           Vec4& impulse, const Apply& apply) {
@@ -59,7 +60,7 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
     const Vec4 next = project_friction(stopping, contact.normal, contact.friction, friction);
     const Vec4 change = next - impulse;
     const Real size = change.dot(change);
-    if (size == 0) return 0;  // no change, as for most open contacts: nothing to scatter
+    if (size == 0) return 0;  // the impulse is unchanged, as for most open contacts
     apply(contact, change, velocity);
     impulse = next;
     return contact.diagonal * size;
@@ -71,8 +72,8 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
         [](const LumpedContact& of, const Vec4& change, Vec4* moved) { apply_impulse(of, change, moved); });
 }
 
-/// F_i of docs/methods/errors.md 1: difference between the impulse and the one that the law gives for its velocity.
-/// Uses the De Saxce form where it exists (cone, equal coefficients), otherwise the residual of the contact step.
+/// F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the velocity u. Uses
+/// the De Saxce form for a cone with equal coefficients, otherwise the residual of the contact step.
 inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
     const FrictionLimits mu = contact.friction;
     if (friction == Friction::cone && mu.stick == mu.slide) {
@@ -84,7 +85,7 @@ inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const V
     return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
 }
 
-/// True if a contact with this velocity needs no impulse.
+/// True if a contact with velocity u opens, so that it needs no impulse.
 inline bool separates(const LumpedContact& contact, const Vec4& u) {
     return contact.normal.dot(u) >= 0;
 }

@@ -1,5 +1,5 @@
-// Split impulse of one contact: corrects penetration by moving positions only (docs/methods/contact.md 3.4). As a
-// velocity the correction would add energy (docs/methods/time_stepping.md 2.3).
+// Split impulse of one contact: it corrects penetration by moving positions only (docs/methods/contact.md 3.4). A
+// correction by velocities would add energy (docs/methods/time_stepping.md 2.3).
 #pragma once
 
 #include <algorithm>
@@ -11,40 +11,43 @@
 
 namespace skerry {
 
-/// Gaps above minus this value are not corrected. A resting contact solved to 1e-3 loses at most g h^2 / 1000 per step,
-/// so the first part is a hundred steps of drift. The second part is the rounding of positions some kilometres from the
-/// origin [m]
+/// Penetrations smaller than this depth are not corrected. A resting contact solved to a tolerance of 1e-3 sinks by at
+/// most g h^2 / 1000 per step, so the first term is the drift of a hundred steps. The second term is the rounding error
+/// of positions some kilometres from the origin [m]
 inline Real push_slop(Real gravity, Real h) {
-    constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2; [m]
+    constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2; rounding error of positions [m]
     return of_kick * gravity * h * h + rounding;
 }
 
-/// Correction speed for a penetration `depth`. It is limited so that m v^2 / 2 is half a thousandth of the work of
-/// lifting the mass m by `depth`, or to a hundredth of recovery_speed if that is more (docs/methods/contact.md 3.4)
+/// Correction speed v for a penetration `depth`. One upper bound makes m v^2 / 2 half a thousandth of the work of
+/// lifting the mass m by `depth`; this bound is at least a hundredth of recovery_speed (docs/methods/contact.md 3.4)
 /// [m/s]
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
-    constexpr Real of_fall = 0.03, of_limit = 0.01;  // fractions of sqrt(gravity depth) and of recovery_speed
+    constexpr Real of_fall = 0.03,
+                   of_limit = 0.01;  // the two bounds as fractions of sqrt(gravity depth) and of recovery_speed
     const Real cheap = std::max(of_fall * std::sqrt(gravity * depth), of_limit * settings.recovery_speed);
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }
 
-/// Lower bound of p_n, negated: negative values request a push. A contact that is not pressed in requests none, even if
-/// the velocity solve left an error. So a region without a pressed contact yields zero, alone or within a larger one.
-/// `normal_velocity`: u_n [m/s]
+/// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n. A negative bias requests a push.
+/// A contact that does not penetrate requests no push, even if the velocity solve left an error. A region without
+/// penetration thus gets zero pseudo velocities, alone or within a larger region. `normal_velocity` is u_n, the normal
+/// velocity of the solved contact [m/s]
 inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Variant for contacts whose gap shrinks by rotation at the speed `loss` (m/s, below 0), which the velocities do not
-/// include. Requests compensation of the loss as far as the gap cannot absorb it.
+/// Bias of a contact whose gap also shrinks by rotation. `loss` is the speed of this shrinking, below 0; the contact
+/// velocity does not include it. The push compensates the part of the loss that the gap cannot absorb [m/s]
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;
     return left < 0 ? std::max(left, loss) : left;
 }
 
-/// Gauss-Seidel step of one contact on the pseudo velocities; `apply` moves nodes by an impulse. Returns D change^2.
+/// Gauss-Seidel step of one contact on the pseudo velocities. `apply` changes the pseudo velocities by an impulse.
+/// Returns D (change of the impulse)^2 [J]
 template <class Apply>
 inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse, const Apply& apply) {
     Real along = bias;

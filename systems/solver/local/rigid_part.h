@@ -1,4 +1,5 @@
-// Part of a contact that belongs to rigid bodies. With it the block of W is a matrix (docs/methods/rigid_bodies.md 3).
+// Part of a contact that belongs to rigid bodies. The diagonal block of W of such a contact is a full 3x3 matrix
+// (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <array>
@@ -20,15 +21,15 @@ inline Mat3 cross_matrix(const Vec3& a) {
     return matrix;
 }
 
-/// A rigid body in a contact: sums over its nodes in the stencil of the weights, and of weight times position.
+/// Effect of a contact on one rigid body. `weight` and `arm` are sums over the body's nodes in the stencil.
 struct RigidTerm {
     Index row = no_index;  // row of RigidBodyTable
-    Index slot = 0;        // index of its velocity among those of the region; its spin is the next one
-    Real weight = 0;       // often 1 or -1
-    Real step = 0;         // weight over mass [1/kg]
-    Vec4 arm;              // vector from the centre of mass, times weight [m]
-    Columns3 spin_step;    // change of spin per impulse: I^-1 [arm] [1/(kg m)]
-    Real turn = 0;         // weight of the spin: 1 or -1 in a joint's rows of spins, whose impulses are moments
+    Index slot = 0;        // index of the body's velocity in the region; the next index is its spin
+    Real weight = 0;       // sum of the stencil weights, often 1 or -1
+    Real step = 0;         // weight divided by mass [1/kg]
+    Vec4 arm;              // sum of weight times vector from the centre of mass [m]
+    Columns3 spin_step;    // change of spin per unit impulse: I^-1 times the cross-product matrix of `arm` [1/(kg m)]
+    Real turn = 0;  // weight of the spin: 1 or -1 in joint rows of rotation, whose impulses are moments; otherwise 0
 };
 
 struct RigidPart {
@@ -36,14 +37,14 @@ struct RigidPart {
     Index term_count = 0;
     std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
     Columns3 mobility;  // W_ii [1/kg]
-    Columns3 frame;     // normal and two tangents
-    LocalBlock block;   // W_ii in the frame
-    Real along_normal;  // n W_ii n without deformation of bodies [1/kg]
+    Columns3 frame;     // contact frame; its columns are the normal and two tangents
+    LocalBlock block;   // W_ii in the contact frame, prepared for solve_block
+    Real along_normal;  // n W_ii n for the normal n, with deformable bodies taken as rigid [1/kg]
     Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
 };
 
-/// Adds the velocity of a contact's rigid bodies to `start`. Always inlined: it is part of every contact step, and
-/// compilers tend not to inline it.
+/// Adds the contact velocity due to rigid bodies to `start`. The function is always inlined: every contact step calls
+/// it, and compilers tend not to inline it.
 [[gnu::always_inline]] inline Vec4 add_rigid_velocities(const RigidPart& part, const Vec4* velocity, Vec4 start) {
     for (Index k = 0; k < part.term_count; ++k) {
         const RigidTerm& term = part.term[static_cast<std::size_t>(k)];
@@ -61,7 +62,7 @@ struct RigidPart {
     }
 }
 
-/// Share of the rigid bodies in the block of W of two contacts [1/kg]
+/// Contribution of the rigid bodies to the block of W for contacts a and b [1/kg]
 inline Mat3 rigid_coupling(const RigidPart& a, const RigidPart& b) {
     Mat3 sum = Mat3::Zero();
     for (Index k = 0; k < a.term_count; ++k)

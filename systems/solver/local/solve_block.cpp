@@ -7,10 +7,11 @@
 namespace skerry {
 namespace {
 
-/// Notation of docs/methods/friction.md 3.1, 3.2: impulse as a function of s = |u_t| / |r_t|, and its derivatives.
+/// Impulse of a sliding contact as a function of s = |u_t| / |r_t|, and its derivatives with respect to s. The notation
+/// is that of docs/methods/friction.md 3.1, 3.2.
 struct SlipCurve {
     const LocalBlock& block;
-    Real bn, b[2];  // tangents after elimination, along the principal axes [m/s]
+    Real bn, b[2];  // `b`: tangential velocity after elimination of the normal, along the principal axes [m/s]
     Real mu;
 
     Real rt[2], rt_length, rn, rt_slope, rn_slope;
@@ -32,7 +33,7 @@ struct SlipCurve {
         const Real limit = mu * rn;
         return rn > 0 && std::abs(rt_length - limit) <= 8 * std::numeric_limits<Real>::epsilon() * limit;
     }
-    /// Newton step in s for 1/|rt| - 1/(mu rn), which is nearly linear in s. Needs rn > 0.
+    /// Newton step in s for the root of 1/|r_t| - 1/(mu r_n). This function is nearly linear in s. It needs r_n > 0.
     Real newton_step() const {
         const Real limit = mu * rn;
         const Real value = 1 / rt_length - 1 / limit;
@@ -41,7 +42,7 @@ struct SlipCurve {
     }
 };
 
-/// Finds the s > 0 at which the impulse lies on the cone. Newton's method with bisection in a bracket.
+/// Finds the s > 0 at which the impulse lies on the friction cone, by Newton's method with bisection in a bracket.
 Real find_slip_safely(SlipCurve& curve) {
     const LocalBlock& block = curve.block;
     const Real b_length = std::hypot(curve.b[0], curve.b[1]);
@@ -56,7 +57,7 @@ Real find_slip_safely(SlipCurve& curve) {
         high *= 2;
     Real s = 0;
     curve.evaluate(s);
-    constexpr int iteration_limit = 100;  // bisection alone needs about 60
+    constexpr int iteration_limit = 100;  // pure bisection needs about 60 iterations
     for (int iteration = 0; iteration < iteration_limit; ++iteration) {
         if (curve.on_cone()) break;
         (curve.inside_cone() ? high : low) = s;
@@ -72,11 +73,11 @@ Real find_slip_safely(SlipCurve& curve) {
     return s;
 }
 
-/// Newton's method from the last solution, which takes one or two steps. Any root is a solution. Without quick
-/// convergence it uses the safe search.
+/// Newton's method, started from the last solution; one or two steps are usual. Any root with r_n > 0 is a solution. If
+/// Newton's method does not converge quickly, find_slip_safely takes over.
 Real find_slip(SlipCurve& curve, Real start) {
     Real s = start;
-    constexpr int fast_limit = 6;  // three times the usual number
+    constexpr int fast_limit = 6;  // limit of Newton iterations, three times the usual number
     for (int iteration = 0; iteration < fast_limit && s > 0; ++iteration) {
         curve.evaluate(s);
         if (!(curve.rn > 0)) break;
@@ -119,8 +120,8 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // A rank-deficient block leaves rounding errors of either sign here.
-    constexpr Real rank_rounding = 1e-14;  // fraction of the trace
+    // For a rank-deficient block, rounding errors make this eigenvalue slightly positive or negative.
+    constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);
     block.coupling[0] = block.cosine * w1 - block.sine * w2;
@@ -146,7 +147,7 @@ Vec3 solve_block(LocalBlock& block, const Vec3& b, Real mu) {
     Real shrink = 1;
     if (!curve.inside_cone()) {
         block.slip = find_slip(curve, block.slip);
-        shrink = curve.mu * curve.rn / curve.rt_length;  // exactly onto the cone
+        shrink = curve.mu * curve.rn / curve.rt_length;  // moves the impulse exactly onto the cone
     }
     const Real r1 = shrink * curve.rt[0], r2 = shrink * curve.rt[1];
     return {curve.rn, block.cosine * r1 + block.sine * r2, -block.sine * r1 + block.cosine * r2};

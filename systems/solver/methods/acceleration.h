@@ -1,7 +1,8 @@
-// Acceleration of sweeps (docs/methods/region_solver.md 2): Nesterov's extrapolation, a restart when a step turns
-// against the motion, a bound on the residual, and a watchdog that returns to plain sweeps if nothing is gained. T is
-// Real, or Real8 for eight regions in SIMD lanes; each lane has the bits of a region solved alone. The constants were
-// tuned by hand on the sheets, stacks and tilted jams of docs/solvers.md, "Constants".
+// Acceleration of sweeps (docs/methods/region_solver.md 2): Nesterov's extrapolation, a restart when a sweep changes
+// the impulses against the previous direction, a bound on the change of a sweep, and a watchdog that returns to plain
+// sweeps if there is no progress. T is Real, or Real8 for eight regions in SIMD lanes; each lane has the bits of a
+// region solved alone. The constants were tuned by hand on the sheets, stacks and tilted jams of docs/solvers.md,
+// "Constants".
 #pragma once
 
 #include <algorithm>
@@ -12,18 +13,18 @@
 
 namespace skerry {
 
-/// Result type of a comparison of T.
+/// Result type of a comparison of two values of type T.
 template <class T>
 using LaneMask = decltype(T{} < T{});
 
-/// Momentum of Nesterov's sequence (Nesterov 1983), restarted as in O'Donoghue and Candes 2015.
+/// Extrapolation factors of Nesterov's method (Nesterov 1983), with restarts as in O'Donoghue and Candes 2015.
 template <class T>
 class Acceleration {
 public:
-    /// Extrapolation factor after a sweep; 0 at a restart. `plain` forces a restart.
+    /// Returns the extrapolation factor after a sweep with this change; 0 at a restart. `plain` forces a restart.
     T next(const SweepChangeOf<T>& change, const LaneMask<T>& plain) {
-        // Bound on a sweep's squared change, relative to the smallest one since the restart. 10 is 15 % faster on easy
-        // problems and fails on jammed ones.
+        // A restart occurs if the squared change of a sweep exceeds this multiple of the smallest one since the last
+        // restart. The value 10 would be 15 % faster on easy problems, but fails on jammed ones.
         constexpr Real guard = 2;
         const T zero{}, one = zero + 1;
         const T next_momentum = (1 + square_root(T(1 + 4 * momentum_ * momentum_))) / 2;
@@ -39,10 +40,12 @@ private:
     T momentum_ = T{} + 1, smallest_change_ = T{} + std::numeric_limits<Real>::infinity();
 };
 
-/// Fewest sweeps without gain before the watchdog acts. Later it waits for half of the sweeps since it last acted.
+/// The watchdog switches to plain sweeps after at least this many sweeps without progress. After its first action it
+/// also waits for half of the sweeps done since its last action.
 inline constexpr Index watchdog_patience = 60;
 
-/// Decides when to use the acceleration. The lane version never acts: lanes do fewer sweeps than its patience.
+/// Decides whether sweeps are accelerated. The version for lanes never intervenes, because lanes do at most
+/// watchdog_patience sweeps.
 template <class T>
 class Watchdog {
 public:
@@ -53,10 +56,11 @@ public:
 template <>
 class Watchdog<Real> {
 public:
-    /// Relaxation of the next sweep.
+    /// Relaxation factor of the next sweep.
     Real relaxation() const { return relaxation_; }
 
-    /// True if the last or the next sweep is a plain one. `change`: squared change of the last sweep.
+    /// True if the last or the next sweep is a plain (not accelerated) one. `change` is the squared change of the last
+    /// sweep.
     bool plain_after(Index iteration, Real change) {
         const bool was_plain = plain_left_ > 0;
         observe(iteration, change);
@@ -64,10 +68,12 @@ public:
     }
 
 private:
-    static constexpr Real gain = 0.7;           // progress: squared change below this fraction of the best
-    static constexpr Index plain_sweeps = 200;  // doubled with each phase, including the first
+    static constexpr Real gain = 0.7;  // a squared change below this fraction of the smallest one counts as progress
+    // Number of plain sweeps in a phase. It is doubled with each phase, including the first.
+    static constexpr Index plain_sweeps = 200;
     static constexpr Index most_doublings = 7, most_plain = 20000;
-    static constexpr Real damped = 0.8;  // relaxation of every second phase, for problems on which plain sweeps cycle
+    // Relaxation factor in every second phase, for problems on which plain sweeps cycle.
+    static constexpr Real damped = 0.8;
 
     void observe(Index iteration, Real change) {
         if (change < gain * best_) {

@@ -1,4 +1,4 @@
-// Accelerated block Gauss-Seidel: sweeps with the extrapolation of acceleration.h in between.
+// Accelerated block Gauss-Seidel method: sweeps with the extrapolation of acceleration.h in between.
 #pragma once
 
 #include "systems/solver/methods/acceleration.h"
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Accelerated sweeps that can be interrupted and continued. Test: ErrorTest, or LaneTest for lanes.
+/// Accelerated sweeps that can be interrupted and continued. The type Test is ErrorTest, or LaneTest for SIMD lanes.
 template <SweptOperator Op, class Test = ErrorTest<Op>>
 class AcceleratedSweeps {
 public:
@@ -16,8 +16,8 @@ public:
         op_.remember();
     }
 
-    /// Continues until the test ends it or `last` iterations have been done in total. The impulse is then that of the
-    /// last sweep. Returns true if the test ended it.
+    /// Continues until the test ends the method, or until `last` iterations have been done in total. The impulse is
+    /// then the result of the last sweep. Returns true if the test ended the method.
     bool run_to(Index last) {
         while (iteration_ < last) {
             if (iteration_ > 0) extrapolate();
@@ -29,7 +29,7 @@ public:
     }
 
     Index iterations() const { return iteration_; }
-    /// Resets the momentum after the impulse was changed from outside.
+    /// Resets the extrapolation after other code has changed the impulse.
     void start_anew() {
         acceleration_ = {};
         op_.remember();
@@ -40,7 +40,7 @@ private:
     static SweepChangeOf<Number> unknown() { return {Number{} + std::numeric_limits<Real>::infinity(), Number{}}; }
 
     void extrapolate() {
-        // in sweeps; extrapolation accumulates rounding errors, and a refresh costs half a sweep
+        // Number of sweeps between refreshes. Extrapolation accumulates rounding errors; a refresh costs half a sweep.
         constexpr Index refresh_interval = 64;
         const LaneMask<Number> plain = watchdog_.plain_after(iteration_, change_.size);
         const Number extrapolation = acceleration_.next(change_, plain);
@@ -57,8 +57,8 @@ private:
     Index iteration_ = 0;
 };
 
-/// Sweeps from the operator's present impulse. Leaves the last impulse if it converged or the count is fixed, otherwise
-/// the best one measured.
+/// Sweeps from the operator's present impulse. The final impulse is the last one if it converged or if the number of
+/// sweeps is fixed, otherwise the best one measured.
 template <SweptOperator Op>
 SolveResult solve_ags(Op& op, const SolveLimits& limits) {
     ErrorTest<Op> test(op, limits);

@@ -1,12 +1,12 @@
-// Contact problem with virtual calls, for methods that are compiled once for all operators. They make few calls per
-// iteration; loops over the contacts are inside the operator.
+// Contact operator with virtual functions, for methods that are compiled once for all operators. These methods make few
+// virtual calls per iteration; loops over the contacts are inside the operator.
 #pragma once
 
 #include "systems/solver/methods/conjugate_step.h"
 
 namespace skerry {
 
-/// The functions of ContactOperator (operators/contact_operator.h).
+/// Virtual versions of the functions of ContactOperator (operators/contact_operator.h).
 class AnyOperator {
 public:
     using Number = Real;
@@ -40,7 +40,7 @@ protected:
 
 static_assert(ContactOperator<AnyOperator>);
 
-/// Adapter: forwards every call to the wrapped operator.
+/// Adapter that forwards every call to the wrapped operator.
 template <ContactOperator Op>
 class OperatorView final : public AnyOperator {
 public:

@@ -9,25 +9,28 @@
 
 namespace skerry {
 
-/// Costs measured on 4 GHz cores. Only their ratio matters; it decides when a Newton step is tried [ns]
+/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. They decide when Newton steps are tried;
+/// only their ratio matters [ns]
 inline Real sweep_cost(Index contacts, Index couplings) {
     constexpr Real contact_cost = 40, coupling_cost = 2;
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
-    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;  // equations per pair, factor per triple
+    // Costs per step, per pair of contacts (to fill the equations), and per triple of contacts (to factor them) [ns]
+    constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;
     const Real count = static_cast<Real>(contacts);
     return step_cost + count * count * (pair_cost + triple_cost * count);
 }
 
-/// Operators with memory for Newton steps and known costs. Others use accelerated sweeps only (run_method.h): in a step
-/// of the engine, warm starts and the next step remove the remaining error at less cost than a factorisation.
+/// Operators with memory for Newton steps and a known number of couplings. Other operators use accelerated sweeps only
+/// (run_method.h): in the engine, the warm start of the next step reduces the remaining error at less cost than a
+/// factorisation.
 template <class Op>
 concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
-    { constant.couplings() } -> std::convertible_to<Index>;  // blocks of W off the diagonal
+    { constant.couplings() } -> std::convertible_to<Index>;  // number of off-diagonal blocks of W
 };
-/// Operators with their own Newton steps, which must inspect the whole region to estimate their cost [ns]
+/// Operators with their own Newton steps. To estimate the cost of a step [ns], they must inspect the whole region.
 template <class Op>
 concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
@@ -39,7 +42,7 @@ concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
 template <class Op>
 concept TakesNewtonSteps = KeepsNewtonMemory<Op> || HasNewtonSteps<Op>;
 
-/// Number of sweeps with the cost of two Newton steps (docs/decisions/0004).
+/// Number of sweeps that cost as much as two Newton steps (docs/decisions/0004).
 template <TakesNewtonSteps Op>
 Real newton_trial(Op& op) {
     constexpr Index trial_steps = 2;
@@ -59,8 +62,8 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
     }
 }
 
-/// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as these gain. Adds the Newton steps
-/// taken to `steps`.
+/// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as the corrections reduce the error
+/// enough. Adds the number of Newton steps to `steps`.
 template <HasNewtonSteps Op>
 SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps,
                                        const SolveLimits& limits, Index& steps) {
@@ -84,16 +87,16 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
     return result(test.result());
 }
 
-/// Sweeps first. Newton steps are tried once the sweeps have cost as much as a few of them and, by the pace of the last
-/// stretch, will not converge within as much again or within the remaining sweeps. If the steps fail, sweeps continue
-/// for twice as long as before.
+/// Starts with sweeps, which end after about the cost of two Newton steps. The convergence rate of the last sweeps then
+/// predicts whether as many sweeps again, or the remaining ones, would converge. If not, Newton steps are tried. If the
+/// Newton steps fail, the next stretch of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
-    // the Newton steps solve the exact cone
+    // Newton steps support only the friction cone.
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);
-    constexpr Real least_sweeps = 16;  // most regions converge within these
+    constexpr Real least_sweeps = 16;  // most regions converge within this number of sweeps
     constexpr bool looks_later = HasNewtonSteps<Op>;
     Real trial = looks_later ? 0 : newton_trial(op);
     Real pause = std::max(trial, least_sweeps);
@@ -107,7 +110,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;
-        if (looks_later && trial > 0) {  // use the pace of the later half: the first sweeps are always fast
+        if (looks_later && trial > 0) {  // the first sweeps are always fast, so only the later half counts
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();
@@ -119,7 +122,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (looks_later && trial == 0) {
             trial = newton_trial(op);
-            // Try the steps after half of the allowed sweeps at the latest, unless they are far too expensive.
+            // Try Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);
@@ -134,8 +137,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         iteration_before = result.iterations;
         const Real left = limits.max_iterations - result.iterations - newton_steps;
         if (pace * std::min(trial, left) > std::log(result.error / limits.tolerance)) continue;
-        // Successful solves take up to 14 steps (docs/decisions/0004). The operator's own steps detect failure
-        // themselves.
+        // Successful solves take up to 14 steps (docs/decisions/0004). An operator's own Newton steps detect failure
+        // themselves, so their limit is higher.
         constexpr Index most_steps = HasNewtonSteps<Op> ? 40 : 20;
         const SolveResult newton =
             take_newton_steps(op, result.error, limits.tolerance,

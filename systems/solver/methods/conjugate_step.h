@@ -1,4 +1,4 @@
-// One iteration of projected conjugate gradients (pcg.h): the part that is compiled for each operator.
+// One iteration of projected conjugate gradients (pcg.h). This part is compiled for each operator.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,10 @@
 
 namespace skerry {
 
-enum class ConjugateBeta { fletcher_reeves, polak_ribiere };  // (17), (18) of the paper
+enum class ConjugateBeta {
+    fletcher_reeves,
+    polak_ribiere
+};  // formulas for the factor beta, (17) and (18) of the paper
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     Real sum = 0;
@@ -16,13 +19,15 @@ inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     return sum;
 }
 
-/// Largest entries of the change of the impulse and of the residual after one iteration, for the paper's (20) and (21).
+/// Largest absolute entries of the impulse change and of the residual in one iteration, for the end criteria (20) and
+/// (21) of the paper.
 struct ConjugateChange {
     Real impulse = 0, residual = 0;
-    bool used_up = false;  // no search direction is left
+    bool used_up = false;  // true if no search direction is left
 };
 
-/// One iteration: the impulse moves along the direction and is projected, the residual is updated by the paper's (19).
+/// One iteration: the impulse moves along the search direction and is projected onto the friction law. The residual is
+/// updated by equation (19) of the paper.
 template <ContactOperator Op>
 ConjugateChange advance_conjugate_gradients(Op& op, ConjugateBeta formula) {
     const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2),

@@ -1,4 +1,4 @@
-// Decides when a method measures its error and when it ends, and keeps the best impulse.
+// Decides when a method measures its error and when the method ends. Stores the best impulse.
 #pragma once
 
 #include <algorithm>
@@ -12,21 +12,24 @@ namespace skerry {
 struct SolveLimits {
     Real tolerance = 1e-3;
     Index max_iterations = 200;
-    bool fixed_iterations = false;  // no error tests, exactly max_iterations
+    bool fixed_iterations = false;  // true: do exactly max_iterations without error tests
     Real relaxation = 1;
 };
 
-/// A warm start with a larger error is compared with zero impulses, whose error is about 1.
+/// A warm start whose error exceeds this value is compared with zero impulses, whose error is about 1.
 inline constexpr Real suspicious_start = 0.5;
 
-/// Next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., later at intervals of an eighth. A
-/// measurement costs half a sweep. A solution is noticed late by at most an eighth of its iterations plus five.
+/// Next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., later whenever the iteration number has
+/// grown by an eighth. A measurement costs half a sweep. Convergence is detected late by at most an eighth of the
+/// iterations plus five.
 inline Index next_check(Index iteration) {
-    constexpr Index first = 2, later = 8, offset = 4;  // fractions of the iterations done; offset of the second rule
+    // The interval is half of the iterations so far, later an eighth of them plus an offset.
+    constexpr Index first = 2, later = 8, offset = 4;
     return iteration + 1 + std::min(iteration / first, offset + iteration / later);
 }
 
-/// Stores the best impulse: in slot 0 of the workspace unless the operator has its own place for it.
+/// Stores the present impulse as the best one: in slot 0 of the workspace, or by op.keep() if the operator has its own
+/// storage.
 template <SweptOperator Op>
 void keep_impulse(Op& op) {
     if constexpr (ContactOperator<Op>) {
@@ -45,7 +48,7 @@ void restore_impulse(Op& op) {
     }
 }
 
-/// The best impulse at the measurements, by error (docs/methods/errors.md 5.3).
+/// The impulse with the smallest error among the measured ones (docs/methods/errors.md 5.3).
 template <SweptOperator Op>
 class BestIterate {
 public:
@@ -59,7 +62,7 @@ public:
     }
 
     bool known() const { return known_; }
-    /// Offers the present impulse, not measured before. An error that is not finite is ignored.
+    /// Offers the present impulse, which has not been measured before. An error that is not finite is ignored.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }
@@ -77,19 +80,19 @@ private:
     Real error_ = 0;
 };
 
-/// Convergence test shared by all methods. With a fixed count it measures nothing during sweeps.
+/// Convergence test shared by all methods. If the number of iterations is fixed, sweeps are not measured.
 template <SweptOperator Op>
 class ErrorTest {
 public:
     ErrorTest(Op& op, const SolveLimits& limits) : op_(op), limits_(limits), best_(op) {}
 
-    /// True if the error is due to be measured after this iteration.
+    /// True if the error must be measured after this iteration.
     bool due(Index iteration) const { return iteration >= check_; }
     /// Schedules the next measurement at this iteration.
     void expect(Index iteration) { check_ = iteration; }
 
-    /// Measures the error of the present impulse. Returns true if the method must end: the error is not finite, or
-    /// within the tolerance and the count is not fixed.
+    /// Measures the error of the present impulse. Returns true if the method must end: either the error is not finite,
+    /// or it is within the tolerance and the number of iterations is not fixed.
     bool ends(Index iteration) {
         iteration_ = iteration;
         error_ = op_.error();
@@ -99,21 +102,21 @@ public:
         if (due(iteration)) check_ = next_check(iteration);
         return false;
     }
-    /// Variant after a sweep with this change. Measures only if due, if the change suggests it, or after the last
-    /// sweep.
+    /// Version for a sweep with this squared change. It measures the error only if a measurement is due, if the change
+    /// suggests convergence, or after the last sweep.
     bool ends_after_sweep(Index iteration, Real change, Index last) {
         if (limits_.fixed_iterations) return false;
-        const bool suggested = op_.suggests_check(change, limits_.tolerance);  // call it exactly once per sweep
+        const bool suggested = op_.suggests_check(change, limits_.tolerance);  // must be called exactly once per sweep
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
     /// Restores the best impulse.
     void go_back() { best_.restore(); }
-    /// Offers the present impulse, found by another method.
+    /// Offers the present impulse, which another method has found.
     void offer(Real error) { best_.offer(error); }
     /// Result of the last measurement.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
-    /// Ends without convergence: restores the best impulse, or keeps the last one if none was measured.
+    /// Ends the method without convergence. Restores the best impulse, or keeps the last one if no error was measured.
     SolveResult give_up(Index iterations) {
         if (limits_.fixed_iterations && best_.known()) best_.offer_last(op_.error());
         const Real error = best_.restore();

@@ -10,7 +10,7 @@
 namespace skerry {
 namespace {
 
-/// P(z), the impulse of Coulomb's law if the impulse z would stop the contact, and its derivative.
+/// P(z) and its derivative: P(z) is the impulse of Coulomb's law for a contact that the impulse z would stop.
 struct CoulombAnswer {
     Vec3 impulse;
     Mat3 derivative;
@@ -28,7 +28,8 @@ CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, Real mu) {
     return {along * normal + mu * along * h, pressing + turning + mu * h * normal.transpose()};
 }
 
-/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i). Uses the whole workspace of the operator except the best iterate.
+/// Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), with impulse r, contact velocity u and scalar
+/// mobility D. They use the whole workspace of the operator except the best iterate (slot 0).
 class NewtonSteps {
 public:
     NewtonSteps(AnyOperator& op, NewtonMemory& memory)
@@ -40,8 +41,9 @@ public:
             memory_.contact.push_back({op_.normal(i), op_.mobility(i), op_.limits(i).slide});
     }
 
-    /// Takes steps until several of them gain nothing: the error may rise before the right sets of sticking and sliding
-    /// contacts are found. The best impulse is kept. `error` is that of the present impulse.
+    /// Takes steps until several steps in a row do not lower the error. The error may rise before the correct sets of
+    /// sticking and sliding contacts are found. The final impulse is the best one. `error` is the error of the present
+    /// impulse.
     SolveResult run(Real error, Real tolerance, Index limit) {
         constexpr Index patience = 4;  // in steps (docs/decisions/0004)
         const std::span<Vec4> kept = op_.workspace(2);
@@ -73,7 +75,8 @@ private:
         return answer_coulomb(z.head<3>(), contact.normal.head<3>(), contact.mu);
     }
 
-    /// Opening contacts go to zero directly; J d = -F for the others. Returns false if the factorisation broke down.
+    /// Computes the Newton step: opening contacts get zero impulse, and the others solve J d = -F. Returns false if the
+    /// factorisation broke down.
     bool find_change() {
         op_.residual(pull_);
         memory_.active.clear();
@@ -98,11 +101,11 @@ private:
         return memory_.change.allFinite();
     }
 
-    /// Fills the rows of J = I - P' (I - D^-1 W) and the right-hand side -F, including the change of the opening
-    /// contacts.
+    /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) and the right-hand side -F. The right-hand side includes
+    /// the impulse change of the opening contacts.
     void fill_equations() {
-        // Sticking contacts that support each other do not determine the distribution of their impulses. A small
-        // multiple of the identity makes it unique. It changes the steps but not the solution.
+        // If sticking contacts support each other, the distribution of their impulses is not unique. A small multiple
+        // of the identity makes it unique. This changes the steps but not the solution.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {
@@ -120,13 +123,13 @@ private:
         }
     }
 
-    /// Solves jacobian x = rest. Leaves the solution in `rest` and the factors in `jacobian`.
+    /// Solves jacobian x = rest. The solution overwrites `rest`, the factors overwrite `jacobian`.
     void solve_equations() {
         const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> factors(memory_.jacobian);
         memory_.rest = factors.solve(memory_.rest);
     }
 
-    /// Returns the sum of D |F|^2 and leaves -u in the workspace [J]
+    /// Returns the merit, which is the sum of D |F|^2. Writes -u to `pull_` [J]
     Real merit() {
         op_.residual(pull_);
         Real sum = 0;
@@ -144,10 +147,11 @@ private:
         op_.refresh();
     }
 
-    /// Takes the first of successively halved steps that lowers the merit, otherwise the one that raises it least.
+    /// Line search: tries step lengths 1, 1/2, 1/4, ... and takes the first that lowers the merit enough. If there is
+    /// none, takes the length with the smallest merit.
     void search_along_change() {
         constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // fraction of the merit at the start
+        constexpr Real enough = 0.9;  // the merit must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
         Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
@@ -166,7 +170,7 @@ private:
 
     AnyOperator& op_;
     NewtonMemory& memory_;
-    std::span<Vec4> impulse_, pull_;  // pull_ is -u [m/s]
+    std::span<Vec4> impulse_, pull_;  // pull_ is the negative contact velocity -u [m/s]
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Semismooth Newton on the natural map of the exact Coulomb law (Alart and Curnier 1991; docs/methods/region_solver.md
-// 5.6), with a dense factorisation. Used for small regions, as an independent check, and when sweeps take longer than a
-// factorisation.
+// Semismooth Newton method on the natural map of the exact Coulomb law (Alart and Curnier 1991;
+// docs/methods/region_solver.md 5.6), with a dense factorisation. It is used for small regions, as an independent
+// check, and when sweeps take longer than a factorisation.
 #pragma once
 
 #include "systems/solver/methods/any_operator.h"
@@ -9,14 +9,15 @@
 
 namespace skerry {
 
-/// Newton steps on F_i(r) = r_i - P(r_i - u_i / D_i), where P(z) is the impulse of the contact law if z would stop the
-/// contact. Ends when several steps gain nothing: the error may rise before the right sets of sticking and sliding
-/// contacts are found. The best impulse is kept. `error` is that of the present impulse. Uses the whole workspace
-/// except the best iterate.
+/// Takes Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i). P(z) is the impulse of the friction law for
+/// a contact that the impulse z would stop. The steps end when several in a row do not lower the error: the error may
+/// rise before the correct sets of sticking and sliding contacts are found. The final impulse is the best one. `error`
+/// is the error of the present impulse. The function uses the whole workspace except the best iterate (slot 0).
 SolveResult take_newton_steps(AnyOperator& op, NewtonMemory& memory, Real error, Real tolerance, Index limit);
 
-/// Alternates sweeps and Newton steps; doubles the sweeps each time the steps do not converge. The steps assume the
-/// exact cone: with another law or a fixed count there are only sweeps.
+/// Alternates sweeps and Newton steps. The number of sweeps doubles each time the Newton steps do not converge. Newton
+/// steps support only the friction cone. For the pyramid, or if the number of iterations is fixed, the method does only
+/// sweeps.
 SolveResult solve_newton(AnyOperator& op, const SolveLimits& limits);
 
 }  // namespace skerry

@@ -8,7 +8,8 @@
 namespace skerry {
 namespace {
 
-/// n of the paper, the limit of conjugate gradient iterations. A contact without friction has one row.
+/// Number of scalar rows (n in the paper), which limits the conjugate gradient iterations. A contact without friction
+/// has one row, other contacts have three.
 Index row_count(const AnyOperator& op) {
     Index rows = 0;
     for (Index i = 0; i < op.size(); ++i) rows += op.limits(i).stick > 0 ? 3 : 1;
@@ -21,30 +22,30 @@ Real largest_entry(std::span<const Vec4> vectors) {
     return largest;
 }
 
-/// Sets residual and direction before the first iteration: r = d = b - A lambda.
+/// Sets the residual r and the search direction d before the first iteration: r = d = b - A lambda.
 void start_conjugate_gradients(AnyOperator& op) {
     const std::span<Vec4> residual = op.workspace(1);
     op.residual(residual);
     for (Index i = 0; i < op.size(); ++i)
-        // Without friction the contact has only a normal row.
+        // A contact without friction has only a normal row.
         if (op.limits(i).stick == 0) residual[i] = op.normal(i).dot(residual[i]) * op.normal(i);
     std::ranges::copy(residual, op.workspace(2).begin());
 }
 
-/// End criteria of the phase besides the error.
+/// End criteria of the conjugate gradient phase, apart from the error.
 struct ConjugateLimits {
     Index iterations;  // upper limit
-    Real tolerance;    // (20), (21): relative to the largest impulse and to the first residual; 0: unused
+    Real tolerance;    // of (20), (21): relative to the largest impulse and the first residual; 0: unused
 };
 
-/// Runs the phase from the present impulse. Leaves the impulse that converged, otherwise the best one, including the
-/// start. Errors can grow until overflow, so they are measured on schedule even with a fixed count. The error of the
-/// result is that of the impulse left.
+/// Runs the conjugate gradient phase from the present impulse. The final impulse is the one that converged, otherwise
+/// the best one, which may be the start. The error is measured on schedule even if the number of iterations is fixed,
+/// because it can grow until overflow. The result holds the error of the final impulse.
 SolveResult run_conjugate_gradients(AnyOperator& op, const SolveLimits& limits, const ConjugateLimits& phase,
                                     ConjugateBeta formula, ErrorTest<AnyOperator>& test) {
     if (test.ends(0)) return test.result();
     if (limits.fixed_iterations && test.result().error > suspicious_start) {
-        // The warm start has not been compared with zero yet.
+        // The warm start has not been compared with zero impulses yet.
         std::ranges::fill(op.impulse(), Vec4::Zero());
         op.refresh();
         if (test.ends(0)) return test.result();
@@ -81,7 +82,7 @@ SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta 
 }
 
 SolveResult solve_pcg_pgs(AnyOperator& op, const SolveLimits& limits, ConjugateBeta formula) {
-    // The first phase has looser tolerances than the second: eps_cg > eps_gs, delta_cg > delta_gs.
+    // The first phase has larger tolerances than the second: eps_cg > eps_gs, delta_cg > delta_gs.
     constexpr Real looser = 10;
     ErrorTest<AnyOperator> test(op, limits);
     const ConjugateLimits phase{std::min(row_count(op), limits.max_iterations / 2), looser * limits.tolerance};

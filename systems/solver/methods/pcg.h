@@ -1,7 +1,7 @@
-// Projected conjugate gradients: Algorithm 2 of the paper, with the residual (19) read as in docs/methods/contact.md
-// 5.6. They are a baseline: they stagnate when impulses reach their limits, since projection after a step destroys
-// conjugacy and descent (docs/methods/region_solver.md 5.1). Their sums run over all contacts at once, so separate
-// regions and one global region give different bits.
+// Projected conjugate gradients: Algorithm 2 of the paper, with equation (19) interpreted as in docs/methods/contact.md
+// 5.6. The methods serve as a baseline. They stagnate when impulses reach their limits, since the projection after a
+// step destroys conjugacy and descent (docs/methods/region_solver.md 5.1). Sums run over all contacts at once, so
+// separate regions and one global region give different bits.
 #pragma once
 
 #include "systems/solver/methods/any_operator.h"
@@ -9,15 +9,16 @@
 
 namespace skerry {
 
-/// First phase only, from the operator's present impulse. Ends after at most as many iterations as there are rows.
-/// Leaves the last impulse if it converged, otherwise the best one.
+/// Runs only the conjugate gradient phase, from the operator's present impulse. It does at most as many iterations as
+/// there are scalar rows. The final impulse is the last one if it converged, otherwise the best one.
 SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta formula);
 
-/// The paper's solver: conjugate gradients, then projected Gauss-Seidel from the best iterate, at most max_iterations
-/// together. All convergence comes from the second phase (docs/methods/region_solver.md 5.1). The first phase ends by
-/// (20) or (21), by its error, after as many iterations as the system has rows, or at half of the iterations. The
-/// second ends by its error, which replaces (20) and (21) so that a tolerance means the same for all methods
-/// (docs/methods/contact.md 5.7). Leaves the last impulse if it converged, otherwise the best one of both phases.
+/// The solver of the paper: conjugate gradients, then projected Gauss-Seidel from the best iterate, with at most
+/// max_iterations in total. All convergence comes from the second phase (docs/methods/region_solver.md 5.1). The first
+/// phase ends by criterion (20) or (21), by its error, after as many iterations as there are scalar rows, or after half
+/// of max_iterations. The second phase ends by its error. The error replaces (20) and (21) so that a tolerance means
+/// the same for all methods (docs/methods/contact.md 5.7). The final impulse is the last one if it converged, otherwise
+/// the best one of both phases.
 SolveResult solve_pcg_pgs(AnyOperator& op, const SolveLimits& limits,
                           ConjugateBeta formula = ConjugateBeta::polak_ribiere);
 

@@ -1,12 +1,13 @@
-// Block projected Gauss-Seidel: the paper's (14), (15) with the exact solution of each contact in its turn.
+// Block projected Gauss-Seidel method: equations (14), (15) of the paper, with an exact solution of each contact in
+// turn.
 #pragma once
 
 #include "systems/solver/methods/error_test.h"
 
 namespace skerry {
 
-/// Sweeps `first` .. max_iterations over the contacts in order, from the operator's present impulse. Leaves the last
-/// impulse if it converged or the count is fixed, otherwise the best one.
+/// Does sweeps number `first` .. max_iterations over the contacts in order, from the operator's present impulse. The
+/// final impulse is the last one if it converged or if the number of sweeps is fixed, otherwise the best one.
 template <ContactOperator Op>
 SolveResult sweep_until_solved(Op& op, const SolveLimits& limits, Index first, ErrorTest<Op>& test) {
     test.expect(first);

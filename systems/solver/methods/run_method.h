@@ -1,4 +1,4 @@
-// Dispatch from the name of a method to its solver.
+// Calls the solver for the name of a method.
 #pragma once
 
 #include "components/options.h"
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Runs a method that is compiled once for all operators: newton, pcg_pgs, pcg_fr, pcg_pr.
+/// Runs one of the methods that are compiled once for all operators: newton, pcg_pgs, pcg_fr, pcg_pr.
 SolveResult run_cold_method(SolverMethod method, AnyOperator& op, const SolveLimits& limits);
 
 template <ContactOperator Op>

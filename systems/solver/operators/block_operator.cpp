@@ -10,8 +10,8 @@ static_assert(ContactOperator<BlockOperator>);
 
 namespace {
 
-/// Returns start plus the sum of the blocks of a row times the vectors of their contacts. Three partial sums avoid
-/// waiting for the latency of additions.
+/// Returns `start` plus the sum over the off-diagonal blocks of a row, each times the vector of its contact. Three
+/// partial sums hide the latency of additions.
 inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, const Vec4* vector) {
     Vec4 first = start, second = Vec4::Zero(), third = Vec4::Zero();
     const BlockMemory::Columns* block = memory.block.data();
@@ -25,12 +25,13 @@ inline Vec4 add_row(const BlockMemory& memory, Index place, const Vec4& start, c
     return first + (second + third);
 }
 
-/// max(normal, 0); NaN stays NaN.
+/// Returns max(normal, 0). NaN stays NaN.
 inline Real pressing(Real normal) {
     return std::max(normal, Real(0));
 }
 
-/// Solves the paper's scalar rows in turn: the normal, then each tangent with the new bound (eq. 6, 15).
+/// Solves the scalar rows of the paper in turn: the normal, then each tangent with the bound from the new normal
+/// impulse (eq. 6, 15).
 Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u, Real mu, Real relaxation) {
     Vec4 next = impulse;
     for (int k = 0; k < 3; ++k) {
@@ -42,7 +43,7 @@ Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u
     return next;
 }
 
-/// Projects onto the box of the pyramid in the contact frame.
+/// Projects an impulse onto the friction pyramid in the contact frame: clamps each tangential component separately.
 Vec4 clamp_to_pyramid(const Vec4& impulse, Real mu) {
     const Real normal = pressing(impulse[0]);
     return {normal, std::clamp(impulse[1], -mu * normal, mu * normal),
@@ -82,12 +83,12 @@ void BlockMemory::prepare(const BlockSystem& system, std::span<const Index> orde
 
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction) {
     if (friction == Friction::pyramid) {
-        // Each tangent is limited by the present normal impulse, not by the one of the map.
+        // The tangential limit uses the present normal impulse, not the projected one.
         const Real limit = mu * pressing(impulse[0]);
         return {impulse[0] - pressing(impulse[0] - u[0]), impulse[1] - std::clamp(impulse[1] - u[1], -limit, limit),
                 impulse[2] - std::clamp(impulse[2] - u[2], -limit, limit)};
     }
-    // P_K of r - u - mu |u_T| n; the direction of the tangents is not needed until the end.
+    // Projects r - u - mu |u_t| n onto the cone. The tangential direction is needed only in the result.
     const Real shift = mu * std::sqrt(u[1] * u[1] + u[2] * u[2]);
     const Real along = impulse[0] - u[0] - shift;
     const Real t1 = impulse[1] - u[1], t2 = impulse[2] - u[2];
@@ -121,7 +122,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (friction_ == Friction::pyramid) {
         next = step_pyramid(contact.diagonal, before, b + times(contact.diagonal, before), contact.mu, relaxation);
     } else {
-        // Files round W. The part of a block beside its symmetric part is applied to the last impulse.
+        // Rounding in files makes W slightly asymmetric. The skew part of the diagonal block acts on the last impulse,
+        // outside of the local solution.
         const Vec4 fixed = b + times(contact.skew, before);
         next = padded(solve_block(contact.local, fixed.head<3>(), contact.mu));
         if (relaxation != 1) next = project(i, before + relaxation * (next - before));
@@ -130,7 +132,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (change.isZero(0)) return 0;
     memory_.impulse[place] = next;
     const Real size = change.dot(times(contact.diagonal, change));
-    // rho = 1: the change counts as impulse or as the velocity it causes, whichever is smaller.
+    // |F|^2 for rho = 1 is estimated by the squared impulse change or by the squared velocity change it causes,
+    // whichever is smaller.
     swept_ += std::min(change.squaredNorm(), mobility(i) * size);
     return size;
 }

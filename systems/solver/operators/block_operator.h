@@ -1,4 +1,4 @@
-// Delassus operator of general 3x3 blocks, in the contact frames (normal, tangent 1, tangent 2). It is used for
+// Delassus operator W made of general 3x3 blocks, in the contact frames (normal, tangent 1, tangent 2). It is used for
 // problems read from files.
 #pragma once
 
@@ -16,49 +16,52 @@
 
 namespace skerry {
 
-/// u = W r + q with W in compressed rows of blocks. W is used as given, even if it is not quite symmetric.
+/// Contact problem u = W r + q with W in compressed rows of blocks. W is used as given, even if it is slightly
+/// asymmetric.
 struct BlockSystem {
-    std::span<const Index> row_offset;  // contacts + 1 entries
+    std::span<const Index> row_offset;  // first block of each row; contact count + 1 entries
     std::span<const Index> column;
     std::span<const Mat3> block;  // [1/kg]
     std::span<const Vec3> q;      // [m/s]
     std::span<const Real> mu;
 };
 
-/// A system in the order of the sweep, with blocks side by side and padded to vector registers. The last entry of every
-/// vector is zero.
+/// A contact problem in the order of the sweep. Data are contiguous and padded to vector registers. The last entry of
+/// every vector is zero.
 struct BlockMemory {
     struct Contact {
         Vec4 q;
         std::array<Vec4, 3> diagonal;  // columns of W_ii
-        std::array<Vec4, 3> skew;      // half of W_ii - W_ii^T, which the local solution leaves out
+        std::array<Vec4, 3> skew;      // half of W_ii - W_ii^T, which solve_block ignores
         LocalBlock local;
         Real mu;
     };
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // contacts + 1 entries
-    std::vector<Index> neighbor;  // place of the other contact
-    std::vector<Columns> block;   // W_ij, i != j
+    std::vector<Index> offset;    // first block of each row; contact count + 1 entries
+    std::vector<Index> neighbor;  // position of the other contact of each off-diagonal block
+    std::vector<Columns> block;   // off-diagonal blocks W_ij
     std::vector<Vec4> impulse;    // [N s]
     std::array<std::vector<Vec4>, workspace_limit> workspace;
     NewtonMemory newton;
 
-    /// `order`: contacts of the system in the order of the sweep; those of a region are consecutive. Impulses start at
-    /// zero.
+    /// `order` lists the contacts of the system in the order of the sweep. Contacts of a region must be consecutive.
+    /// Impulses start at zero.
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// F_i for rho = 1: residual of the impulse against its velocity, for the cone of FCLIB or the paper's pyramid.
+/// Natural map F_i of a contact for rho = 1: residual of the impulse with respect to its velocity u, for the cone of
+/// FCLIB or the pyramid of the paper.
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
-/// One region: the contacts at places [begin, end) of the memory. Blocks of other regions must not refer to them.
+/// Operator of one region: the contacts at positions [begin, end) of the memory. Blocks must not couple them to
+/// contacts of other regions.
 class BlockOperator {
 public:
     using Number = Real;
 
-    /// `smallest_size`: lower bound of the norm in the relative error; the region's share of a larger problem.
+    /// `smallest_size` is a lower bound of the norm that divides the error: the region's share of a larger problem.
     BlockOperator(BlockMemory& memory, Index begin, Index end, Friction friction, Real smallest_size);
 
     Index size() const { return end_ - begin_; }
@@ -72,10 +75,10 @@ public:
         const BlockMemory::Columns& w = memory_.contact[begin_ + i].diagonal;
         return a.dot(w[0] * b[0] + w[1] * b[1] + w[2] * b[2]);
     }
-    /// Relative error |F| / max(|q|, |r|, |u|) of this region, the measure of FCLIB and Siconos (docs/methods/errors.md
+    /// Relative error |F| / max(|q|, |r|, |u|) of this region: the measure of FCLIB and Siconos (docs/methods/errors.md
     /// 3).
     Real error();
-    /// max(|q|, |r|, |u|) at the last error().
+    /// Norm max(|q|, |r|, |u|) in the last call of error().
     Real measured_size() const { return size_; }
     bool suggests_check(Real change, Real tolerance);
     void remember();
@@ -106,9 +109,9 @@ private:
     Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    Real swept_ = 0;        // estimate of |F|^2 from the changes of this sweep
-    Real last_swept_ = 0;   // estimate of the sweep before, whose |F| error() measures
-    Real calibration_ = 1;  // |F|^2 divided by the estimate, at the last measurement
+    Real swept_ = 0;        // estimate of |F|^2 from the changes of the present sweep
+    Real last_swept_ = 0;   // estimate of |F|^2 from the last complete sweep
+    Real calibration_ = 1;  // measured |F|^2 divided by the estimate, at the last measurement
     Real size_ = 0;         // max(|q|, |r|, |u|) at the last measurement
 };
 

@@ -1,4 +1,5 @@
-// Newton steps of regions that touch rigid bodies: the unknowns, their inertia K, and the steps.
+// Newton steps of regions that touch rigid bodies: the unknowns, their inertia matrix K, and the steps
+// (docs/methods/region_solver.md 5.9).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -30,7 +31,7 @@ void add_identity(const DenseBlock& block, Index at, Real number) {
 
 }  // namespace
 
-/// Lists the velocity rows that contacts move, sorted by body; bodies that do not deform come first.
+/// Lists the velocity rows that contacts can change, sorted by body. Rigid bodies come first.
 void BodyOperator::list_unknowns(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     Column<Index>& of_row = equations.unknown_of_row();
@@ -40,7 +41,7 @@ void BodyOperator::list_unknowns(BodyEquations& equations) const {
         if (std::exchange(of_row[static_cast<std::size_t>(one.row)], 0) == no_index) unknown.push_back(one);
     };
     for (Index i = 0; i < size(); ++i) {
-        std::array<Index, 2> name{no_index, no_index};  // identifiers of the contact's bodies
+        std::array<Index, 2> name{no_index, no_index};  // identifiers of the bodies of the contact
         const auto add = [&](Index body) {
             if (name[0] != body && name[1] != body) name[name[0] == no_index ? 0 : 1] = body;
         };
@@ -72,8 +73,8 @@ Index BodyOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
-/// Defines the parts. A part is a rigid body, or the nodes of one deformable body that touch the same other body. Such
-/// nodes couple only to nodes of these two bodies.
+/// Groups the unknowns into parts. A part is a rigid body, or those nodes of a deformable body that touch the same
+/// other body. Nodes of a part couple only to nodes of these two bodies.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -101,7 +102,8 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            if (!moves_rigidly(equations, term)) continue;  // its nodes are part of its rigid motion
+            // The body is held, or it deforms. The velocities of a deforming body's nodes include its rigid motion.
+            if (!moves_rigidly(equations, term)) continue;
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
         }
@@ -113,7 +115,7 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
     }
 }
 
-/// Couples parts that share a contact, and all parts of an implicit body.
+/// Couples all parts that share a contact, and all parts of the same implicit body.
 void BodyOperator::couple_parts(BodyEquations& equations) const {
     BlockFactor& factor = equations.factor();
     factor.close_parts();
@@ -147,7 +149,7 @@ BodyEquations& BodyOperator::newton_memory() {
 
 BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(std::numeric_limits<Real>::infinity());
-    if (touches_clusters()) return equations;  // K is only available for nodes and whole bodies
+    if (touches_clusters()) return equations;  // K is known only for nodes with their own mass and for bodies
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
@@ -158,10 +160,11 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // Inversion of the response matrix, shared by about ten steps.
+        // Cost of inverting the response matrix, divided among about ten steps.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
-    // Cost per operation on a 3 GHz core, small and large blocks (large ones fill the registers), and per contact [ns]
+    // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per
+    // contact, measured on a 3 GHz core [ns]
     constexpr Real small_operation_cost = 0.25, operation_cost = 0.06, contact_cost = 2000;
     equations.set_cost((runs_ ? operation_cost : small_operation_cost) * work +
                        contact_cost * static_cast<Real>(size()));
@@ -193,8 +196,8 @@ void BodyOperator::assemble(BodyEquations& equations) const {
     equations.keep_inertia();
 }
 
-/// Sets K of the touched nodes of a body: the inverse of their response to impulses, rigid motion and deformation
-/// together.
+/// Sets the blocks of K for the touched nodes of a deformable body. This is the inverse of the nodes' response to
+/// impulses, which includes rigid motion and deformation.
 void BodyOperator::assemble_deforming(BodyEquations& equations, std::size_t begin, std::size_t end) const {
     const Column<Unknown>& unknown = equations.unknown();
     const auto count = static_cast<Index>(end - begin), numbers = 3 * count;
@@ -239,12 +242,13 @@ void BodyOperator::gather(BodyEquations& equations, Column<Real>& velocity) cons
 
 namespace {
 
-/// Impulse of Coulomb's law at z, the impulse that would stop the contact, and its derivative.
+/// Impulse of Coulomb's law for a contact that the impulse z would stop, its derivative with respect to z, and the
+/// state of the contact.
 struct Answer {
     Vec3 impulse;
     Mat3 derivative;
     bool open = false;
-    Vec3 way = Vec3::Zero();  // sliding direction, zero unless it slides
+    Vec3 way = Vec3::Zero();  // sliding direction; zero if the contact does not slide
 };
 Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -260,10 +264,11 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 }  // namespace
 
-/// Sets the impulses to the response to the present motion, P( start - u / (softness D) ), and updates the velocities
-/// of the region and `answered` accordingly. Returns the merit ( answered - present ) K ( answered - present ) [J] and
-/// sets the right-hand side K ( answered - present ). Unless `wanted` is value, also builds the matrix. If it is turns,
-/// also marks contacts that slide against their direction in the last matrix; stop_turned changes their equations.
+/// Evaluates a motion. Sets the impulses to P( start - u / (softness D) ), where u is the contact velocity of `present`
+/// and P is Coulomb's law. Updates the velocities of the region and `answered` to the motion that these impulses
+/// produce. With d = answered - present it sets the right-hand side to K d and returns the merit d . K d [J]. Unless
+/// `wanted` is `value`, it also builds the matrix. If `wanted` is `turns`, it also marks contacts whose sliding
+/// direction is opposite to that in the last matrix; stop_turned then changes their equations.
 Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted) {
     const bool with_matrix = wanted != Evaluation::value;
     if (with_matrix) equations.start_from_inertia();
@@ -286,9 +291,10 @@ Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4>
     return lack;
 }
 
-/// A contact whose sliding direction reversed has passed the sticking state, whose range is small for hard contacts.
-/// Newton's step for sliding would pass it again and again. The matrix treats such contacts as sticking, and the
-/// right-hand side uses the impulse that would stop them.
+/// Changes the right-hand side for contacts whose sliding direction reversed. Such a contact has passed through
+/// sticking, and for hard contacts the velocity range of sticking is small. A Newton step for sliding would pass it
+/// again and again. The matrix therefore treats these contacts as sticking, and the right-hand side uses the impulse
+/// that would stop them.
 void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
@@ -300,7 +306,7 @@ void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> s
 }
 
 /// Updates the velocities of the region and `answered` from the impulses. With d = answered - present it sets the
-/// right-hand side to K d and returns d K d [J]
+/// right-hand side to K d and returns d . K d [J]
 Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.rigid_modes)
         push_rigid_modes(start);
@@ -312,8 +318,8 @@ Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4
     return equations.set_right(equations.change.span());
 }
 
-/// First step of a round. It assumes that contacts stick, slide or are open as in the last matrix. Returns
-/// answer_motion for the new motion, with the matrix, or nothing if the factorisation broke down.
+/// First step of a round after a completed round. It assumes that each contact sticks, slides or is open as in the last
+/// matrix. Returns the merit from answer_motion for the new motion, or nothing if the factorisation broke down.
 std::optional<Real> BodyOperator::go_on_as_before(BodyEquations& equations, std::span<const Vec4> start) {
     equations.start_from_inertia();
     for (Index i = 0; i < size(); ++i) {
@@ -331,10 +337,10 @@ std::optional<Real> BodyOperator::go_on_as_before(BodyEquations& equations, std:
     return answer_motion(equations, start, Evaluation::turns);
 }
 
-/// One Newton step from the present motion with a line search on the result of answer_motion. Takes the first length of
-/// 1, 1/2, ... that lowers it below 0.9 of its value, otherwise the best one. A step that stops contacts may keep
-/// length 1 although it raises the value, a few times per round. Returns the new value, or nothing if the factorisation
-/// broke down.
+/// One Newton step from the present motion, with a line search on the merit from answer_motion. It takes the first step
+/// length of 1, 1/2, 1/4, ... that lowers the merit below 0.9 times its value, otherwise the length with the smallest
+/// merit. If the step stops contacts, it may take length 1 although the merit rises, a few times per round. Returns the
+/// new merit, or nothing if the factorisation broke down.
 std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::span<const Vec4> start, Real lack) {
     constexpr int halvings = 6;
     constexpr Real enough = 0.9;
@@ -369,13 +375,16 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 
 namespace {
 
-// Softness: compliance of contacts within a round, as a fraction of D. A small value needs fewer rounds with more steps
-// each. Soft bodies converge at the first value, stiff ones at a hundredth of it, a light body under a heavy one at a
-// small part of their mass ratio. So the softness is adapted to the number of steps of the last round.
+// Softness is the compliance of contacts within a round, as a fraction of D. A smaller value needs fewer rounds, but
+// more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a
+// light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to the number
+// of steps of the last round.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
-constexpr Real first_softness = 0.03;  // with deformable bodies: rounds end, since reversed contacts stop
+// Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
+// reverse are stopped.
+constexpr Real first_softness = 0.03;
 
-/// Softness of the next round after a round with this number of steps.
+/// Softness of the next round if the last round took this number of steps.
 Real softness_after(Index steps, Real softness, bool deforming) {
     constexpr Index few = 4;
     const Real change = steps <= few / 2 ? 0.03 : steps > few ? 1.0 : deforming ? 0.1 : 0.3;
@@ -385,10 +394,12 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    constexpr Real enough = 0.1;         // end of a round: fraction of the error at its start
-    constexpr Real solved = 1e-3;        // fraction of that below which it ends even if the error did not fall
-    constexpr Index most_in_round = 14;  // longer rounds are unlikely to end soon
-    constexpr Real softer = 10;          // increase of the softness after such a round
+    // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
+    constexpr Real enough = 0.1;
+    // Fraction of that limit below which the round ends even if the error has not decreased.
+    constexpr Real solved = 1e-3;
+    constexpr Index most_in_round = 14;  // a longer round is unlikely to converge soon
+    constexpr Real softer = 10;          // factor on the softness after a round that did not converge
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
@@ -401,7 +412,7 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     equations.softness = runs_ ? first_softness : most_softness;
     Real error_at_start = error;
     Index in_round = 0;
-    bool goes_on = false;  // start with contacts as the last round left them
+    bool goes_on = false;  // true: the next round begins with the contact states of the last round
     equations.start_round();
     std::optional<Real> lack = answer_motion(equations, start, Evaluation::matrix);
     while (!result.converged && result.iterations < limit) {
@@ -421,7 +432,8 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
         const bool ended = std::sqrt(*lack) <= (now < error_at_start ? asked : solved * asked);
         if (!ended && steps < most_in_round) continue;
         in_round = 0;
-        // Next round: from these impulses and the motion they make; or restart this one.
+        // The next round starts from the present impulses and the motion they produce. A round that did not converge is
+        // restarted with a larger softness.
         if (ended) {
             equations.softness = softness_after(steps, equations.softness, static_cast<bool>(runs_));
             error_at_start = now;

@@ -14,11 +14,12 @@ Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
     return {frame[0].dot(vector), frame[1].dot(vector), frame[2].dot(vector), 0};
 }
 
-/// Impulse of Coulomb's law for b = u - W_ii r, in world axes.
+/// Impulse of Coulomb's law for one contact in world axes, where b = u - W_ii r is its velocity without its own
+/// impulse.
 Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
     const Vec3 local = in_frame(part.frame, b).head<3>();
     Vec3 impulse = solve_block(part.block, local, mu.stick);
-    // A sliding contact uses the dynamic coefficient.
+    // A contact at the limit of static friction slides, so the dynamic coefficient applies.
     constexpr Real rounding = 1e-12;
     if (mu.slide != mu.stick && impulse.tail<2>().norm() >= mu.stick * impulse[0] * (1 - rounding))
         impulse = solve_block(part.block, local, mu.slide);
@@ -35,7 +36,8 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
-    // Uses a scalar in place of W_ii. This is exact if W_ii is a scalar, otherwise a damped step.
+    // Uses the bound on the eigenvalues of W_ii in place of W_ii. This is exact if W_ii is a scalar times the identity,
+    // otherwise the step is damped.
     return project(i, impulse - u / of.steepest);
 }
 
@@ -56,7 +58,7 @@ void BodyOperator::list_runs() const {
 }
 
 void BodyOperator::for_each_in_sweep(auto&& of) {
-    // One loop for both cases: compilers would not inline a second copy of the step.
+    // Both cases share one loop, because compilers would not inline a second copy of the step.
     const ContactRuns::Run all{0, size(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {
@@ -137,7 +139,7 @@ void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {
 }
 
 Real BodyOperator::sweep_cost() const {
-    constexpr Real contact_cost = 100, node_cost = 3;  // measured on a 3 GHz core
+    constexpr Real contact_cost = 100, node_cost = 3;  // measured on a 3 GHz core [ns]
     Real cost = contact_cost * static_cast<Real>(size());
     if (!runs_) return cost;
     list_runs();

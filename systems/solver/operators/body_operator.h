@@ -1,6 +1,6 @@
-// Delassus operator of contacts that touch rigid bodies, and also nodes with their own mass and clusters of nodes. The
-// blocks of W are 3x3 matrices. It carries velocities along, as LumpedOperator does. A rigid body has two of them, that
-// of its centre and its spin (docs/methods/rigid_bodies.md 3).
+// Delassus operator of regions with rigid bodies, and also with implicit bodies, clusters, and nodes with their own
+// mass. The blocks of W are 3x3 matrices. Like LumpedOperator it stores the velocities that belong to the impulses. A
+// rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md 3).
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,12 @@
 
 namespace skerry {
 
-/// Contacts are without the nodes of rigid bodies, and LumpedContact::diagonal is a third of the trace of W_ii.
+/// Memory of one region. The LumpedContacts omit nodes of rigid bodies. LumpedContact::diagonal is a third of the trace
+/// of W_ii.
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
-    std::span<const JointLaw> joint;      // laws of the last contacts, which are rows of joints
-    std::span<const Vec4> free_velocity;  // by velocity: its value without impulses [m/s, rad/s]
+    std::span<const JointLaw> joint;      // laws of the joint rows, which follow the contacts
+    std::span<const Vec4> free_velocity;  // by velocity row: value without impulses [m/s, rad/s]
 };
 
 using NewtonPool = Pool<NewtonEquations>;
@@ -34,7 +35,8 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
     friend Base;
 
 public:
-    /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse. `pool`: memory for Newton steps.
+    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses. `pool` provides
+    /// memory for Newton steps.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
                  RunPool& runs)
         : Base(memory, friction, scale, walk), pool_(&pool) {
@@ -48,25 +50,27 @@ public:
     SweepChange accelerated_sweep(Real relaxation);
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     Vec4 project(Index i, const Vec4& impulse) const {
-        if (joint(i) != nullptr) return impulse;  // joints are not projected
+        if (joint(i) != nullptr) return impulse;  // joint impulses are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     void assemble(Eigen::MatrixXd& matrix) const;
 
-    /// Newton steps (docs/methods/region_solver.md 5.9) from an impulse with this error: at most `limit` steps; the
-    /// best impulse is kept. They use slots 1 and 2 of the workspace, and lease memory at the first call.
+    /// Takes at most `limit` Newton steps (docs/methods/region_solver.md 5.9) from the present impulse, whose error is
+    /// `error`. The final impulse is the best one. The steps use slots 1 and 2 of the workspace, and lease memory at
+    /// the first call.
     SolveResult take_newton_steps(Real error, Real tolerance, Index limit);
     Real newton_step_cost() { return newton_memory().cost(); }  // estimate [ns]
-    /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies (5.10), in
-    /// rounds until one gains little. corrects_rigid_modes() is true if it pays: free implicit bodies, no clusters,
-    /// many contacts.
+    /// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies
+    /// (docs/methods/region_solver.md 5.10), in rounds until a round reduces the error little. corrects_rigid_modes()
+    /// is true if the correction pays off: some implicit body is not held, there are no clusters, and there are many
+    /// contacts per body.
     SolveResult correct_rigid_modes(Real error, Real tolerance, Index limit);
     bool corrects_rigid_modes() const;
     Real sweep_cost() const;  // estimate [ns]
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact(i).offset + velocity_at(i, memory_.velocity.data()); }
-    /// Velocity of a contact without its offset.
+    /// Velocity of a contact without its offset, for the velocity rows `velocity` [m/s]
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
@@ -76,11 +80,12 @@ public:
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
     }
-    /// Size of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const {
         return part(i).along_normal > 0 ? speed * speed / part(i).along_normal : 0;
     }
-    /// One contact step of the split impulse (push_contact.h). Returns the size of the change [J]
+    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
+    /// [J]
     [[gnu::always_inline]] Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         const Real mobility = part(i).along_normal;
         if (!(mobility > 0)) return 0;
@@ -94,7 +99,7 @@ public:
         return mobility * change * change;
     }
 
-    /// Law of a joint row; null for a contact.
+    /// Returns the law of a joint row, or null for a contact.
     const JointLaw* joint(Index i) const {
         const Index first = size() - static_cast<Index>(memory_.joint.size());
         return i < first ? nullptr : &memory_.joint[static_cast<std::size_t>(i - first)];
@@ -103,24 +108,25 @@ public:
 private:
     // Functions that the base class calls.
     bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
-    Real squared_residual(Index i) const;  // with a third of the trace of W_ii as D
+    Real squared_residual(Index i) const;  // uses a third of the trace of W_ii as D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
-    /// Impulses on implicit bodies are first summed up by node, because each of them moves all touched nodes of its
-    /// body.
+    /// An impulse on an implicit body moves all touched nodes of the body. Impulses are therefore summed by node before
+    /// they are applied.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
-    // Functions for Newton steps.
+    // Functions of the Newton steps.
     BodyEquations& newton_memory();
     void assemble(BodyEquations& equations) const;
-    /// Copies the velocities of the region to the unknowns of the equations.
+    /// Copies the velocities of the region to `velocity`, in the order of the unknowns.
     void gather(BodyEquations& equations, Column<Real>& velocity) const;
     enum class Evaluation { value, matrix, turns };
     Real answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted);
     void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
-    /// moves_rigidly: the rigid motion of the term's body is an unknown. is_unknown: the velocity of the node is one.
+    /// moves_rigidly(): the rigid motion of the term's body is an unknown. is_unknown(): the velocity of the node is an
+    /// unknown.
     bool moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const;
     bool is_unknown(const BodyEquations& equations, Index node) const;
     BodyEquations* rigid_mode_memory();
@@ -138,21 +144,23 @@ private:
     bool is_rigid(const BodyEquations::Unknown& unknown) const;
     bool deforms(const BodyEquations::Unknown& unknown) const;
 
-    /// Solution of the contact law with all other impulses fixed. It is exact for Coulomb's cone.
+    /// Impulse of contact i from its law while all other impulses are fixed. It is exact for the friction cone; for the
+    /// pyramid the step is damped.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
-    /// Solves one contact. Returns change . W_ii change.
+    /// Solves contact i and applies the change of its impulse. Returns change . W_ii change [J]
     Real step(Index i, Real relaxation);
     /// Calls `of` for all contacts in their order.
     void for_each_in_sweep(auto&& of);
     void list_runs() const;
-    /// Applies an impulse within a sweep. On implicit bodies it moves only the nodes of the contact's run.
+    /// Applies an impulse of contact i within a sweep. On implicit bodies it moves only the nodes of the present run
+    /// (ContactRuns).
     void apply(Index i, const Vec4& impulse);
 
     NewtonPool* pool_;
     NewtonPool::Lease newton_;
     RunPool::Lease runs_;  // leased if contacts of the step touch implicit bodies
     bool own_are_listed_ = false, rigid_modes_are_listed_ = false;
-    bool inertia_is_known_ = false;  // the equations have it after the first Newton steps
+    bool inertia_is_known_ = false;  // true after the first Newton steps, when the equations contain K
 };
 
 extern template class RegionOperatorBase<BodyOperator, ThroughGroups, BodyMemory>;  // compiled in body_operator.cpp

@@ -1,5 +1,5 @@
-// Coarse correction with rigid-body modes: Newton steps of regions with deformable bodies that move as rigid bodies.
-// Deformations are updated from round to round (docs/methods/region_solver.md 5.10).
+// Coarse correction with rigid-body modes: Newton steps in which deformable bodies move as rigid bodies. Deformations
+// are updated once per round (docs/methods/region_solver.md 5.10).
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// A held body has no rigid motion.
+/// True if the rigid motion of the term's body is an unknown. A held body has no rigid motion.
 bool BodyOperator::moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const {
     if (!walk_.deforms(term.row)) return true;
     return equations.rigid_modes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
@@ -20,8 +20,8 @@ bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const 
     return !(equations.rigid_modes && walk_.moves_with_rigid(node));
 }
 
-/// With few contacts per body sweeps alone are better: piles of cubes of 27 nodes have about 20, and rounds cost them a
-/// sixth more.
+/// With few contacts per body, sweeps alone are faster. Piles of cubes with 27 nodes have about 20 contacts per body,
+/// and the correction would make them a sixth slower.
 bool BodyOperator::corrects_rigid_modes() const {
     constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
@@ -47,8 +47,8 @@ BodyEquations* BodyOperator::rigid_mode_memory() {
     return std::isfinite(equations.cost()) ? &equations : nullptr;
 }
 
-/// Computes the velocities that the impulses make, including deformations, and stores them. Deformation velocities stay
-/// fixed during the round.
+/// Computes and stores the velocities that the impulses produce, including deformations. The deformation velocities
+/// stay fixed during the round.
 void BodyOperator::start_rigid_round(BodyEquations& equations) {
     refresh();
     std::ranges::copy(memory_.velocity, memory_.scratch.begin());
@@ -59,7 +59,8 @@ void BodyOperator::start_rigid_round(BodyEquations& equations) {
             velocity(i).head<3>() - equations.velocity(i, equations.present.span());
 }
 
-/// Updates the rigid velocities for the change of the impulses since `start`; the stored velocities belong to `start`.
+/// Updates the velocities for the change of the impulses since `start`, without deforming implicit bodies. The stored
+/// velocities in `scratch` belong to the impulses `start`.
 void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
     std::ranges::copy(memory_.scratch, memory_.velocity.begin());
     for (Index i = 0; i < size(); ++i) {
@@ -69,10 +70,12 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    constexpr Real softness = 0.3;  // fraction of D, above the compliance of the bodies; otherwise rounds gain nothing
-    constexpr Real enough = 0.01;   // end of a round: fraction of the error at its start
-    constexpr Real gain = 0.5;      // another round follows if the error falls below this fraction
-    constexpr Index most_in_round = 14;  // limit of steps
+    // Fraction of D. It exceeds the compliance of the bodies; otherwise rounds gain nothing.
+    constexpr Real softness = 0.3;
+    // A round ends when the square root of the merit falls below this fraction of the error at its start.
+    constexpr Real enough = 0.01;
+    constexpr Real gain = 0.5;  // another round follows if the error falls below this fraction of its last value
+    constexpr Index most_in_round = 14;  // limit of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();
     if (equations == nullptr) return result;

@@ -1,7 +1,7 @@
-// Interface of a contact problem for the methods: the Delassus operator W = J M^-1 J^T, formed only where necessary,
-// and the friction law of each contact. J maps node velocities to contact velocities, M is the lumped mass. Models:
-// LumpedOperator (carries node velocities along; used in a step of the engine), BodyOperator (rigid bodies) and
-// BlockOperator (blocks of W; problems from files). NormalRows supports accelerated sweeps only.
+// Interface between methods and contact problems: the Delassus operator W = J M^-1 J^T, formed only where necessary,
+// and the friction law of each contact. J maps node velocities to contact velocities; M is the lumped mass matrix.
+// Models are LumpedOperator (stores node velocities; used in a step of the engine), BodyOperator (rigid bodies) and
+// BlockOperator (explicit blocks of W; problems from files). NormalRows supports accelerated sweeps only.
 #pragma once
 
 #include <concepts>
@@ -12,21 +12,21 @@
 
 namespace skerry {
 
-/// Largest number of workspace vectors by contact that a method may use.
+/// Largest number of workspace vectors that a method may use. Each has one entry per contact.
 inline constexpr std::size_t workspace_limit = 4;
 
-/// Result of a method.
+/// Result of a solver method.
 struct SolveResult {
     Index iterations = 0;
     Real error = 0;
     bool converged = false;
 };
 
-/// Change of the impulses in a sweep. T: Real, or Real8 for eight regions in SIMD lanes.
+/// Change of the impulses in one sweep. T is Real, or Real8 for eight regions in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
     T size{};     // sum of change . W_ii change
-    T against{};  // -sum of change . W_ii (impulse - previous): positive when the sweep turns back
+    T against{};  // -sum of change . W_ii (impulse - previous); positive if the sweep reverses the motion
 
     SweepChangeOf& operator+=(const SweepChangeOf& other) {
         size += other.size;
@@ -36,44 +36,45 @@ struct SweepChangeOf {
 };
 using SweepChange = SweepChangeOf<Real>;
 
-/// Impulses that accelerated sweeps can improve. Number: type of an error, Real or Real8. W_ii is the diagonal block of
-/// contact i.
+/// Contact problems that accelerated sweeps can solve. Number is the type of an error, Real or Real8. W_ii is the
+/// diagonal block of contact i.
 template <class Op>
 concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number number) {
-    // one sweep: solves each contact exactly in turn, with relaxation
+    // One sweep: solves each contact exactly in turn, with this relaxation factor.
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
     { op.error() } -> std::same_as<typename Op::Number>;  // error of the present impulse
-    op.suggests_check(number, relaxation);                // after each sweep, with its change and the tolerance
-    op.remember();                                        // previous = present
-    // present += number (present - previous), previous = present
+    op.suggests_check(number, relaxation);  // call it after each sweep, with the sweep's change and the tolerance
+    op.remember();                          // previous = present
+    // present += number (present - previous); previous = old present
     op.extrapolate(number);
-    op.refresh_all();  // recomputes the state carried along with present and previous
+    op.refresh_all();  // recomputes the stored velocities of present and previous impulses
 };
 
-/// u = W r + q with a friction law, and a present impulse r. Errors are relative and comparable between methods.
+/// Contact problem u = W r + q with a friction law and a present impulse r. Errors are relative and comparable between
+/// methods.
 template <class Op>
 concept ContactOperator = SweptOperator<Op> &&
     requires(Op& op, const Op& constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
              const Vec4& vector, Eigen::MatrixXd matrix) {
     { constant.size() } -> std::convertible_to<Index>;
-    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // after writing to it call refresh()
-    op.refresh();                                              // recomputes the carried state from the impulse
-    // slot 0: best iterate; 1: previous impulse of accelerated sweeps; others: free for the method
+    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // after writing to the span call refresh()
+    op.refresh();                                              // recomputes the stored velocities from the impulse
+    // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;              // a sweep that returns only the size of its change
-    op.residual(out);                                               // -u, the paper's b - A lambda
-    op.multiply(in, out);                                           // W d
-    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // friction law
-    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) of (19)
+    { op.sweep(number) } -> std::convertible_to<Real>;  // a sweep that returns only the size of its change
+    op.residual(out);                                   // writes -u of each contact; the paper calls it b - A lambda
+    op.multiply(in, out);                               // W d
+    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // projection of an impulse onto the friction law
+    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) in equation (19) of the paper
     { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
-    // scalar substitute for W_ii: a third of its trace; 0: the contact moves nothing [1/kg]
+    // Scalar substitute for W_ii: a third of the trace of W_ii; 0 if the contact can move nothing [1/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;
     { constant.law() } -> std::same_as<Friction>;
-    constant.assemble(matrix);  // dense W with 3 size() rows
+    constant.assemble(matrix);  // writes the dense matrix W with 3 size() rows
 };
 
-/// present += factor (present - previous), previous = present.
+/// Sets present += factor (present - previous), and previous to the old value of present.
 template <class V>
 inline void extrapolate_one(Real factor, V& present, V& previous) {
     const V now = present;

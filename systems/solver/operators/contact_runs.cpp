@@ -6,7 +6,7 @@ namespace skerry {
 
 namespace {
 
-/// out += sum of columns times factors. Several columns at once reduce the reads and writes of `out`.
+/// out += sum of columns times factors. Adding six columns at once reduces the reads and writes of `out`.
 void add_columns(std::span<const Real* const> column, std::span<const Real> factor, std::span<Real> out) {
     constexpr std::size_t at_once = 6;
     std::size_t c = 0;
@@ -91,7 +91,7 @@ void ContactRuns::list(std::span<const LumpedContact> contact, const ThroughGrou
 void ContactRuns::list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk,
                                std::size_t first_node, Run& run) {
     std::sort(node_.begin() + static_cast<std::ptrdiff_t>(first_node), node_.end());
-    // Sort by rows of the region, in which the touched nodes of a body are consecutive.
+    // Sorting by rows of the region groups the nodes by body, because the touched nodes of a body are consecutive rows.
     for (std::size_t begin = first_node; begin < node_.size();) {
         const std::size_t body = walk.body_of(node_[begin]);
         std::size_t end = begin;
@@ -161,7 +161,7 @@ void ContactRuns::spread(const Run& run, const ThroughGroups& walk, Vec4* veloci
         std::ranges::fill(pending, Vec4::Zero());
         if (impulses_.empty()) continue;
         const std::span<const Real> moved = impulses_.velocities(3 * touched);
-        // Skip the nodes of the run, which have moved already.
+        // Skip the nodes of the run, whose velocities are up to date.
         std::size_t next = patch.first;
         for (std::size_t k = 0; k < touched; ++k) {
             const Index row = patch.first_row + static_cast<Index>(k);

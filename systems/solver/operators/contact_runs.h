@@ -1,7 +1,7 @@
 // Sweeps over contacts on implicit bodies. An impulse on a node moves all touched nodes of its body, but only the nodes
-// of the next contacts need the update at once (docs/methods/implicit_bodies.md 4). A run is a sequence of consecutive
-// contacts with few nodes. The impulses of a run are summed up by node and applied to all other nodes at its end. The
-// result is that of a plain sweep, up to rounding.
+// of the next contacts need their new velocity at once (docs/methods/implicit_bodies.md 4). A run is a sequence of
+// consecutive contacts with few nodes. During a run, impulses move only the nodes of the run. At its end, the sums of
+// the impulses by node move all other nodes. The result is that of a plain sweep, up to rounding.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace skerry {
 
 using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // the fourth row is zero
 
-/// Impulses on touched nodes of one body, and their joint effect on all touched nodes.
+/// Impulses on touched nodes of one implicit body, and their total effect on all touched nodes of the body.
 class SpreadImpulses {
 public:
     SpreadImpulses() = default;
@@ -35,50 +35,51 @@ private:
     Column<Real> sum_;
 };
 
-/// Runs of one region at a time. Memory is kept between regions.
+/// Runs of the contacts of one region. Memory is reused for the next region.
 class ContactRuns {
 public:
-    /// Consecutive contacts, and the range of the patches that they touch.
+    /// Consecutive contacts, and the range of patches with their nodes.
     struct Run {
         Index begin, end;
         std::size_t first_patch, last_patch;
     };
 
-    /// Begins another region: its runs are not listed yet.
+    /// Begins another region, whose runs are not listed yet.
     void start() { run_.clear(); }
     bool listed() const { return !run_.empty(); }
-    /// `most_nodes`: limit of the nodes per run. A small limit spreads impulses more often, a large one moves more
-    /// nodes at each contact.
+    /// Lists the runs. `most_nodes` limits the number of nodes per run. A small limit spreads impulses to all nodes
+    /// more often; a large limit moves more nodes at each contact.
     void list(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t rows,
               std::size_t most_nodes = 24);
     std::span<const Run> runs() const { return run_; }
-    /// Applies an impulse of contact `i` within its run, but not to rigid bodies.
+    /// Applies an impulse of contact `i` to the nodes of its run, but not to rigid bodies.
     void apply(std::size_t i, const LumpedContact& contact, const ThroughGroups& walk, const Vec4& impulse,
                Vec4* velocity);
-    /// Applies the summed impulses of a run to the touched nodes outside of it. Call it at the end of the run.
+    /// Applies the summed impulses of a run to the touched nodes outside of the run. Call it at the end of the run.
     void spread(const Run& run, const ThroughGroups& walk, Vec4* velocity);
     /// Number of node velocities that a sweep updates, counting repeated updates.
     Real moved() const { return moved_; }
 
-    /// Zeroed sums by node of the region, for impulses outside of sweeps.
+    /// Returns zeroed impulse sums by node of the region, for impulses outside of sweeps [N s]
     std::span<Vec4> sums(std::size_t rows) {
         sum_.assign(rows, Vec4::Zero());
         return sum_;
     }
-    /// Applies the impulses in `sums` to the implicit bodies.
+    /// Applies the impulses in sums() to the implicit bodies.
     void spread_sums(const ThroughGroups& walk, Vec4* velocity);
 
 private:
-    /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on, and their blocks of W.
+    /// Nodes of one body in the contacts of a run: `count` entries of node_ from `first` on. Their blocks of W begin at
+    /// `first_block` in block_.
     struct Patch {
         std::size_t first, count, first_block;
         std::size_t body;  // row of RigidBodyTable
-        Index first_row;   // row of the region of the first touched node of the body
+        Index first_row;   // region row of the first touched node of the body
     };
-    /// Nodes of the run that an impulse on one node of a contact moves; `count` is 0 if that node is on no implicit
+    /// Nodes of the run that move with an impulse on one node of a contact. `count` is 0 if this node is on no implicit
     /// body.
     struct Near {
-        std::size_t first, count, self, row;  // indices in node_, `row` in block_
+        std::size_t first, count, self, row;  // `first`, `self`: indices in node_; `row`: index in block_
     };
 
     void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t first_node,
@@ -88,10 +89,10 @@ private:
     Column<Run> run_;
     Column<Patch> patch_;
     Column<Index> node_;                // rows of the region, ascending within a patch
-    Column<Vec4> pending_;              // by index in node_ [N s]
+    Column<Vec4> pending_;              // impulse sum by index in node_ [N s]
     Column<std::array<Near, 4>> near_;  // by contact
-    Column<PaddedMat3> block_;          // in world axes [1/kg]
-    Column<Index> entry_;               // by row of the region: index in node_; stale if node_ disagrees
+    Column<PaddedMat3> block_;          // blocks of W in world axes [1/kg]
+    Column<Index> entry_;  // by row of the region: index in node_; invalid if node_ holds another row there
     Column<Vec4> sum_;
     SpreadImpulses impulses_;
     Real moved_ = 0;

@@ -1,5 +1,6 @@
-// A walk defines the order in which the contacts of a region are visited, the number of threads, and the effect of an
-// impulse on the velocities. Walks are types: shared code is written once and compiled separately for each walk.
+// Walks over the contacts of a region. A walk defines the visiting order of the contacts, the number of threads, and
+// the effect of an impulse on the velocities. Walks are types: shared code is written once and compiled separately for
+// each walk.
 #pragma once
 
 #include <concepts>
@@ -11,27 +12,28 @@
 
 namespace skerry {
 
-/// `body` is called with ranges [begin, end) that together cover all places. Contacts that share a node are never
-/// visited concurrently, and always in the same order.
+/// A visiting order. It calls `body` with ranges [begin, end) that together cover all positions. Contacts that share a
+/// node are never visited concurrently, and always in the same order.
 template <class W>
 concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
-    { walk.number_of(count) } -> std::convertible_to<std::size_t>;  // number in the region of the contact at a place
+    // number in the region of the contact at a position
+    { walk.number_of(count) } -> std::convertible_to<std::size_t>;
     walk.contacts(count, body);
     walk.nodes(count, body);
     { walk.template sum<Real>(count, part) } -> std::same_as<Real>;  // sum over the contacts, always in the same order
 };
 
-/// An order together with the effect of impulses on nodes.
+/// A visiting order together with the effect of impulses on nodes.
 template <class W>
 concept RegionWalk = RegionOrder<W> &&
     requires(const W walk, const LumpedContact& contact, const Vec4& impulse, Vec4* velocity) {
-    { W::own_masses } -> std::convertible_to<bool>;  // J M^-1 J^T of one contact equals its LumpedContact::diagonal
+    { W::own_masses } -> std::convertible_to<bool>;  // true if J M^-1 J^T of a contact equals LumpedContact::diagonal
     walk.apply(contact, impulse, velocity);          // velocities of the region's nodes += M^-1 J^T impulse
-    { walk.coupling(contact, contact) } -> std::same_as<Real>;  // J M^-1 J^T of two contacts [1/kg]
+    { walk.coupling(contact, contact) } -> std::same_as<Real>;  // scalar block J M^-1 J^T of two contacts [1/kg]
 };
 
-/// One thread, in the order of the contacts.
+/// Visiting order with one thread: ascending contact numbers.
 struct OneThread {
     std::size_t number_of(std::size_t place) const { return place; }
     template <class Body>
@@ -50,7 +52,7 @@ struct OneThread {
 
 static_assert(RegionOrder<OneThread>);
 
-/// One thread, in the order of the contacts; every node has its own mass.
+/// Walk with one thread in ascending order, for regions in which every node has its own mass.
 struct InOrder : OneThread {
     static constexpr bool own_masses = true;
 

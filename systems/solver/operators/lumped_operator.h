@@ -1,4 +1,4 @@
-// Delassus operator of lumped masses: every block is a scalar times the identity (docs/methods/contact.md 2.1).
+// Delassus operator for lumped masses: every 3x3 block is a scalar times the identity (docs/methods/contact.md 2.1).
 #pragma once
 
 #include <span>
@@ -10,10 +10,11 @@
 namespace skerry {
 
 struct LumpedMemory : ContactMemory {
-    std::span<const Vec3> free_velocity;  // by row of NodeTable [m/s]
+    std::span<const Vec3> free_velocity;  // by row of NodeTable: velocity without impulses [m/s]
 };
 
-/// For a given order of the contacts the bits of the impulses do not depend on the walk; those of sums do.
+/// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
+/// on the walk, but the bits of sums do.
 template <RegionWalk Walk>
 class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory> {
     using Base = RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory>;
@@ -22,7 +23,7 @@ class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk,
 public:
     using Base::size;
 
-    /// `scale` is the scale of e_nat [sqrt(J)]. Velocities must match the impulse.
+    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses.
     LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
         : Base(memory, friction, scale, walk) {}
 
@@ -36,9 +37,10 @@ public:
 
     /// Velocity of a contact [m/s]
     Vec4 velocity(Index i) const { return contact_velocity(contact(i), memory_.velocity.data()); }
-    /// Size of a push that changes the normal speed of a contact by `speed` [J]
+    /// Squared energy norm of a push that changes the normal speed of a contact by `speed` [J]
     Real push_size(Index i, Real speed) const { return contact(i).inverse_diagonal * speed * speed; }
-    /// One contact step of the split impulse (push_contact.h). Returns the size of the change [J]
+    /// One contact step of the split impulse (push_contact.h). Returns the squared energy norm of the impulse change
+    /// [J]
     Real push(Index i, Real bias, Vec4* velocity, Real& impulse) const {
         return push_contact(contact(i), bias, velocity, impulse, apply_by(walk_));
     }
@@ -70,8 +72,8 @@ private:
             walk.apply(contact, impulse, velocity);
         };
     }
-    /// The step of contact i. Copies everything it needs: the compiler must assume that a vector store changes any
-    /// memory.
+    /// Returns a function that solves contact i. It holds copies of all pointers and constants: otherwise the compiler
+    /// must reload them after each vector store.
     auto step(Real relaxation) const {
         return [contact = memory_.contact.data(), velocity = memory_.velocity.data(), friction = friction_, relaxation,
                 walk = walk_](std::size_t i, Vec4& impulse) {
@@ -79,8 +81,8 @@ private:
         };
     }
 
-    // An extrapolation of impulses is postponed to the next sweep, which visits them anyway. Its velocities are up to
-    // date.
+    // extrapolate() updates the velocities at once. The impulses are extrapolated in the next sweep, which visits them
+    // anyway.
     bool waiting_ = false;
     Real factor_ = 0;
 };
@@ -99,7 +101,7 @@ void LumpedOperatorBy<Walk>::settle() {
 template <RegionWalk Walk>
 void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
     settle();
-    // velocities are affine in the impulses
+    // Velocities are affine functions of the impulses, so the same extrapolation applies.
     walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });
@@ -151,7 +153,7 @@ void LumpedOperatorBy<Walk>::assemble(Eigen::MatrixXd& matrix) const {
 }
 
 static_assert(ContactOperator<LumpedOperator>);
-// compiled once, in lumped_operator.cpp
+// These templates are instantiated once, in lumped_operator.cpp.
 extern template class RegionOperatorBase<LumpedOperator, InOrder, LumpedMemory>;
 extern template class LumpedOperatorBy<InOrder>;
 

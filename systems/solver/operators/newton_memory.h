@@ -1,4 +1,5 @@
-// Memory of dense Newton steps (systems/solver/methods/newton.cpp). It is in this folder because operators own it.
+// Memory of dense Newton steps (systems/solver/methods/newton.cpp). The file is in this folder because operators own
+// the memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +9,7 @@
 
 namespace skerry {
 
-/// Working memory of the method; grows to the largest region seen.
+/// Working memory of the Newton method. It grows to the size of the largest region seen.
 struct NewtonMemory {
     struct Contact {
         Vec4 normal;
@@ -16,7 +17,7 @@ struct NewtonMemory {
     };
 
     Eigen::MatrixXd operator_matrix;  // W
-    Eigen::MatrixXd jacobian;         // matrix for the active contacts
+    Eigen::MatrixXd jacobian;         // Jacobian of the active contacts
     Eigen::VectorXd rest, change;
     std::vector<Contact> contact;
     std::vector<Index> active;  // contacts that are not open

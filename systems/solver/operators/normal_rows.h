@@ -1,5 +1,5 @@
-// Region without friction: one scalar row per contact (docs/methods/region_solver.md 4). The iteration runs on the
-// normal impulses only, with a third of the data and no projection onto a cone.
+// Operator of a region without friction: one scalar row per contact (docs/methods/region_solver.md 4). The iteration
+// uses only the normal impulses. It needs a third of the data and no projection onto a cone.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// Normal impulses by contact [N s]
+/// Normal impulses by contact: present and previous iterate [N s]
 struct NormalMemory {
     std::span<Real> impulse, previous;
 };
 
-/// Starts from region.impulse, which must be along the normals; keep() writes back to it.
+/// The constructor reads region.impulse, which must point along the normals. keep() writes the impulses back.
 class NormalRows {
 public:
     using Number = Real;
@@ -42,7 +42,7 @@ public:
         return sum;
     }
 
-    /// The error e_nat (docs/methods/errors.md 2).
+    /// Error e_nat of docs/methods/errors.md 2.
     Real error() const {
         Real sum = 0;
         for (std::size_t i = 0; i < region_.contact.size(); ++i) {
@@ -52,7 +52,7 @@ public:
         }
         return sum == 0 ? 0 : std::sqrt(sum) / scale_;
     }
-    /// True if the error is worth measuring, as in LumpedOperator.
+    /// True if a sweep with this squared change suggests that the error is within the tolerance.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
 
     void remember() {
@@ -61,21 +61,21 @@ public:
     }
     void extrapolate(Real factor) {
         extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.previous);
-        // velocities are affine in the impulses
+        // Velocities are affine functions of the impulses, so the same extrapolation applies.
         extrapolate_range(0, region_.velocity.size(), factor, region_.velocity, region_.scratch);
     }
-    /// Recomputes the velocities from the impulses, so that rounding errors of the extrapolations do not accumulate.
+    /// Recomputes the velocities from the impulses, so that rounding errors of extrapolations do not accumulate.
     void refresh_all() {
         refresh(memory_.impulse, region_.velocity);
         refresh(memory_.previous, region_.scratch);
     }
 
-    /// Copies the present impulses to the region's impulses, which hold the best ones.
+    /// Copies the present impulses to region.impulse, which holds the best iterate.
     void keep() {
         for (std::size_t i = 0; i < region_.contact.size(); ++i)
             region_.impulse[i] = memory_.impulse[i] * region_.contact[i].normal;
     }
-    /// Returns to the impulses stored by keep(), and their velocities.
+    /// Restores the impulses stored by keep() and recomputes the velocities.
     void restore() {
         read_impulses();
         refresh(memory_.impulse, region_.velocity);
@@ -85,7 +85,7 @@ private:
     static Real wanted(const LumpedContact& contact, Real impulse, Real relaxation, const Vec4* velocity) {
         const Real approach = contact.normal.dot(contact_velocity(contact, velocity));
         const Real next = impulse - relaxation * contact.inverse_diagonal * approach;
-        return next <= 0 ? 0 : next;  // this form of the comparison keeps NaN
+        return next <= 0 ? 0 : next;  // this form of the comparison preserves NaN
     }
     void read_impulses() {
         for (std::size_t i = 0; i < region_.contact.size(); ++i)

@@ -1,5 +1,5 @@
-// Functions that the operators of regions in a step share. These operators carry the velocities of their region along,
-// so that one contact step is a gather and a scatter.
+// Shared functions of operators for regions in a step of the engine. These operators store the velocities that belong
+// to the impulses. A contact step is therefore a gather and a scatter.
 #pragma once
 
 #include <array>
@@ -13,19 +13,20 @@
 
 namespace skerry {
 
-/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk. Most regions have one
-/// velocity per node; regions with rigid bodies also have two per body.
+/// Memory of one region, owned by the caller. Spans by contact are in the order of the walk. A region has one velocity
+/// row per node, plus two rows per rigid body.
 struct ContactMemory {
     std::span<const LumpedContact> contact;
     std::span<Vec4> impulse;      // [N s]
     std::span<Vec4> velocity;     // includes the effect of the impulse [m/s, rad/s]
-    std::span<const Index> node;  // by velocity: row of NodeTable, or no_index for that of a rigid body
-    std::span<Vec4> scratch;      // by velocity: previous velocities, or those of a product
+    std::span<const Index> node;  // by velocity row: row of NodeTable, or no_index for rigid bodies
+    std::span<Vec4> scratch;      // by velocity row: velocities of the previous impulses, or temporary in multiply()
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
 };
 
-/// `Own` derives from this class and adds sweeps. It also tells whether a contact can move anything (moves), its part
-/// of the squared error (squared_residual), velocities without impulses, and the response to impulses (add_response).
+/// Base class of operators. `Own` derives from this class and adds sweeps. It also defines moves() (whether a contact
+/// can move anything), squared_residual() (the contact's term in the squared error), free_velocity() (velocity without
+/// impulses) and add_response() (velocity change by impulses).
 template <class Own, RegionOrder Walk, class Memory>
 class RegionOperatorBase {
 public:
@@ -57,7 +58,7 @@ public:
             for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
         });
     }
-    /// e_nat of docs/methods/errors.md 2 over all contacts.
+    /// Error e_nat of docs/methods/errors.md 2 over all contacts.
     Real error() {
         own().settle();
         const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
@@ -66,11 +67,11 @@ public:
                 if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
             return part;
         });
-        if (sum == 0) return 0;  // solved exactly, for any scale
+        if (sum == 0) return 0;  // exact solution; the scale may be zero
         return std::sqrt(sum) / scale_;
     }
-    /// The change of a sweep approximates the natural map at its start. The error is worth measuring once the change is
-    /// small.
+    /// True if the error is worth measuring. The change of a sweep approximates the natural map at the start of the
+    /// sweep, so a small change suggests a small error.
     bool suggests_check(Real change, Real tolerance) const { return change <= tolerance * tolerance * scale_ * scale_; }
     void residual(std::span<Vec4> out) {
         own().settle();
@@ -104,7 +105,7 @@ protected:
         : memory_(memory), friction_(friction), scale_(scale), walk_(walk) {}
 
     const LumpedContact& contact(Index i) const { return memory_.contact[i]; }
-    /// Applies an extrapolation that was postponed, if the operator does so.
+    /// Applies a postponed extrapolation. Operators that postpone extrapolations hide this function.
     void settle() {}
     void refresh(std::span<const Vec4> impulse, std::span<Vec4> velocity) {
         walk_.nodes(memory_.node.size(), [&](std::size_t begin, std::size_t end) {

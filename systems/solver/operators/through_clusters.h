@@ -1,4 +1,4 @@
-// Walk of a region whose contacts touch clusters: an impulse on a node moves all nodes of its cluster
+// Walk over a region whose contacts touch clusters. An impulse on a node moves all nodes of its cluster
 // (docs/methods/clusters.md 4).
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace skerry {
 
-/// One thread, in the order of the contacts. All nodes of a cluster must be consecutive rows of the region, in the
-/// order of the cluster, even if no contact has them.
+/// Walk with one thread, in ascending order of the contacts. All nodes of a touched cluster must be consecutive rows of
+/// the region, in the order of the cluster, even nodes that no contact has.
 class ThroughClusters : public OneThread {
 public:
     static constexpr bool own_masses = false;
 
-    /// `node`: rows of NodeTable of the region's nodes.
+    /// `node` lists the rows of NodeTable of the region's nodes.
     ThroughClusters(const NodeClusters& clusters, std::span<const Index> node) : clusters_(&clusters), node_(node) {}
 
     bool in_cluster(Index n) const { return clusters_->cluster(node_[static_cast<std::size_t>(n)]) != no_index; }
@@ -31,7 +31,8 @@ public:
         return sum;
     }
 
-    /// Applies the share of one node.
+    /// Applies the part of a contact's impulse that acts on its node `a`. If the node is in a cluster, this moves all
+    /// nodes of the cluster.
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         const Index n = contact.node[a], global = node_[static_cast<std::size_t>(n)];
         const Index cluster = clusters_->cluster(global);

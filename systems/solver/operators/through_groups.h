@@ -1,6 +1,6 @@
-// Walk of a region whose contacts touch rigid bodies. Besides nodes with their own mass and nodes of clusters it
-// supports nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). Their
-// velocities are relative to the motion of the frame.
+// Walk over a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of clusters, and
+// nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). The velocities of
+// implicit nodes are relative to the motion of the frame.
 #pragma once
 
 #include <span>
@@ -11,18 +11,18 @@
 
 namespace skerry {
 
-/// One thread, in the order of the contacts. The touched nodes of an implicit body must be consecutive rows of the
-/// region, in the order of ImplicitCoupling.
+/// Walk with one thread, in ascending order of the contacts. The touched nodes of an implicit body must be consecutive
+/// rows of the region, in the order of ImplicitCoupling.
 class ThroughGroups : public OneThread {
 public:
-    /// `node`: rows of NodeTable of the region's nodes.
+    /// `node` lists the rows of NodeTable of the region's nodes.
     ThroughGroups(const NodeClusters& clusters, const ImplicitInputs& implicit, const RigidInputs& rigid,
                   std::span<const Index> node)
         : clusters_(clusters, node), implicit_(&implicit), rigid_(&rigid), node_(node) {}
 
     bool any_deforms() const { return implicit_->any(); }
-    /// Applies an impulse of a contact except to nodes of implicit bodies. Adds their shares to `sum`, by node of the
-    /// region, for SpreadImpulses.
+    /// Applies an impulse of a contact to all nodes that are on no implicit body. For nodes of implicit bodies it adds
+    /// the weighted impulse to `sum`, by node of the region, for SpreadImpulses.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (deforming_place(contact.node[a]) == no_index)
@@ -31,38 +31,39 @@ public:
                 sum[contact.node[a]] += contact.weight[a] * impulse;
         }
     }
-    /// Applies the share of one node that is on no implicit body.
+    /// Applies the part of a contact's impulse that acts on its node `a`, which must be on no implicit body.
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Applies an impulse without deforming implicit bodies; for corrections of positions alone.
+    /// Applies an impulse to all nodes that are on no implicit body. Implicit bodies do not deform, as is required in
+    /// corrections of positions.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)
             if (deforming_place(contact.node[a]) == no_index) clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Share of the nodes in the block of W of two contacts [1/kg]
+    /// Contribution of the nodes to the block of W for contacts a and b [1/kg]
     Mat3 coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, true); }
     Mat3 undeformed_coupling(const LumpedContact& a, const LumpedContact& b) const { return coupling_of(a, b, false); }
 
     const RigidInputs& rigid() const { return *rigid_; }
     bool in_cluster(Index n) const { return clusters_.in_cluster(n); }
-    /// Row of BodyTable of a node of the region.
+    /// Row of BodyTable of the body that owns node `n` of the region.
     Index owner(Index n) const {
         return rigid_->nodes.node_body[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])];
     }
     bool moves_with_rigid(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]) != no_index; }
     Index rigid_row(Index n) const { return rigid_->nodes.row(node_[static_cast<std::size_t>(n)]); }
-    /// Vector from the centre of a rigid body to one of its nodes [m]
+    /// Vector from the centre of a rigid body to its node `n` [m]
     Vec3 arm(Index n) const {
         return rigid_->position[static_cast<std::size_t>(node_[static_cast<std::size_t>(n)])] -
                rigid_->center[body_of(n)];
     }
-    /// True if the body at a row of RigidBodyTable has touched nodes that deform.
+    /// True if contacts touch nodes of this implicit body. `body` is a row of RigidBodyTable.
     bool deforms(Index body) const {
         return implicit_->any() && !implicit_->coupling->nodes[static_cast<std::size_t>(body)].empty();
     }
-    /// Total response of node `n` of an implicit body to an impulse on its node `m` [1/kg]
+    /// Velocity response of node `n` of an implicit body to an impulse on its node `m`, including rigid motion [1/kg]
     Mat3 response(Index n, Index m) const {
         const std::size_t r = body_of(m);
         const Mat3 turned = rigid_->spins.inverse_inertia[r] * cross_matrix(arm(m));
@@ -70,14 +71,14 @@ public:
                rigid_->inverse_mass(r) * Mat3::Identity() - cross_matrix(arm(n)) * turned;
     }
     const ImplicitCoupling& deforming() const { return *implicit_->coupling; }
-    /// Number of a node among the touched nodes of its implicit body, or no_index.
+    /// Index of node `n` among the touched nodes of its implicit body, or no_index.
     Index deforming_place(Index n) const {
         const Index row = node_[static_cast<std::size_t>(n)] == no_index
                               ? no_index
                               : implicit_->row(node_[static_cast<std::size_t>(n)], rigid_->nodes);
         return row == no_index ? no_index : implicit_->coupling->place[static_cast<std::size_t>(row)];
     }
-    /// Row of RigidBodyTable of a node on a rigid body.
+    /// Row of RigidBodyTable of the rigid body with node `n`.
     std::size_t body_of(Index n) const {
         return static_cast<std::size_t>(rigid_->nodes.row(node_[static_cast<std::size_t>(n)]));
     }

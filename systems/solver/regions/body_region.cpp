@@ -6,7 +6,7 @@
 namespace skerry {
 namespace {
 
-/// Adds the impulse of a contact to its nodes on implicit bodies, by their weights.
+/// Adds the impulse of a contact to its nodes on implicit bodies, according to their weights.
 void write_deforming(const RegionStage& stage, const BodyMemory& memory, std::size_t i) {
     if (!stage.inputs.implicit.any()) return;
     const LumpedContact& contact = memory.contact[i];
@@ -41,7 +41,7 @@ void BodyRegion::take_joint_impulses(const RegionStage& stage) const {
 
 void BodyRegion::hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const {
     if (joint.empty() || outcome.status == RegionStatus::not_finite) return;
-    Real off = 0;  // size of the correction [J]
+    Real off = 0;  // squared energy norm of the correction [J]
     for (std::size_t k = 0; k < joint.size(); ++k)
         off += correct_joint(stage, stage.inputs.joints[static_cast<std::size_t>(joint[k])], memory.velocity,
                              joint_place(stage, k));

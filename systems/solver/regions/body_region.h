@@ -8,24 +8,24 @@
 
 namespace skerry {
 
-/// Order of the velocities: two per rigid body, then touched nodes of implicit bodies, then nodes of clusters, then
-/// other nodes. Joints follow the contacts in the memory by contact.
+/// A region with rigid or implicit bodies. Its velocity rows are: two per rigid body, then touched nodes of implicit
+/// bodies, then nodes of clusters, then other nodes. In the memory by contact, joints follow the contacts.
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> rigid;  // rows of RigidBodyTable
 
-    // Functions of the life cycle. They hide those of LoadedRegion.
+    // Functions of the life cycle that replace those of LoadedRegion.
     bool moves_node(const RegionStage& stage, std::size_t n) const {
         return memory.node[n] != no_index && stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) ==
-                                                 no_index;  // otherwise its frame moves it, too
+                                                 no_index;  // nodes of implicit bodies also move with their frame
     }
-    /// Only sweeps support joints.
+    /// Joints require method ags, because only sweeps support them.
     SolverMethod method(const SolverSettings& settings) const {
         return joint.empty() ? settings.method : SolverMethod::ags;
     }
     void take_joint_impulses(const RegionStage& stage) const;
-    /// Corrects the joints to hold at the end of the step, and solves again if the correction exceeds the tolerance
-    /// (docs/methods/joints.md 2).
+    /// Corrects the joint rows so that the joints hold at the end of the step. Solves again if the correction exceeds
+    /// the tolerance (docs/methods/joints.md 2).
     void hold_joints(const RegionStage& stage, BodyOperator& op, RegionOutcome& outcome) const;
     void write_contact(const RegionStage& stage, std::size_t i) const;
     void write_joints(const RegionStage& stage) const;
@@ -46,11 +46,11 @@ inline BodyOperator operator_of(const RegionStage& stage, const BodyRegion& regi
     return {region.memory, stage.settings.friction, region.scale, region.walk, stage.memory.newton, stage.memory.runs};
 }
 
-/// Impulses are zero. `joint`: rows of JointBlockTable.
+/// Loads a region with rigid or implicit bodies. Impulses are zero. `joint` lists rows of JointBlockTable.
 BodyRegion load_body_region(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
                             Index number, Index base);
 
-/// Solves one such region in one thread.
+/// Solves a region with rigid or implicit bodies in one thread.
 RegionOutcome solve_bodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> joint,
                            Index number, Index base);
 

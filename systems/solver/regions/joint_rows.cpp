@@ -11,10 +11,10 @@ namespace {
 
 /// Motion of one body at the point of a joint, after the kick.
 struct BodyMotion {
-    Vec3 arm = Vec3::Zero();  // from the centre to the joint point [m]
+    Vec3 arm = Vec3::Zero();  // vector from the centre to the joint point [m]
     // linear and angular velocity [m/s, rad/s]
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
-    Vec3 spin_rate = Vec3::Zero();  // of torque-free rotation [rad/s^2]
+    Vec3 spin_rate = Vec3::Zero();  // angular acceleration of torque-free rotation [rad/s^2]
 
     BodyMotion(const RigidInputs& rigid, Index body, bool moves, const Vec3& point) {
         if (body == no_index) return;
@@ -30,7 +30,8 @@ struct BodyMotion {
     Vec3 at_point() const { return velocity + turning(); }
 };
 
-/// Half the acceleration of the error, seen from the second body, while both bodies move freely [m/s^2 or rad/s^2]
+/// Half the acceleration of the joint error in the frame of the second body, while both bodies move freely [m/s^2 or
+/// rad/s^2]
 Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     if (of_spins) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
     const Vec3 of_first = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
@@ -38,15 +39,16 @@ Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion&
     return (of_first + of_second) / 2 - second.spin.cross(first.at_point() - second.velocity);
 }
 
-/// Greatest correction speed: the recovery_speed of the settings, or 1 rad/s, plus the speeds of both bodies by
-/// rotation.
+/// Upper bound of the correction speed: recovery_speed (translation) or 1 rad/s (rotation), plus the rotational speeds
+/// of both bodies [m/s or rad/s]
 Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     constexpr Real turning = 1;  // [rad/s]
     return of_spins ? turning + first.spin.norm() + second.spin.norm()
                     : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
 }
 
-/// `mobility`: mobility of the axis [1/kg or 1/(kg m^2)]
+/// Limits and motor of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility of the axis [1/kg
+/// or 1/(kg m^2)]
 AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     AxisBounds bounds;
     bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);
@@ -56,13 +58,13 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real way = axis.motor.target - axis.coordinate;
-    // Braking uses half of the motor's strength; the rest is left for loads.
+    // Braking uses half of the motor's strength; the other half is reserved for loads.
     const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
     bounds.target = std::copysign(std::min({std::abs(way) / h, axis.motor.most_speed, brakes}), way);
     return bounds;
 }
 
-/// Velocity along the rows that corrects the error [m/s or rad/s]
+/// Velocity along the joint rows that corrects the error of the block [m/s or rad/s]
 Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
     Vec3 pull = block.error / h;
     if (!block.axis.locked) pull.z() = 0;
@@ -70,7 +72,7 @@ Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
     return speed > fastest ? Vec3(fastest / speed * pull) : pull;
 }
 
-/// Motion of a body over the step with these velocities.
+/// Displacement of a body over the step for the given velocities.
 struct BodyEnd {
     Vec3 center = Vec3::Zero(), center_next = Vec3::Zero();
     Mat3 turn = Mat3::Identity();
@@ -80,7 +82,7 @@ struct BodyEnd {
         const RigidInputs& rigid = stage.inputs.rigid;
         const auto r = static_cast<std::size_t>(body);
         center = rigid.center[r];
-        if (slot == no_index) {  // impulses cannot move it
+        if (slot == no_index) {  // impulses cannot move this body
             center_next = center + stage.h * rigid.velocity(r);
             turn = rotation_matrix(stage.h * rigid.spins.kicked(r));
             return;
@@ -95,7 +97,7 @@ struct BodyEnd {
     Vec3 moved(const Vec3& point) const { return center_next + turn * (point - center); }
 };
 
-/// Error of a block at the end of the step, along its rows at that time.
+/// Error of a joint block at the end of the step, along the joint rows at that time [m or rad]
 Vec3 error_at_end(const JointBlock& block, const BodyEnd& first, const BodyEnd& second) {
     const Mat3 frame = second.turn * block.frame;
     if (!block.turning)

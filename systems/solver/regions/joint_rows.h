@@ -1,4 +1,4 @@
-// Rows of joints in a region. They are treated as contacts with a different law (docs/methods/joints.md 2).
+// Rows of joints in a region. They are solved like contacts, but with a different law (docs/methods/joints.md 2).
 #pragma once
 
 #include <span>
@@ -15,17 +15,20 @@ struct JointPlaceInRegion {
     JointLaw& law;
 };
 
-/// Fills `place` from `block`. `rigid` lists the rigid bodies of the region; each has two velocities, in this order.
+/// Fills `place` from `block`. `rigid` lists the rigid bodies of the region. Each body has two velocity rows, in the
+/// order of this list.
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
-/// One Newton step towards a joint that holds at the end of the step. Predicts the error of the block at the end of the
-/// step from the velocities of the region. Adds to the offset the part of this error, divided by h, that is not left
-/// for later steps. Returns this correction in the mass-weighted norm [kg (m/s)^2, or the same for rows of spins]
+/// One Newton step for a joint that shall hold at the end of the step. Predicts the error of the block at the end of
+/// the step from the velocities of the region. Subtracts the error that later steps shall correct, and adds the rest
+/// divided by h to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2
+/// for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const JointPlaceInRegion& place);
 
-/// Adds the joint to the sums for the error scale of a region. `u`: velocity of the rows without impulses.
+/// Adds a joint block to the sums for the error scale of a region. `u` is the velocity of the joint rows without
+/// impulses.
 void add_joint(const JointPlaceInRegion& place, const Vec4& u, LoadSums& sums);
 
 }  // namespace skerry

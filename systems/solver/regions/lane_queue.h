@@ -1,4 +1,4 @@
-// Queue of regions that wait until a SIMD batch of their size is full.
+// Queue of small regions. Regions wait until a SIMD batch of their size class is full.
 #pragma once
 
 #include "systems/solver/lanes/solve_lane_batch.h"
@@ -9,8 +9,8 @@ namespace skerry {
 /// True if the settings allow solving regions in lanes.
 bool lanes_allowed(const SolverSettings& settings);
 
-/// Takes loaded and started regions, solves eight of one size class at a time, finishes them and writes their rows of
-/// RegionTable. A queue belongs to one task, and so to one worker.
+/// Queue of loaded and started regions. It solves eight regions of one size class at a time, finishes them and writes
+/// their rows of RegionTable. A queue belongs to one task, and thus to one worker.
 class LaneQueue {
 public:
     LaneQueue(const RegionStage& stage, RegionTable& regions) : stage_(stage), regions_(regions) {}
@@ -18,7 +18,7 @@ public:
     /// True if the queue can solve this region.
     bool takes(const RegionInOrder& region) const;
     void push(Index number, const RegionInOrder& region);
-    /// Solves the regions that still wait.
+    /// Solves the regions that are still waiting.
     void flush();
 
 private:

@@ -1,5 +1,5 @@
-// The life cycle of a region: load, start, sweep, write back, push out. It is the same for all regions; they differ in
-// their operator (lumped masses, clusters, degrees of freedom of bodies) and in their walk (in order, coloured).
+// Life cycle of a region: load, start, sweep, write back, push out. It is the same for all regions. Regions differ in
+// their operator (lumped masses, clusters, bodies) and in their walk (in order, coloured).
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace skerry {
 
-/// One region and its part of the memory, in the order of the walk. BodyRegion hides some functions by its own.
+/// One region and its part of the memory, in the order of the walk. BodyRegion replaces some of the functions.
 template <RegionOrder Walk, class Memory>
 struct LoadedRegion {
     std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
-    Index base = 0;              // place of its first contact in the columns by contact
+    Index base = 0;              // position of its first contact in the columns by contact
     Walk walk{};
     Memory memory{};
     LoadSums sums{};
@@ -25,37 +25,37 @@ struct LoadedRegion {
     Real tolerance = 0;  // tolerance of this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
-    /// True if the region moves a node with this number by itself, not as part of a body.
+    /// True if the region writes the velocity of its node number n. False if the node moves with the frame of a body.
     bool moves_node(const RegionStage&, std::size_t) const { return true; }
     SolverMethod method(const SolverSettings& settings) const { return settings.method; }
-    /// Warm start of the impulses of joints.
+    /// Sets the joint impulses to those of the last step.
     void take_joint_impulses(const RegionStage&) const {}
-    /// Solves again if the joints would not hold at the end of the step.
+    /// Solves the region again if its joints would not hold at the end of the step.
     void hold_joints(const RegionStage&, auto&, RegionOutcome&) const {}
-    /// Adds the impulse of a contact to its bodies and sets the velocities of their nodes.
+    /// Adds the impulse of a contact to its bodies, and writes the velocities of the bodies' nodes.
     void write_contact(const RegionStage&, std::size_t) const {}
     /// Writes the impulses of joints.
     void write_joints(const RegionStage&) const {}
-    /// Writes pseudo velocities of bodies.
+    /// Writes the pseudo velocities of bodies.
     void write_body_push(const RegionStage&) const {}
-    /// Parts of the push beside contacts.
+    /// Returns the parts of the split impulse other than contacts.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
-    /// Work of the push against the forces of the step [J]
+    /// Work of the split impulse against the forces of the step [J]
     Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }
 };
 
-/// Lists the nodes of a region in the order of their first appearance, with their velocities. RegionMemory::place
-/// caches a node's place in the list. Regions share no moving node, so they do not overwrite each other's entries. A
-/// stale entry is detected because the list holds a different node at that place.
+/// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::place
+/// caches a node's position in the list. Regions share no moving node, so they do not overwrite each other's entries.
+/// An entry left from another region is detected because this list holds a different node at that position.
 class NodeList {
 public:
-    /// Uses at most `room` places from `first` on in the columns by node.
+    /// Uses at most `room` entries of the columns by node, from `first` on.
     NodeList(RegionMemory& data, std::size_t first, std::size_t room)
         : place_(data.place.span()),
           node_(data.node.span().subspan(first, room)),
           velocity_(data.velocity.span().subspan(first, room)) {}
 
-    /// Returns the place of a node. `velocity()` is called if the node is not listed yet.
+    /// Returns the position of a node. A new node is added to the list with the velocity that `velocity()` returns.
     template <class Velocity>
     Index place_of(Index node, Velocity&& velocity) {
         Index& place = place_[node];
@@ -69,7 +69,7 @@ public:
         velocity_[count_++] = velocity;
     }
     std::span<const Index> node() const { return node_; }
-    /// Ends loading: reduces the memory of a region to the listed nodes.
+    /// Ends loading: shortens the memory of the region to the listed nodes.
     void trim(ContactMemory& memory) const {
         memory.node = memory.node.first(count_);
         memory.velocity = memory.velocity.first(count_);
@@ -83,7 +83,8 @@ private:
 };
 
 /// Load: writes the contacts in the order of the walk, and zero impulses. `load(place, number, contact)` fills a
-/// contact and returns its velocity without impulses; it may list nodes. Sums start from those of the region's joints.
+/// contact and returns its velocity without impulses; it may add nodes to the list. The sums over contacts are added to
+/// those over the region's joints.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;
@@ -101,7 +102,8 @@ void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     region.scale = error_scale(region.sums, stage.inputs.gravity, stage.h, region.tolerance);
 }
 
-/// Takes the impulses of the last step and the velocities that they make. Frictionless contacts keep the normal part.
+/// Sets the impulses to those of the last step, and the velocities accordingly. For a frictionless contact only the
+/// normal part of the impulse is used.
 template <class Region, RegionOperator Op>
 void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
     region.walk.contacts(region.row.size(), [&](std::size_t begin, std::size_t end) {
@@ -117,15 +119,15 @@ void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
     op.refresh();
 }
 
-/// Start: takes the warm start, or zero impulses if those are clearly better. Returns true, with the outcome, if the
-/// region is solved: zero impulses or the warm start have an error within the tolerance.
+/// Start: uses the warm start, unless its error is large and zero impulses have a smaller error. Returns true and sets
+/// `outcome` if no sweeps are needed: either no contact closes, or the error of the warm start is within the tolerance.
 template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // If nothing moves, zero is the solution and no scale exists to judge the remainder of another start.
-        // Separating regions also start from their impulses: a sweep must not depend on how contacts are split into
-        // regions.
+        // If the scale is zero, nothing moves: zero impulses are the solution, and the error of another start has no
+        // scale. Separating regions use the warm start, too: with fixed iterations, a sweep must not depend on how
+        // contacts are split into regions.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region, op);
         return false;
     }
@@ -141,7 +143,7 @@ bool start_region(const RegionStage& stage, const Region& region, Op& op, Region
         return true;
     }
     if (error <= suspicious_start) return false;
-    // workspace 0 keeps the warm start while zero impulses are evaluated
+    // Slot 0 of the workspace stores the warm start while the error of zero impulses is measured.
     BestIterate<Op> better(op);
     better.offer(error);
     std::ranges::fill(op.impulse(), Vec4::Zero());
@@ -150,14 +152,14 @@ bool start_region(const RegionStage& stage, const Region& region, Op& op, Region
     return false;
 }
 
-/// Sweep: runs the method of the region from the present impulse.
+/// Sweep: runs the solver method of the region from the present impulse.
 template <class Region, RegionOperator Op>
 RegionOutcome sweep_region(const RegionStage& stage, const Region& region, Op& op) {
     const SolveLimits limits = limits_of(stage.settings, region.tolerance);
     return outcome_of(run_method(region.method(stage.settings), op, limits), stage.settings);
 }
 
-/// Writes velocities of the nodes that the region moves by themselves.
+/// Writes the velocities of the nodes for which moves_node() is true.
 template <class Region>
 [[gnu::always_inline]] inline void write_nodes(const RegionStage& stage, const Region& region,
                                                std::span<const Vec4> velocity, std::span<Vec3> out) {
@@ -168,8 +170,9 @@ template <class Region>
     });
 }
 
-/// Write back: stores velocities and impulses. Returns the energy that the region dissipated [J]. This function and
-/// finish_region are always inlined: most regions have one contact, and the compiler then removes the loops.
+/// Write back: stores velocities and impulses. Returns the energy that the region's contacts dissipate [J]. This
+/// function and finish_region are always inlined: most regions have one contact, and the compiler then removes the
+/// loops.
 template <class Region>
 [[gnu::always_inline]] inline Real write_back(const RegionStage& stage, const Region& region) {
     write_nodes(stage, region, region.memory.velocity, stage.out.velocity_next);
@@ -187,7 +190,7 @@ template <class Region>
     return all;
 }
 
-/// Finish: writes back, pushes out, and records the dissipated energy.
+/// Finish: writes back, applies the split impulse, and records the dissipated energy.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline void finish_region(const RegionStage& stage, const Region& region, const Op& op,
                                                  RegionOutcome& outcome) {
@@ -200,7 +203,7 @@ template <class Region, RegionOperator Op>
     stage.memory.pushed.store(true, std::memory_order_relaxed);
 }
 
-/// Solves a loaded region. `sweep(op)` returns the outcome of the sweeps.
+/// Solves a loaded region. `sweep(op)` runs the solver and returns its outcome.
 template <class Region, class Sweep>
 RegionOutcome solve_loaded(const RegionStage& stage, const Region& region, Sweep&& sweep) {
     auto op = operator_of(stage, region);

@@ -24,7 +24,8 @@ public:
                    .walk = ThroughGroups(stage.inputs.clustered() ? *stage.inputs.clusters : no_clusters,
                                          stage.inputs.implicit, stage.inputs.rigid, list_.node()),
                    .memory = memory_of(row.size(), joint.size(), base),
-                   // Joints are not checked for motion, so their regions never use the tolerance of still ones.
+                   // Joints are not checked for stillness, so regions with joints never use the tolerance of still
+                   // regions.
                    .tolerance = joint.empty() ? tolerance_of(stage, row) : stage.settings.tolerance},
                   joint,
                   data_.region_rigid[number_]} {}
@@ -58,7 +59,7 @@ private:
         return memory;
     }
 
-    /// Lists the rigid bodies and the nodes that move together.
+    /// Adds velocity rows of the rigid bodies, the touched nodes of implicit bodies, and the nodes of clusters.
     void list_blocks() {
         const RigidInputs& rigid = stage_.inputs.rigid;
         for (const Index body : region_.rigid) {
@@ -74,7 +75,7 @@ private:
             for (const Index n : stage_.inputs.clusters->nodes[static_cast<std::size_t>(c)]) place_of(n);
     }
 
-    /// Returns the region's own row of a node.
+    /// Returns the velocity row of a node in the region.
     Index place_of(Index node) {
         return list_.place_of(node, [&]() -> Vec4 {
             const RigidNodes& rigid = stage_.inputs.rigid.nodes;
@@ -118,7 +119,7 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // A round body touches beside its core.
+            // Rounded bodies touch at a distance from their core.
             const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
                                                         contact_normal(i), stage_.inputs.touch);
             term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};

@@ -1,4 +1,4 @@
-// Regions of contacts between nodes with lumped masses, each with its own mass or coupled in clusters.
+// Regions of contacts between nodes with lumped masses. Nodes have their own mass or belong to clusters.
 #pragma once
 
 #include <type_traits>
@@ -17,8 +17,8 @@ LumpedOperatorBy<Walk> operator_of(const RegionStage& stage, const LumpedRegion<
     return {region.memory, stage.settings.friction, region.scale, region.walk};
 }
 
-/// Returns a region that is not loaded yet. `node`: rows of NodeTable, at places from `first_node` on in the columns by
-/// node.
+/// Returns a region whose contacts are not loaded yet. `node` lists rows of NodeTable; the region's entries in the
+/// columns by node begin at `first_node`.
 template <RegionWalk Walk>
 LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index> row, Index base,
                                  std::size_t first_node, std::span<const Index> node, const Walk& walk) {
@@ -30,11 +30,11 @@ LumpedRegion<Walk> lumped_region(const RegionStage& stage, std::span<const Index
             .tolerance = tolerance_of(stage, row)};
 }
 
-/// `numbering(k)` returns a function from a moving node of the region's contact k to the region's own row. The velocity
-/// of that row must be set by then.
+/// Loads the contacts of a region. `numbering(k)` returns a function that maps a moving node of contact k to its row in
+/// the region. When this function returns, the velocity of that row must be set.
 template <RegionWalk Walk, class Numbering>
 void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Walk>& region, Numbering&& numbering) {
-    // Lanes need the velocities without impulses.
+    // The lane solver needs the contact velocities without impulses.
     const bool keep_free_velocity = std::is_same_v<Walk, InOrder> && workspace_slots(stage.settings.method) > 1;
     const std::size_t first = static_cast<std::size_t>(region.base);
     const Vec4* velocity = region.memory.velocity.data();
@@ -53,7 +53,7 @@ void load_lumped_contacts(const RegionStage& stage, LumpedRegion<Walk>& region, 
     });
 }
 
-/// Loads a region of one thread, after the nodes that are in `list` already.
+/// Loads a region for one thread. New nodes are added to `list`, behind the nodes it already contains.
 template <RegionWalk Walk>
 void load_listed(const RegionStage& stage, NodeList& list, LumpedRegion<Walk>& region) {
     const auto local = [&](Index node) { return list.place_of(node, [&] { return free_velocity_of(stage, node); }); };

@@ -1,4 +1,4 @@
-// Split impulse of a region: moves overlapping contacts apart without adding energy (docs/methods/contact.md 3.4).
+// Split impulse of a region: separates penetrating contacts without adding energy (docs/methods/contact.md 3.4).
 #pragma once
 
 #include <algorithm>
@@ -11,26 +11,29 @@
 
 namespace skerry {
 
-/// Operator of a region in a step. Besides the methods it supports the split impulse.
+/// Operator of a region in a step of the engine. In addition to the functions for methods it supports the split
+/// impulse.
 template <class Op>
 concept RegionOperator = ContactOperator<Op> &&
     requires(const Op& op, Index i, Real number, Vec4* velocity, Real& impulse) {
-    { op.velocity(i) } -> std::same_as<Vec4>;           // u of the present impulse
-    { op.push_size(i, number) } -> std::same_as<Real>;  // size of a push that changes the normal speed [J]
+    { op.velocity(i) } -> std::same_as<Vec4>;  // velocity u of contact i for the present impulse
+    // squared energy norm of a push that changes the normal speed of contact i by this number [J]
+    { op.push_size(i, number) } -> std::same_as<Real>;
     { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;  // one contact step on the pseudo velocities
 };
 
-/// Parts of a push beside contacts. Regions of lumped masses have none; PushedBodies has joints and turning bodies.
+/// Parts of the split impulse other than contacts. Regions of lumped masses have none. PushedBodies adds joints and the
+/// rotation of capsules and cylinders.
 struct PushedContacts {
-    /// True if contacts may lose distance by rotation.
+    /// True if rotation of bodies may reduce gaps.
     bool any_turns() const { return false; }
-    /// Speed of that loss at a place, at most 0 [m/s]
+    /// Speed at which rotation reduces the gap of a contact; at most 0 [m/s]
     Real loss(std::size_t, std::span<const Vec4>) const { return 0; }
-    /// One sweep over the joints. Returns the size of the change [J]
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4>) const { return 0; }
 };
 
-/// Push of one region. `Others`: PushedContacts or PushedBodies.
+/// Solver for the split impulse of one region. `Others` is PushedContacts or PushedBodies.
 template <class Region, RegionOperator Op, class Others>
 class Push {
 public:
@@ -43,13 +46,14 @@ public:
           velocity_(region.memory.scratch),
           slop_(push_slop(stage.inputs.gravity, stage.h)) {}
 
-    /// Writes the pseudo velocities. Returns false if there are none. `pressed`: some contact is pressed in.
+    /// Computes the pseudo velocities. Returns false if all are zero. `pressed`: some contact penetrates by more than
+    /// the slop.
     bool run(bool pressed) {
         clear();
         const Asked asked = ask();
         if (!pressed && !asked.by_turns) return false;
         sweep(asked.size);
-        // The push turns bodies, too, so the loss is evaluated again.
+        // The push also rotates bodies, so the loss of gap by rotation is evaluated again.
         constexpr int turn_rounds = 2;
         for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
         return true;
@@ -57,7 +61,7 @@ public:
 
 private:
     struct Asked {
-        Real size;  // scale of the requested push [J]
+        Real size;  // sum of the squared energy norms of all requested pushes [J]
         bool by_turns;
     };
 
@@ -71,7 +75,8 @@ private:
     }
 
     Asked ask() {
-        bool by_turns = false;  // only regions of one thread have turns
+        // Only regions of one thread have capsules or cylinders, so no two threads write this flag.
+        bool by_turns = false;
         const Real size = region_.walk.template sum<Real>(region_.row.size(), [&](std::size_t begin, std::size_t end) {
             Real part = 0;
             for (std::size_t i = begin; i < end; ++i) {
@@ -115,10 +120,10 @@ private:
     const Real slop_;
 };
 
-/// Finds frictionless pseudo velocities p with u_n + p_n >= min(recovery |gap| / h, recovery_speed), further limited by
-/// push_speed, where the gap is below the slop. Elsewhere they allow no approach that the velocity solve would not
-/// allow. The solution must be written to `stage.out` already. The result is in region.memory.scratch. Returns false if
-/// nothing is pushed.
+/// Finds frictionless pseudo velocities p. Contacts that penetrate by more than the slop get u_n + p_n >= min(recovery
+/// |gap| / h, recovery_speed), with the right-hand side also limited by push_speed. At other contacts p allows no
+/// approach that the velocity solve would not allow. The solution of the velocity solve must already be in `stage.out`.
+/// The result is in region.memory.scratch. Returns false if no contact is pushed.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);

@@ -10,11 +10,12 @@
 namespace skerry {
 namespace {
 
-/// Height along the normal of a point on a cylinder after the axis has turned, without rotation about the axis. For the
-/// lowest point of a rim: the height of the point that is lowest then, because the lowest point moves around the rim
-/// [m]
+/// Height along the normal of the point `place` of a cylinder after its axis has rotated from `axis` to `axis_then`,
+/// without rotation about the axis. If `place` is the lowest point of a rim, the result is the height of the rim's
+/// lowest point after the rotation, because the lowest point moves around the rim [m]
 Real height_after(const Vec3& place, const Vec3& axis, const Vec3& axis_then, const Vec3& normal) {
-    constexpr Real lowest = 1e-9, least_tilt = 1e-4;  // of the radius; [rad], below it many rim points are lowest
+    // `lowest`: fraction of the radius. `least_tilt`: below this angle many rim points are lowest [rad]
+    constexpr Real lowest = 1e-9, least_tilt = 1e-4;
     const Real up = axis.dot(place), radius = (place - up * axis).norm();
     const auto lowest_of_rim = [&](const Vec3& of) { return up * of.dot(normal) - radius * of.cross(normal).norm(); };
     if (axis.cross(normal).norm() > least_tilt && normal.dot(place) <= lowest_of_rim(axis) + lowest * radius)
@@ -37,7 +38,7 @@ PushedBodies::PushedBodies(const RegionStage& stage, std::span<const Index> row,
 
 Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
     if (!any_turns_) return 0;
-    constexpr Real rounding = 1e-12;  // as in push_slop [m]
+    constexpr Real rounding = 1e-12;  // rounding error of positions, as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
     const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];
     Real along = 0;  // [m]
@@ -45,7 +46,7 @@ Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
         const auto r = static_cast<std::size_t>(term.row);
         const bool cylinder = rigid.is_cylinder(term.row);
         if (!cylinder && !rigid.is_capsule(term.row)) continue;
-        // Point relative to the centre; for a capsule on its axis.
+        // Contact point relative to the centre. For a capsule the point is on the axis.
         const Vec3 place =
             cylinder ? Vec3(term.arm.head<3>()) : Vec3(term.arm.head<3>() + rigid.radius(term.row) * normal);
         const Vec3 angular_momentum =

@@ -1,4 +1,4 @@
-// Part of a split impulse that concerns joints, and the distance that capsules and cylinders lose by turning.
+// Parts of a split impulse that concern joints, and the gap that capsules and cylinders lose by rotation.
 #pragma once
 
 #include <span>
@@ -8,24 +8,24 @@
 
 namespace skerry {
 
-/// Contacts are solved for straight motion of their points. Points on the axis of a capsule or the surface of a
-/// cylinder deviate from it: a spinning capsule that is pressed turns its ends further towards the touched surface.
-/// This loss in each step would use up the contact distance (docs/methods/rigid_bodies.md 6.2). In joints, locked rows
-/// hold during the push, and axes stay within their limits for push and step together. The impulses of the push on
-/// joints use a workspace that the method no longer needs.
+/// Contacts are solved for straight motion of their points. Points on the axis of a capsule or on the surface of a
+/// cylinder deviate from straight motion: a spinning capsule that is pressed rotates its ends further towards the
+/// touched surface. In each step this loss would use up part of the contact distance (docs/methods/rigid_bodies.md
+/// 6.2). In joints, locked rows hold during the push, and axes stay within their limits for push and step together. The
+/// joint impulses of the push are stored in slot 0 of the workspace, which the method no longer needs.
 class PushedBodies {
 public:
-    /// `row`, `rigid`: contacts and rigid bodies of the region. The impulses on the bodies must be written to
-    /// `stage.out` already.
+    /// `row` lists the contacts, `rigid` the rigid bodies of the region. The contact impulses on the bodies must
+    /// already be in `stage.out`.
     PushedBodies(const RegionStage& stage, std::span<const Index> row, std::span<const Index> rigid,
                  const BodyMemory& memory, const BodyOperator& op);
 
     /// True if the region has a capsule or a cylinder.
     bool any_turns() const { return any_turns_; }
-    /// Speed along the normal at which a contact loses distance by rotation, beyond the approach by the velocities and
-    /// pseudo velocities. At most 0; 0 below rounding [m/s]
+    /// Speed along the normal at which rotation reduces the gap of contact i, beyond the approach by the velocities and
+    /// the pseudo velocities `push`. The value is at most 0, and 0 below the rounding error [m/s]
     Real loss(std::size_t i, std::span<const Vec4> push) const;
-    /// One sweep over the joints. Returns the size of the change [J]
+    /// Does one sweep over the joints. Returns the squared energy norm of the impulse change [J]
     Real sweep_joints(std::span<Vec4> push) const;
 
 private:

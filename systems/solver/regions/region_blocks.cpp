@@ -3,7 +3,8 @@
 namespace skerry {
 namespace {
 
-/// Lists a block at most once per region; `region_of` holds the last region that listed it.
+/// Lists a cluster or rigid body (`block`) at most once per region. `region_of` holds the last region that listed the
+/// block.
 void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
     if (block == no_index || region_of[static_cast<std::size_t>(block)] == region) return;
     region_of[static_cast<std::size_t>(block)] = region;
@@ -17,7 +18,7 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
     std::size_t room = 4 * contacts;
     for (const Index body : memory.region_rigid[r]) {
         room += 2;
-        // All touched nodes of the body: each impulse moves all of them.
+        // An impulse moves all touched nodes of the body, so the region needs rows for all of them.
         if (inputs.implicit.any()) room += inputs.implicit.coupling->nodes[static_cast<std::size_t>(body)].size();
     }
     for (const Index c : memory.region_clusters[r]) room += inputs.clusters->nodes[static_cast<std::size_t>(c)].size();
@@ -25,7 +26,8 @@ std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memor
 }
 
 std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& regions, RegionMemory& memory) {
-    // Four places by contact for regions without clusters and rigid bodies come first, then the others.
+    // The first four entries per contact belong to regions without clusters and rigid bodies. The entries of the other
+    // regions follow.
     std::size_t end = 4 * regions.contacts.item.size();
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();
@@ -47,7 +49,8 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
                 if (inputs.clustered())
                     note(inputs.clusters->cluster(stencil.node[a]), number, memory.region_of_cluster,
                          memory.region_clusters);
-                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // otherwise its body is held
+                // Nodes with zero inverse mass belong to held bodies.
+                if (inputs.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
                     note(inputs.rigid.nodes.row(stencil.node[a]), number, memory.region_of_rigid, memory.region_rigid);
             }
         }

@@ -1,5 +1,5 @@
-// Working memory of solve_regions, kept between steps. Columns "by contact" follow the order of RegionTable::contacts,
-// so the rows of a region are consecutive.
+// Working memory of solve_regions, reused from step to step. Columns "by contact" follow the order of
+// RegionTable::contacts, so the rows of a region are consecutive.
 #pragma once
 
 #include <array>
@@ -21,27 +21,28 @@
 
 namespace skerry {
 
-/// Regions order[begin] .. order[end - 1], solved one after the other.
+/// A task solves the regions order[begin] .. order[end - 1] one after the other.
 struct RegionTask {
     Index begin, end;
 };
 
-/// Regions large enough to be solved by all workers together, and the team that solves them.
+/// Data of the regions that are solved by all workers together, and the team of workers.
 struct LargeRegions {
     Team team;
     std::vector<std::unique_ptr<ColouredRegion>> region;  // by number among the large regions of the step
 };
 
-/// Grows a column if necessary. It never shrinks: a column that shrinks and grows again would be cleared each time.
+/// Grows a column to at least `count` rows. Columns never shrink, since shrinking and growing again would clear rows
+/// each time.
 template <class T>
 void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
-/// Workspace slot in which loading stores the contact velocities without impulses. The method may overwrite it.
+/// Workspace slot in which loading stores the contact velocities without impulses. The method may overwrite them.
 inline constexpr std::size_t free_velocity_slot = 1;
 
-/// Number of workspace vectors by contact that a method needs. The first one keeps the best iterate.
+/// Number of workspace vectors by contact that a method needs. The first one stores the best iterate.
 inline std::size_t workspace_slots(SolverMethod method) {
     switch (method) {
         case SolverMethod::pgs:
@@ -54,7 +55,7 @@ inline std::size_t workspace_slots(SolverMethod method) {
     }
 }
 
-/// Number of workspace vectors for regions with rigid bodies, whose default method takes Newton steps.
+/// Number of workspace vectors for regions with rigid bodies. There the method `automatic` takes Newton steps.
 inline std::size_t body_workspace_slots(SolverMethod method) {
     return workspace_slots(method == SolverMethod::automatic ? SolverMethod::newton : method);
 }
@@ -64,36 +65,37 @@ struct RegionMemory {
     Column<LumpedContact> contact;
     Column<Vec4> impulse;  // [N s]
     std::array<Column<Vec4>, workspace_limit> workspace;
-    Column<Real> push_impulse;  // split impulses, before that the normal impulses of frictionless regions [N s]
-    Column<Real> push_bias;     // biases of the split impulse [m/s]; before that the previous normal impulses [N s]
-    // four places by contact: only regions that touch clusters or implicit bodies can have more nodes
+    Column<Real> push_impulse;  // split impulses; before that, normal impulses of frictionless regions [N s]
+    Column<Real> push_bias;     // biases of the split impulse [m/s]; before that, previous normal impulses [N s]
+    // Columns by node of a region. Regions without clusters and rigid bodies have four rows per contact; the rows of
+    // the other regions follow.
     Column<Index> node;     // rows of NodeTable
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
-    // for regions that touch clusters of nodes or rigid bodies
-    Ragged<Index> region_clusters, region_rigid;       // by region; no rows if there are none of them
-    Column<std::size_t> node_base;                     // by region: place of its first node
-    Column<Index> region_of_cluster, region_of_rigid;  // last region that touched the cluster or body
-    Column<RigidPart> rigid_part;                      // by contact; no rows without rigid bodies
-    Column<JointLaw> joint_law;                        // by row minus contact_rows
-    // by region, used if it has joints: place of its first row. Its contacts come first, then its joints.
+    // Data of regions that touch clusters of nodes or rigid bodies.
+    Ragged<Index> region_clusters, region_rigid;       // by region; empty if no region touches any
+    Column<std::size_t> node_base;                     // by region: index of its first node row
+    Column<Index> region_of_cluster, region_of_rigid;  // by cluster and by body: last region that touched it
+    Column<RigidPart> rigid_part;                      // by contact; empty without rigid bodies
+    Column<JointLaw> joint_law;                        // by joint row; index 0 is row contact_rows
+    // For regions with joints: index of the region's first row. Its contacts come first, then its joints.
     Column<std::size_t> joint_base;
-    std::size_t contact_rows = 0, rows = 0;  // number of contact rows, and total with the rows of regions with joints
-    Column<Vec4> free_velocity;              // places as in `velocity`; no rows without rigid bodies [m/s]
+    std::size_t contact_rows = 0, rows = 0;  // number of contact rows; this number plus the rows of regions with joints
+    Column<Vec4> free_velocity;              // by row of `velocity`; empty without rigid bodies [m/s]
     // by row of NodeTable
-    Column<Index> place;  // number in its region's list of nodes; stale if that list disagrees
+    Column<Index> place;  // position in the node list of its region; invalid if that list holds another node there
     // by region
     Column<Real> cost;           // predicted [microseconds]
-    Column<Real> cost_parts;     // partial sums of the costs
-    RegionHistoryTable history;  // of the last step
-    RegionHistoryTable present;  // of this step
+    Column<Real> cost_parts;     // partial sums of `cost`
+    RegionHistoryTable history;  // sweeps of each region up to the last step
+    RegionHistoryTable present;  // sweeps of each region including this step
     // by task
     Column<RegionTask> task;
     LargeRegions large;
-    // for regions that touch rigid bodies
+    // Pools of working memory for regions that touch rigid bodies.
     Pool<NewtonEquations> newton;
     Pool<ContactRuns> runs;
-    std::atomic<bool> pushed = false;  // some region wrote push_out in this step
+    std::atomic<bool> pushed = false;  // true if some region has written push_out in this step
 
     /// Makes room in the columns by contact and by node.
     void make_room_for(std::size_t contacts, std::size_t region_nodes, std::size_t nodes,

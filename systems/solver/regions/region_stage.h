@@ -1,4 +1,4 @@
-// Data that all regions of a step share, the outcome of a region, and their memory.
+// Data that all regions of a step share, the outcome of a region, and access to the regions' memory.
 #pragma once
 
 #include <span>
@@ -29,35 +29,37 @@ struct RegionOutcome {
     Real push_work = 0;   // [J]
 };
 
-/// Converts the result of a method: an error within settings.tolerance counts as converged.
+/// Converts the result of a method. An error within settings.tolerance counts as converged, even if the tolerance of
+/// the region is smaller.
 RegionOutcome outcome_of(const SolveResult& result, const SolverSettings& settings);
-/// Writes an outcome to the region's row.
+/// Writes an outcome to the region's row of RegionTable.
 void write_outcome(const RegionOutcome& outcome, Index number, RegionTable& regions);
 
 SolveLimits limits_of(const SolverSettings& settings, Real tolerance);
 
-/// Tolerance of a region with these contacts. It is smaller if all touched bodies are still; otherwise the remaining
-/// solver error would keep them from coming to rest (docs/methods/errors.md 7).
+/// Tolerance of a region with these contacts. Regions whose bodies are all still use a smaller tolerance; otherwise the
+/// solver error would keep the bodies from coming to rest (docs/methods/errors.md 7).
 Real tolerance_of(const RegionStage& stage, std::span<const Index> row);
 
-/// Memory of `count` contacts starting at `base`, and of velocities starting at `first_node`. `node`: rows of NodeTable
-/// by velocity. `slots`: number of workspace vectors.
+/// Memory of `count` contacts from row `base` on, and of velocities from row `first_node` on. `node` lists the row of
+/// NodeTable of each velocity. `slots` is the number of workspace vectors.
 ContactMemory memory_from(const RegionStage& stage, Index base, std::size_t count, std::size_t first_node,
                           std::span<const Index> node, std::size_t slots);
 /// Predicted velocity of a node [m/s]
 inline Vec4 free_velocity_of(const RegionStage& stage, Index node) {
     return padded(stage.out.velocity_next[node]);
 }
-/// Memory of the split impulse of `count` contacts starting at `base`.
+/// Memory of the split impulse for `count` contacts from row `base` on.
 PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 
-/// Energy that a contact dissipates; its impulse and velocities must be written already (docs/methods/time_stepping.md
+/// Energy that a contact dissipates. Its impulse and velocities must already be written (docs/methods/time_stepping.md
 /// 2.6) [J]
 Real dissipated_by(const RegionStage& stage, Index row);
 
-/// Work of moving nodes by h p against the forces of the step without contacts; p is in memory.scratch. h times the
-/// force on a node is its change of momentum minus the impulses of its contacts; nodes of clusters have it in the
-/// inputs. First order in h p. `own_masses`: the region has neither clusters nor bodies [J]
+/// Work against the forces of the step when nodes are displaced by h p, where p are the pseudo velocities in
+/// memory.scratch. Contact forces are not included. h times the force on a node is its change of momentum minus its
+/// contact impulses; for nodes of clusters this impulse is in the inputs. The work is accurate to first order in h p.
+/// `own_masses`: the region has neither clusters nor bodies [J]
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

@@ -1,4 +1,5 @@
-// Solver of large regions: a team of workers solves each in its coloured order (docs/methods/region_solver.md 6).
+// Solver of large regions: a team of workers solves each region in its coloured order (docs/methods/region_solver.md
+// 6).
 #pragma once
 
 #include "systems/solver/coloured/order_region.h"
@@ -6,14 +7,14 @@
 
 namespace skerry {
 
-/// True if the region is solved in its coloured order. The number of workers has no influence, so results do not depend
-/// on it. False with fixed iterations, where a region must take the same steps alone and within a larger one, and for
-/// regions that touch clusters or rigid bodies.
+/// True if the region is solved in its coloured order. The answer does not depend on the number of workers, so results
+/// do not, either. It is false for regions that touch clusters or rigid bodies. It is also false with fixed iterations,
+/// where a region must take the same steps alone and within a larger region.
 bool is_large(const RegionStage& stage, const RegionTable& regions, Index number);
 
 using RegionByColour = LumpedRegion<ByColour>;
 
-/// Variant of load_region with the order and the nodes found by order_region.
+/// Version of load_region that uses the order and the nodes from order_region.
 RegionByColour load_by_colour(const RegionStage& stage, std::span<const Index> row, Index base, Team& team,
                               ColouredRegion& kept);
 

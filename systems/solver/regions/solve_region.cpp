@@ -8,12 +8,13 @@
 namespace skerry {
 namespace {
 
-/// Sweeps on the normal impulses only.
+/// Solves a frictionless region by sweeps on the normal impulses.
 SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& region) {
     const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
-    if (result.converged || !std::isfinite(result.error)) rows.keep();  // otherwise the best ones are there
+    // Without convergence region.memory already holds the best impulses.
+    if (result.converged || !std::isfinite(result.error)) rows.keep();
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Solvers of regions of lumped masses, each by one thread in the order of the contacts.
+// Solvers of regions of lumped masses. One thread solves a region in the order of its contacts.
 #pragma once
 
 #include "systems/solver/operators/in_order.h"
@@ -8,14 +8,14 @@ namespace skerry {
 
 using RegionInOrder = LumpedRegion<InOrder>;
 
-/// Copies contacts and moving nodes side by side; `base` is the place of the first contact in the memory by contact.
-/// Impulses are zero.
+/// Copies the contacts and moving nodes of a region to contiguous memory. `base` is the row of the first contact in the
+/// columns by contact. Impulses are zero.
 RegionInOrder load_region(const RegionStage& stage, std::span<const Index> row, Index base);
 
-/// Runs the method of the settings from the present impulse, on normal rows if the region has no friction.
+/// Runs the method of the settings from the present impulse. Without friction it uses NormalRows.
 RegionOutcome sweep_in_order(const RegionStage& stage, const RegionInOrder& region, LumpedOperator& op);
 
-/// Closed-form solution of a region with one contact: one contact step from zero.
+/// Solves a region with one contact in closed form: one contact step from zero impulse.
 RegionOutcome solve_single(const RegionStage& stage, Index row, Index base);
 
 /// Solves a region whose contacts touch clusters of nodes but no rigid body (docs/methods/clusters.md 4).
