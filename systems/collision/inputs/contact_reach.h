@@ -3,10 +3,9 @@
 //
 //   D(t)      distance at time t between two features of the pair, or between its bodies
 //   g(t)      gap of a candidate, which is D(t) minus the contact distance
-//   T(t)      travel of the pair. For two bodies it is the sum of the travels of both bodies in their frames
-//   (BodyTable)
-//             and of the path of one frame relative to the other. For a body and a collider it is the sum of the travel
-//             of the body, the path of its frame and the travel of the collider.
+//   T(t)      travel of the pair. For two bodies it is the sum of the travels of both bodies in their frames (see
+//             BodyTable) and of the path of one frame relative to the other. For a body and a collider it is the sum of
+//             the travel of the body, the path of its frame and the travel of the collider.
 //   d0        sum of the displacements of both partners at time 0, when a bound was computed
 //   T0        travel from which a bound is counted, T0 = T(0) - 2 d0 (pair_travel_base)
 //   F         front, F = T(t) + closing (travel_bound), where `closing` bounds the decrease of D(t) in this step
