@@ -149,7 +149,7 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
 
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
     const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
-    // By tetrahedron and corner: 1 if the opposite face is a boundary face.
+    // 1 for a boundary face; by tetrahedron and opposite corner.
     std::vector<std::uint8_t> is_single(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;

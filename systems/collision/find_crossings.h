@@ -10,14 +10,14 @@ namespace skerry {
 
 /// Finds features that would pass through each other while every node moves by h (velocity_next + push_out). Only pairs
 /// whose surfaces are apart are tested. A pair is tested only if it could move by more than half of its least distance,
-/// and so is each of its features. So a slow scene takes one comparison per pair. Each crossing is added to
-/// crossings.row as a contact, with the weights and the normal at the time when the features meet. find_contacts adds
-/// these contacts when the step is attempted again. Pairs without a contact distance are not tested, because their
-/// surfaces touch without having crossed. BodyTable::frame_speed must be that of this motion. Returns the number of
-/// crossings. If it is not zero, the step must not be committed. If a pair moves further than its candidate list is
-/// valid for, no features are tested. Instead, beyond_lists is set, and the attempt must be repeated with the lists
-/// that find_candidates then makes. On the last attempt, pairs with crossings are marked as overlapping, and zero is
-/// returned. Runs in parallel over the blocks of find_contacts.
+/// and its features only if they could do so, too. So a slow scene takes one comparison per pair. Each crossing is
+/// added to crossings.row as a contact, with the weights and the normal at the time when the features meet.
+/// find_contacts adds these contacts when the step is attempted again. Pairs without a contact distance are not tested,
+/// because their surfaces touch without having crossed. BodyTable::frame_speed must be that of this motion. Returns the
+/// number of crossings. If it is not zero, the step must not be committed. If a pair moves further than its candidate
+/// list is valid for, no features are tested. Instead, beyond_lists is set, and the attempt must be repeated with the
+/// lists that find_candidates then makes. On the last attempt, pairs with crossings are marked as overlapping, and zero
+/// is returned. Runs in parallel over the blocks of find_contacts.
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings);

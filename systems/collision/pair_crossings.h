@@ -1,4 +1,4 @@
-// Features of one pair that would pass through each other, or enter a shape, in the motion of the step.
+// Features of one pair that would pass through each other, or enter a shape, during the motion of the step.
 #pragma once
 
 #include <array>

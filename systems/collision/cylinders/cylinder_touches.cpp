@@ -15,8 +15,8 @@ namespace skerry {
 
 namespace {
 
-// If the tilt between an end of the cylinder and a side is below this angle, the end is supported by fixed points of
-// its rim. At rest these points stay the same [rad].
+// If the tilt between an end of the cylinder and a side is below this angle, the end is supported by rim points that
+// rotate with the cylinder. At rest these points stay the same [rad].
 constexpr Real standing_tilt = 1e-4;
 // If the sine of the angle between an end of the cylinder and a side exceeds this limit, the end touches the side at
 // only one point of its rim.

@@ -39,8 +39,8 @@ private:
 /// Points of the rims of a cylinder that can touch a flat side. `normal`: outward unit normal of the side in the frame
 /// of the cylinder. Each rim has the point that reaches furthest towards the side. If an end of the cylinder nearly
 /// faces the side, its rim also has points that support the end on the side. None of these points comes nearer to the
-/// side when the cylinder rotates about its axis by less than a radian per step. Points that are fixed to the cylinder
-/// would come nearer.
+/// side when the cylinder rotates about its axis by less than a radian per step. For a tilted end, points that rotate
+/// with the cylinder would come nearer.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {

@@ -31,10 +31,10 @@ struct PointTriangleContact {
 };
 
 /// Tests a point against the nearest feature of a triangle: its face, an edge or a vertex. If an edge or vertex is
-/// nearest, only the lowest triangle around it reports the contact, and only if no other triangle around it is nearer
-/// to the point. The normal is that of the face, or points from the edge or vertex to the point. If the point is too
-/// near for this, the normal is the mean of the normals of the faces around. The core of a round body can be touched
-/// from all sides. Features further apart than `near` get no closer test.
+/// nearest, only the triangle around it with the lowest row reports the contact, and only if no other triangle around
+/// it is nearer to the point. The normal is that of the face, or points from the edge or vertex to the point. If the
+/// point is too near for this, the normal is the mean of the normals of the faces around. The core of a round body can
+/// be touched from all sides. Features further apart than `near` get no closer test.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);

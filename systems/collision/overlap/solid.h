@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// A triangle of the boundary, counter-clockwise as seen from outside.
+/// A triangle on the boundary of a solid, counter-clockwise as seen from outside.
 struct SolidTriangle {
     std::array<Index, 3> node;
     Index simplex;  // simplex behind the triangle

@@ -66,7 +66,7 @@ private:
     Vec3 shear_;
 };
 
-/// Keeps the nearest point. Among equally near points, it keeps the one on the lowest triangle.
+/// Keeps the nearest point. Among equally near points, it keeps the one on the triangle with the lowest row.
 class Nearest {
 public:
     explicit Nearest(Real limit) : limit_(limit) {}

@@ -33,12 +33,12 @@ struct TrianglePoint {
 };
 
 /// The first triangle that a ray hits from either side, at a distance of at most `limit` [m], which may be infinite.
-/// Among equally near triangles, it is the lowest row. The test is watertight: a ray through an edge or corner of
-/// several triangles hits one of them (Woop, Benthin and Wald 2013).
+/// Among equally near triangles, it is the one with the lowest row. The test is watertight: a ray through an edge or
+/// corner of several triangles hits one of them (Woop, Benthin and Wald 2013).
 std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray, Real limit);
 
 /// The point of the surface nearest to `point` within a distance of `limit` [m]. Among equally near points, it is the
-/// one on the lowest triangle.
+/// one on the triangle with the lowest row.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
 
 }  // namespace skerry

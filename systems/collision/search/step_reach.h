@@ -11,10 +11,10 @@ struct BodyReach {
     Real in_world;  // motion relative to the world [m]
 };
 
-/// Distance by which a body may close a gap in this step; it is half of the reach of a pair. The speed of the body is
-/// that of its last motion, which check_state measured. `measure`: if true, the present surface velocities count, too,
-/// for example for a body that has not moved yet. They always count for a moving mesh collider, because its script may
-/// start the motion at any time.
+/// Distance by which a body may close a gap in this step. The sum for both bodies bounds the reach of a pair. The speed
+/// of the body is that of its last motion, which check_state measured. `measure`: if true, the present surface
+/// velocities count, too, for example for a body that has not moved yet. They always count for a moving mesh collider,
+/// because its script may start the motion at any time.
 BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& settings, Index body, bool measure,
                      Real h);
 
