@@ -13,7 +13,8 @@ Index rows(std::size_t count) {
     return static_cast<Index>(count);
 }
 
-// Faces of a tetrahedron of positive volume, counter-clockwise seen from outside; face k lies opposite of corner k.
+// Corners of the faces of a tetrahedron with positive volume, counter-clockwise as seen from outside. Face k is
+// opposite to corner k.
 constexpr std::array<std::array<std::size_t, 3>, 4> face_corner{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k) {
@@ -21,12 +22,13 @@ std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k)
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// True if side k of a triangle is an edge. The core of a round body has at most its first side as an edge.
+/// True if side k of a triangle is an edge of the surface. The core of a round body is stored as a degenerate triangle,
+/// of which at most side 0 is an edge.
 bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
     return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
 
-/// One more than the highest node number.
+/// Returns one more than the highest node number of the triangles.
 Index end_of(std::span<const BoundaryTriangle> triangles) {
     Index end = 0;
     for (const BoundaryTriangle& triangle : triangles)
@@ -34,7 +36,7 @@ Index end_of(std::span<const BoundaryTriangle> triangles) {
     return end;
 }
 
-/// Nodes of a boundary, ascending, and the place of each among them.
+/// Nodes of a boundary surface in ascending order, and the index of each node in this list.
 struct BoundaryNodes {
     std::vector<Index> node, place;
 
@@ -50,10 +52,10 @@ struct BoundaryNodes {
     }
 };
 
-/// Edges of a boundary, sorted by their nodes, and the edges of each triangle.
+/// Edges of a boundary surface, sorted by their nodes, and the three edges of each triangle.
 struct BoundaryEdges {
     std::vector<std::array<Index, 2>> node;
-    std::vector<std::array<Index, 3>> of_triangle;  // no_index for a side that is not an edge
+    std::vector<std::array<Index, 3>> of_triangle;  // edge of each side; no_index if the side is not an edge
 
     BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
         : of_triangle(triangles.size(), {no_index, no_index, no_index}) {
@@ -147,7 +149,8 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
 
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
     const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
-    std::vector<std::uint8_t> is_single(faces.size(), 0);  // by tetrahedron and corner
+    // 1 for a boundary face; by tetrahedron and opposite corner.
+    std::vector<std::uint8_t> is_single(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;
         while (end < faces.size() && faces[end].node == faces[i].node) ++end;

@@ -1,4 +1,4 @@
-// Boundary of a new body.
+// Surface of a new body: boundary triangles, edges and vertices.
 #pragma once
 
 #include <array>
@@ -16,14 +16,15 @@ namespace skerry {
 struct TetrahedronFace {
     std::array<Index, 3> node;  // ascending
     Index tetrahedron;
-    std::uint8_t corner;  // the corner opposite of the face
-    bool turned;          // true if its nodes are clockwise as seen from outside
+    std::uint8_t corner;  // local index of the corner opposite to the face
+    bool turned;          // true if the sorted nodes are clockwise as seen from outside
 };
-/// Faces of all tetrahedra, sorted by their nodes. Faces with the same nodes are in the order of the tetrahedra.
+/// Returns the faces of all tetrahedra, sorted by their nodes. Faces with equal nodes are in the order of their
+/// tetrahedra.
 std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> tetrahedra);
 
-/// The boundary triangles of a tetrahedral mesh (faces of exactly one tetrahedron), counter-clockwise seen from
-/// outside, in element order.
+/// A boundary triangle of a tetrahedral mesh: a face that belongs to exactly one tetrahedron. Its nodes are
+/// counter-clockwise as seen from outside. boundary_triangles lists the triangles in element order.
 struct BoundaryTriangle {
     std::array<Index, 3> node;  // local numbers
     Index element;              // local number
@@ -34,13 +35,15 @@ struct SurfaceRanges {
     Range triangles, edges, vertices;
 };
 
-/// Appends the triangles, edges and vertices of a new body. Triangle nodes and elements are local; `first_node` and
-/// `first_element` are the rows of local number 0 (first_element is no_index for a surface without elements).
+/// Appends the triangles, edges and vertices of the surface of a new body. The node and element numbers in `triangles`
+/// are local to the body. `first_node` and `first_element` are the table rows of local number 0. For a surface without
+/// elements, `first_element` is no_index.
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
-/// Appends the surface of a body with the same mesh as an earlier one, whose rows are `like`; the result equals that of
-/// append_surface. Stores in `behind` the row offsets of the new surface from the earlier one.
+/// Appends the surface of a body by copying the surface of an earlier body with the same mesh. `like`: rows of the
+/// earlier surface. `behind`: new row minus earlier row; the node and element offsets are read, the others are written.
+/// The result equals that of append_surface.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

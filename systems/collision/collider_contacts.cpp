@@ -54,7 +54,7 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            least_ = std::min(least_, distance - scale.radii);  // a bound for the whole edge
+            least_ = std::min(least_, distance - scale.radii);  // lower bound for every point of the edge
             return;
         }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
@@ -80,7 +80,7 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        const Real depth = -(contact.distance + contact.point.radius);  // of the point's centre behind the face
+        const Real depth = -(contact.distance + contact.point.radius);  // depth of the point's centre behind the face
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;
         add(candidate.feature, ContactKind::face_collider,
@@ -88,8 +88,8 @@ private:
             {point, -(motion_.rotation * contact.normal), contact.distance, scale.contact_distance, velocity});
     }
 
-    /// True if the point has come through this face. Otherwise it may be in front of the far side of a thin part,
-    /// nearer to another face, or outside in a fold.
+    /// True if a point of the collider has passed through this face into the body. If the result is false, the point
+    /// may be in front of the far side of a thin part, nearer to another face, or outside the body in a fold.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale.face_depth &&
                is_nearest(c, depth,

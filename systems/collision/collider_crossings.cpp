@@ -15,11 +15,13 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// `least`: lower bound of the distance, or of the motion up to which only nodes can touch [m].
+    /// Tests one candidate. `least`: lower bound of the distance of its features, or of the motion during which only
+    /// nodes can touch [m].
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
-        // All points of a rim are tested by the candidate of the point that follows the face.
+        // A rim is tested once, as a whole: by the candidate of the rim point that depends on the face. Candidates of
+        // the other rim points are skipped.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);
@@ -60,7 +62,7 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // place and normal of the touch at the start of the step
+        // contact point and normal on the collider at its pose at the start of the step
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;

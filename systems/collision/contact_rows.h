@@ -1,4 +1,4 @@
-// Data of one pair, and creation and ordering of its contact rows.
+// Data of one pair, and functions that create and order contact rows.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Data of a pair that the evaluation of its candidates reads. If one of two bodies is a rigid cylinder, it comes
-/// first; if both are, the first is the one whose middle is the point of the candidates.
+/// Data of a pair that the tests of its candidates read. If one of two bodies is a rigid cylinder, it comes first. If
+/// both are cylinders, the first is the one whose middle node is the point of the candidates.
 struct PairData {
     const CollisionInputs& inputs;
     std::uint64_t key;
@@ -35,35 +35,37 @@ struct PairData {
     Index second_body() const { return kind == PairKind::collider ? no_index : second; }
 };
 
-/// A place where two features touch. Rigid cylinders and colliders are features as a whole, as are the cores of spheres
-/// and capsules against anything but a cylinder, and their surfaces against a cylinder.
+/// Point where two features touch. A collider or a rigid cylinder is a single feature. For a sphere or capsule, the
+/// feature is the core (centre or axis); against a cylinder it is the surface.
 struct ContactPlace {
-    Vec3 point;                            // on the second feature [m]
-    Vec3 normal;                           // unit, from the second to the first
-    Real distance;                         // of the features, signed [m]
-    Real contact_distance;                 // distance kept between the features [m]
-    Vec3 surface_velocity = Vec3::Zero();  // of a collider at the point [m/s]
+    Vec3 point;                            // contact point on the second feature [m]
+    Vec3 normal;                           // unit normal from the second to the first feature
+    Real distance;                         // signed distance of the features [m]
+    Real contact_distance;                 // distance to be kept between the features [m]
+    Vec3 surface_velocity = Vec3::Zero();  // velocity of a collider at `point` [m/s]
 };
 
 ContactRow contact_row(const PairData& pair, std::uint64_t feature, ContactKind kind, const Stencil& stencil,
                        const ContactPlace& place);
 
-/// Feature of a touch of a rigid cylinder. `feature` is that of the candidate, whose touches are numbered from 0.
+/// Returns the feature key of a touching point on a rigid cylinder. `feature`: key of the candidate. `number`: number
+/// of the touching point within this candidate, from 0.
 std::uint64_t feature_of_touch(const PairData& pair, std::uint64_t feature, Index number);
 
-// Touches of a cylinder have numbers below the first constant with a triangle, and below the second with a shape. The
-// upper half of the latter is for crossings.
+// Touching points of a cylinder have numbers below touches_of_triangle on a triangle, and below touches_of_shape on
+// another shape. On a shape, the upper half of these numbers is for crossings.
 inline constexpr Index touches_of_triangle = 64, touches_of_shape = 512;
 
-/// Stencil of a point and a triangle. `node`: the point, then the corners. Nodes with weight 0 are left out, so that
-/// they join no regions.
+/// Stencil of a point and a triangle. `node`: node of the point, then of the three corners. Nodes with weight 0 are
+/// left out, so that the contact does not add them to a region.
 Stencil stencil_of_point(const std::array<Index, 4>& node, const std::array<Real, 3>& weight);
 
-/// Stencil of two edges. `node`: the ends of the first edge, then of the second. Nodes with weight 0 are left out.
+/// Stencil of two edges. `node`: the ends of the first edge, then the ends of the second edge. Nodes with weight 0 are
+/// left out.
 Stencil stencil_of_edges(const std::array<Index, 4>& node, const SegmentSegment& closest);
 
-/// Merges the rows of all blocks with `more`, all in key order, into one column. `prefer_blocks` tells which of two
-/// rows with the same key is kept.
+/// Merges the rows of all blocks and the rows `more` into one column in key order. All inputs are in key order. If a
+/// block and `more` contain the same key, `prefer_blocks` selects the row of the block instead of the row in `more`.
 void merge_rows(const std::vector<Column<ContactRow>>& blocks, const Column<ContactRow>& more, bool prefer_blocks,
                 Column<ContactRow>& merged);
 

@@ -15,21 +15,23 @@ namespace skerry {
 
 namespace {
 
-// The travel of the nodes of the rims is more than this fraction of the motion of the points between them.
+// Lower bound of the ratio between the travel of the rim nodes and the motion of the rim points between these nodes.
 constexpr Real of_rim_nodes = 0.95;
 
-// An edge counts as parallel to the axis if the sine of their angle is below this. It touches the side along a stretch,
-// or hardly at all.
+// An edge counts as parallel to the cylinder axis if the sine of the angle between edge and axis is below this limit.
+// Such an edge touches the round side along a stretch of its length, or hardly at all.
 constexpr Real parallel_sine = 1e-3;
 
-// Slopes of the distance along an edge below this count as zero.
+// If the derivative of the distance along an edge is below this limit, the distance counts as constant.
 constexpr Real straight_slope = 1e-7;
 
-// Numbers of the touches with a triangle: three corners, eight places of each edge, nine of each rim.
+// Numbering of the touching points on a triangle: three corners, then eight points of each edge, then nine points of
+// each cylinder rim.
 constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
 static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
 
-constexpr Real seam_fraction = 1e-9;  // of an edge: places this near to a seam are over one or both of its faces
+// Rim points that are beside a face by less than this fraction of the edge length count as above the face.
+constexpr Real seam_fraction = 1e-9;
 
 class CylinderContacts : PairContacts {
 public:
@@ -49,14 +51,15 @@ public:
     Real least_distance() const { return least_; }
 
 private:
-    /// `distance`: lower bound of the distance between the surfaces [m]. Returns true if the candidate matters in this
-    /// step.
+    /// Stores until when candidate c may sleep. `distance`: lower bound of the distance between the surfaces [m].
+    /// Returns true if the candidate needs a closer test in this step.
     bool note(Index c, Real distance) {
         least_ = std::min(least_, distance);
         asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if a bound shows that the candidate does not matter in this step. Else its touches give a sharper bound.
+    /// True if the lower bound `bound` of the distance is so large that the candidate needs no closer test. If the
+    /// result is false, the touching points will give a sharper bound.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -101,8 +104,8 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // A cylinder that rolls or slides over a flat place is held by its faces alone: an edge ahead would be a
-            // bump.
+            // A cylinder that rolls or slides over a nearly flat region is supported by faces only. An edge ahead of it
+            // would act as a bump.
             const CylinderPlace place = place_of(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
@@ -135,8 +138,8 @@ private:
         }
     }
 
-    /// True if the point has come through this face, as for bodies and colliders. In pairs held apart nothing is behind
-    /// a face.
+    /// True if a point of the cylinder has passed through this face into the body. If the pair is held apart, no point
+    /// can be behind a face, so the result is false.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return !held_apart && depth <= scale.face_depth && is_nearest(c, depth, [&](Index i) {
             const auto& node = inputs.surface.triangles.node[candidates[i].second];
@@ -153,8 +156,9 @@ private:
                        speed_against(cylinder_.velocity_at(point), node));
     }
 
-    /// `node`, `weight`: nodes of the other body at the touched place, none for a collider. `speed`: of the place
-    /// relative to the cylinder [m/s].
+    /// Adds a contact if its gap can close in this step. `node`, `weight`: nodes of the other body at the touching
+    /// point and their weights, which are zero for a collider. `speed`: relative speed of both partners at this point
+    /// [m/s].
     void add_if_reached(std::uint64_t feature, Index number, const std::array<Index, 3>& node,
                         const std::array<Real, 3>& weight, const ContactPlace& place, Real speed) {
         if (!within_reach(place.distance + scale.radii, speed)) return;
@@ -162,8 +166,8 @@ private:
             kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
             stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), place);
     }
-    /// Adds the touches with one shape. `speed_at(velocity, place)`: speed of the other partner at a place relative to
-    /// the velocity of the cylinder there [m/s].
+    /// Adds the touching points on one shape. `speed_at(velocity, place)`: relative speed at `place`, where the
+    /// cylinder has the given velocity [m/s].
     void add_touches(Index c, const std::array<Index, 3>& node, auto&& weight_of, auto&& speed_at) {
         for (const CylinderTouch& touch : touches_) {
             const Vec3 point = cylinder_.world(touch.on_other), velocity = cylinder_.velocity_at(point);
@@ -173,7 +177,7 @@ private:
         }
     }
 
-    /// Tests a sphere or a capsule.
+    /// Tests the cylinder against a sphere or a capsule.
     void against_core(Index c) {
         const Index nodes = inputs.body.core_nodes[second], begin = inputs.body.nodes[second].begin;
         const std::array<Index, 2> core{begin, begin + nodes - 1};

@@ -19,13 +19,15 @@ namespace skerry {
 
 namespace {
 
-// Crossings are numbered after the touches at the start of the step. A triangle has eight: three corners, three edges
-// and two rims. A shape has those of the touches at the end of the step, and one on the way.
+// Numbers of crossings follow the numbers of the touching points at the start of the step. A triangle has eight
+// crossings: three corners, three edges and two rims. A shape has one crossing for each touching point at the end of
+// the step, and one for the first touch during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
                 crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
 
-// A motion below this fraction of the smaller half thickness passes through nothing between the start and the end.
+// If the motion in the step is below this fraction of the smaller half thickness, no shape can pass through the other
+// between the start and the end of the step.
 constexpr Real thin_fraction = 0.5;
 
 class CylinderCrossings : PairCrossings {
@@ -71,8 +73,8 @@ private:
         return true;
     }
 
-    /// Tests a feature of the other body, or the core of one that is round with this radius [m]. Returns true if it
-    /// needed a full test.
+    /// Tests a feature of the other body. For a sphere or capsule with the given radius [m], the feature is the core.
+    /// Returns true if a full test was needed.
     bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
                       Index of_shape = 0, Real radius = 0) {
         const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
@@ -81,21 +83,23 @@ private:
         const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         if (!touch || (touch->within && !is_outside(inputs, second, cylinder_.world(touch->point)))) return true;
         const Vec3 normal = -(rotation_at(time) * touch->normal), arm = cylinder_.motion.rotation * touch->point;
-        Vec3 at_start = Vec3::Zero();  // the touched point of the feature at the start of the step
+        Vec3 at_start = Vec3::Zero();  // touched point of the feature at the start of the step
         for (std::size_t i = 0; i < feature.nodes(); ++i) at_start += touch->weight[i] * feature.position[i];
         put(candidate, number, stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, touch->weight), arm,
             normal, normal.dot(cylinder_.motion.position + arm - at_start) - feature.kept.distance, Vec3::Zero());
         return true;
     }
 
-    /// Tests a sphere or a capsule. `node`: ends of its axis.
+    /// Tests the cylinder against a sphere or a capsule. `node`: nodes at the ends of the capsule's axis; equal nodes
+    /// for a sphere.
     bool against_core(const Candidate& candidate, const std::array<Index, 3>& node) {
         return any_moves(node) &&
                test_feature(candidate, crossing_of_shape, node[0] == node[1] ? Kind::node : Kind::edge, node, 0,
                             inputs.body.round_radius[second]);
     }
 
-    /// Another shape, and its motion in the step. `stencil`: that of the pair, if the other partner is a body.
+    /// A shape near the cylinder and its motion in the step. `stencil`: nodes and weights of the contact if the shape
+    /// is a body; empty for a collider.
     struct OtherShape {
         const ColliderGeometry& geometry;
         const RigidMotion& motion;
@@ -120,8 +124,9 @@ private:
         return true;
     }
 
-    /// Adds the exact overlaps at the end of the step and the near touches beside them: if only the former were held,
-    /// the cylinder would come in at the latter. Returns true if anything would overlap.
+    /// Adds the points that overlap at the end of the step, and the near touching points beside them. If only the
+    /// overlapping points were held, the cylinder would penetrate at the near points. Returns true if any point
+    /// overlaps.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -130,14 +135,14 @@ private:
         return true;
     }
 
-    /// Adds the first touch on the way, found by conservative advancement: the shapes are separated by their distance,
-    /// and by planes that separate them.
+    /// Adds the first touch during the step, found by conservative advancement. Each advance uses the distance of the
+    /// shapes or a plane that separates them.
     void add_on_the_way(const Candidate& candidate, const OtherShape& other, Real furthest) {
         Separation separation;
         const auto gap_at = [&](Real time) {
             find_touches(time, other, std::numeric_limits<Real>::infinity());
             separation = separation_at(time, other);
-            // in the hollow of a bucket, which is within its hull, the touches tell the distance
+            // The hollow of a bucket is inside its convex hull. There the distance follows from the touching points.
             if (!is_convex_part(other.geometry, other.part) && !(separation.distance > 0) && nearest_touch_found())
                 separation = {nearest_touch_found()->distance, Vec3::Zero()};
             return separation.distance;
@@ -156,7 +161,8 @@ private:
             add_touch(candidate, crossing_on_the_way, other, *nearest_touch_found(), *time, 0);
     }
 
-    /// Upper bound of how much nearer both shapes come in the step along a fixed normal towards the cylinder [m].
+    /// Upper bound of the decrease in distance between both shapes in the step along a fixed normal [m]. The normal
+    /// points to the cylinder.
     Real closing_along(const Vec3& normal, const OtherShape& other) const {
         return motion.h * (normal.dot(other.motion.velocity - cylinder_.motion.velocity) +
                            other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
@@ -189,7 +195,7 @@ private:
     bool any_overlap() const {
         return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
     }
-    /// The touch of the least distance, or null.
+    /// Returns the touching point with the least distance, or null if there is none.
     const CylinderTouch* nearest_touch_found() const {
         const auto* const found_touch =
             std::min_element(touches_.begin(), touches_.end(),
@@ -197,7 +203,7 @@ private:
         return found_touch == touches_.end() ? nullptr : found_touch;
     }
 
-    /// Tests only the end of the step, because nothing gets around a plane.
+    /// Tests the cylinder against a plane. Only the end of the step is tested, because no shape can get around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
         if (!(greatest_way_of_cylinder() + motion.h * plane.velocity.norm() +
                   motion.h * plane.angular_velocity.norm() *
@@ -228,13 +234,14 @@ private:
         return greatest_approach(cylinder_.motion, motion.h, feature) > slow_fraction * distance;
     }
 
-    /// Orientation of the cylinder at a time of the step (fraction).
+    /// Orientation of the cylinder at `time`, a fraction of the step.
     Mat3 rotation_at(Real time) const {
         return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
-    /// `arm`: from the middle of the cylinder to the touched point at the start of the step; `along`: distance there at
-    /// the start of the step; `left`: distance there at its end [m]. If `left` is negative although an earlier try had
-    /// this contact, the turn of the cylinder has used up the difference. The distance is then reduced by that, too.
+    /// Appends a crossing. `arm`: vector from the middle of the cylinder to the touching point at the start of the step
+    /// [m]. `along` and `left`: distances at this point at the start and at the end of the step [m]. If an earlier
+    /// attempt at the step already had this contact and `left` is still negative, the rotation of the cylinder has used
+    /// up the gap. The distance of the contact is then reduced by this overlap.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
@@ -243,7 +250,7 @@ private:
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
                                stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
-        // A feature that turns by more than a right angle can have a negative distance here without an overlap.
+        // A feature that rotates by more than a right angle can have a negative distance here without an overlap.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (left < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -253,7 +260,8 @@ private:
         found.push_back(row);
     }
 
-    /// Kept distance of a feature. If a contact stops it at the shell, it has not crossed, however far it came.
+    /// Distance that a feature has to keep from the cylinder. A feature that a contact stops at the contact distance
+    /// has not crossed, however far it moved.
     KeptApart kept(Real radius) const {
         return {radius, scale.shell > 0 ? contact_slack * scale.shell : std::numeric_limits<Real>::infinity()};
     }
@@ -261,15 +269,15 @@ private:
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
     Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
-    /// Point of the cylinder that follows a face around a rim (collider_point).
+    /// Index of the point of a cylinder rim that depends on the face (collider_point).
     static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
-    /// A shape at a time of the step (fraction).
+    /// Pose of a shape at `time`, a fraction of the step.
     RigidMotion at(const RigidMotion& pose, Real time) const {
         const Real passed = time * motion.h;
         return {pose.position + passed * pose.velocity, rotation_matrix(passed * pose.angular_velocity) * pose.rotation,
                 Vec3::Zero(), Vec3::Zero()};
     }
-    /// Half of the thickness of the thinnest part [m].
+    /// Half of the thickness of a shape at its thinnest part [m].
     static Real thickness(const ColliderGeometry& geometry) {
         const Vec3& size = geometry.size;
         switch (geometry.shape) {
@@ -293,7 +301,7 @@ private:
     }
 
     const RigidCylinder cylinder_ = cylinder_in_step(inputs, motion, first);
-    std::span<const ContactRow> known_;  // of earlier tries, in key order
+    std::span<const ContactRow> known_;  // contacts that earlier attempts at this step found, in key order
     CylinderTouches touches_;
 };
 

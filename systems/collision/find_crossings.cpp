@@ -21,32 +21,34 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t checked_pairs_per_block = 512;  // pairs whose motion is checked together
+constexpr std::size_t checked_pairs_per_block = 512;  // number of pairs whose motion is checked by one task
 
-/// Nearest points of the features at some time of the step.
+/// Nearest points of two features at some time of the step.
 struct Nearest {
     Stencil stencil;
-    Vec3 offset;  // from the second feature to the first [m]
-    Vec3 point;   // on the second [m]
+    Vec3 offset;  // from the point on the second feature to that on the first [m]
+    Vec3 point;   // nearest point of the second feature [m]
 };
 
-// The lanes and their scalar twin, which decides, may differ by rounding, by much less than this fraction.
+// Bound of the relative rounding difference between the distances computed in lanes and by scalar code. The result of
+// the scalar code is used; the actual difference is much smaller.
 constexpr Real lane_rounding = 1e-6;
 
-/// Tests candidates of two surfaces.
+/// Tests candidates of two surfaces for crossings.
 class SurfaceCrossings : PairCrossings {
 public:
     SurfaceCrossings(const PairCrossings& pair, std::span<const Real> asleep_until)
         : PairCrossings(pair), asleep_until_(asleep_until) {}
 
-    /// Tests the candidates that can have met by `travel_bound` [m]. Returns the number tested.
+    /// Tests the candidates that can have met by the time the travel is `travel_bound` [m]. Returns the number of
+    /// candidates tested.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
                             [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
     }
 
-    /// Tests the candidates that find_contacts has tested, as long as the pair closes no more than it assumed. `reach`:
-    /// distance the pair may move [m].
+    /// Tests the candidates that find_contacts has listed as near. This is complete as long as the pair closes no more
+    /// than find_contacts assumed. `reach`: distance that the pair may move [m].
     std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
@@ -56,7 +58,8 @@ public:
     }
 
 private:
-    /// `least`: lower bound of the distance between the surfaces, which for round bodies lie around the features [m].
+    /// `least`: lower bound of the distance between the surfaces [m]. For round bodies, the surfaces are around the
+    /// features.
     bool test(const Candidate& candidate, Real least) {
         const FeaturePair features = features_of(candidate);
         const CandidateNodes node = nodes_of(inputs.surface, candidate);
@@ -66,7 +69,7 @@ private:
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs.position[node[i]];
         const Real apart = nearest(features, node, x).offset.norm();
-        // if the surface of a round body is pressed in already, only its core must not get through
+        // if the surface of a round body is already penetrated, only a crossing of its core is prevented
         const KeptApart kept = apart > scale.radii ? kept_of_radii(scale) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
         const std::optional<Real> time = time_of_contact(features, x, displacement, kept);
@@ -95,12 +98,13 @@ private:
 
     void add(const Candidate& candidate, FeaturePair features, const Nearest& met) {
         const Real length = met.offset.norm();
-        if (!(length > 0)) return;  // they touched before the step
+        if (!(length > 0)) return;  // the features touched before the step
         const Vec3 normal = met.offset / length;
         Real along = 0;  // distance of the two points along the normal at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
-        // features that turn by more than a right angle have a negative distance without an overlap
+        // Features that rotate by more than a right angle can have a negative distance along the normal without an
+        // overlap.
         found.push_back(
             contact_row(*this, candidate.feature,
                         features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
@@ -110,13 +114,14 @@ private:
     std::span<const Real> asleep_until_;
 };
 
-/// Bounds of how far a pair can move in this step [m].
+/// Upper bounds of the motion of a pair in this step.
 struct PairReach {
-    Real motion;        // both partners together
-    Real travel_bound;  // travel of both with this motion
+    Real motion;        // relative motion of both partners in this step [m]
+    Real travel_bound;  // travel of the pair at the end of this motion [m]
 };
 
-/// Distance of the furthest point that can touch from the collider's origin [m]. For a plane it is the furthest node.
+/// Largest distance from the collider's origin to a point of the collider that can touch the body [m]. For a plane, it
+/// is the distance to the furthest node of the body.
 Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -152,7 +157,8 @@ bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) 
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
-/// Returns the candidates of a block's pair that find_contacts has tested; `next`: the first that is not yet passed.
+/// Returns the entries of pair p in `near`, the candidates of a block that find_contacts has tested. `next`: first
+/// entry that was not passed yet.
 std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, Index p, std::size_t& next) {
     while (next < near.size() && near[next].pair < p) ++next;
     const std::size_t first = next;
@@ -170,9 +176,9 @@ std::uint64_t test_block(const CollisionInputs& inputs, const StepMotion& motion
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from >= to) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
-        // Candidates of the block that were awake in find_contacts have D >= block_nearest, so that a motion
-        // below slow_fraction * block_nearest cannot bring them together. Those asleep have g > reach as long as the
-        // motion stays within the front of find_contacts.
+        // Candidates that were awake in find_contacts have a distance of at least block_nearest, so a motion below
+        // slow_fraction * block_nearest cannot make them meet. Sleeping candidates have gaps larger than their reach,
+        // as long as the motion stays within the travel_bound of find_contacts.
         const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
         const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
@@ -190,17 +196,18 @@ std::uint64_t test_block(const CollisionInputs& inputs, const StepMotion& motion
     return tested;
 }
 
-/// True if a pair moves further in this step than its list is valid for.
+/// True if a pair moves further in this step than its candidate list is valid for.
 bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
-    // valid_until = T0 + m with T0 = T - 2 d0 holds for any later moment. If the list was made from the positions of
-    // this very step, nothing has moved since, d0 is not lost, and T + m is the bound.
+    // A list is valid up to the travel T - 2 d0 + m, where T is the travel and d0 the displacement at the search, and m
+    // is the margin. If the list was made from the positions of this step, nothing has moved since. Then it is valid up
+    // to T + m, so 2 d0 is added.
     const Real drifted =
         pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     return !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
 }
 
-/// True if any pair moves further than its list is valid for, which almost never happens.
+/// True if any pair moves further than its candidate list is valid for, which almost never happens.
 bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const PairTable& pairs, Real h) {
     std::atomic<bool> any{false};
     parallel_for(executor, pairs.size(), checked_pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -210,8 +217,9 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Pa
     return any;
 }
 
-/// Requests new lists for the pairs that move further than theirs are valid for. Returns their number. Pairs whose list
-/// was made for such a motion already, or all of them if none is `allowed`, are added to `hopeless`.
+/// Requests longer candidate lists for the pairs that move further than their lists are valid for. Returns the number
+/// of requests. Pairs that get no new list are counted in `hopeless`: if their list was already made for such a motion,
+/// if the motion is not finite, or if no request is `allowed`.
 Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
@@ -234,7 +242,8 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            if (pairs.kind[p] == PairKind::collider) continue;  // their distances are signed
+            // Distances to colliders are signed, so their pairs have no state.
+            if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
             pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // an overlapping pair needs a longer list
         }

@@ -1,5 +1,5 @@
-// Contacts of the candidates of one pair in one step. Candidates whose gap may close within the step of length h are
-// appended to a list, in order, and those that were tested get the travel until which they may sleep.
+// Contact tests of the candidates of one pair in one step. A candidate whose gap may close within the step of length h
+// is appended to a list, in order. Each tested candidate stores the travel until which it may sleep.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,24 @@
 
 namespace skerry {
 
-/// Tests the awake candidates of pair p, a body and an analytic collider, in a range of its list; without use_budgets
-/// it tests all. Returns the least distance of the features tested, or how far they may move over a flat place if that
-/// is more [m].
+/// Tests the awake candidates of pair p, a body and an analytic collider, in a range of its candidate list. Without
+/// use_budgets, it tests all candidates. Returns the least distance of the tested features [m]. For features over a
+/// flat region, the distance they may move over this region counts if it is larger.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
-/// Version of find_collider_contacts for a rigid cylinder and a body or an analytic collider.
+/// Variant of find_collider_contacts for a rigid cylinder against a body or an analytic collider.
 Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
-// Number of candidates whose sleep is tested together, without a branch for each.
+// Number of candidates that are checked together for sleep, without a branch for each.
 inline constexpr Index candidates_at_once = 16;
 
-// Another triangle counts as nearer to a point only if the difference exceeds rounding.
+// Another triangle counts as nearer to a point only if the relative difference in distance exceeds this bound of the
+// rounding.
 inline constexpr Real nearer_fraction = 1e-9;
 
-/// Mask of the awake candidates, with a bit for each of those from `begin` on that are tested together.
+/// Bit mask of the awake candidates among the candidates_at_once candidates that start at `begin`.
 inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
     static_assert(candidates_at_once == 2 * element_lanes);
     const Real* const until = asleep_until.data() + begin;
@@ -39,7 +40,8 @@ inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Rea
     return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
 }
 
-/// Calls `test` for each awake candidate of a range of the list of pair p, in order; without use_budgets for all.
+/// Calls `test` for each awake candidate in a range of the list of pair p, in order. Without use_budgets, `test` is
+/// called for all candidates.
 void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, Index p, Range range, auto&& test) {
     const std::span<const Real> asleep_until = pairs.asleep_until[p].span();
     const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : std::numeric_limits<Real>::infinity();
@@ -51,18 +53,18 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance up to which features get a close test, if the pair closes by `closing` in this step [m].
+/// Distance up to which features get a closer test, if the pair closes by `closing` in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
 
-/// Base of the classes that test the candidates of one pair.
+/// Base class of the contact tests of one pair.
 struct PairContacts : PairData {
     const CollisionSettings& settings;
     const Real h;
     const Real travel_base;  // [m]
-    const Real near;         // features further apart get no close test [m]
-    const bool held_apart;   // neither partner can have come through the other
+    const Real near;         // features further apart get no closer test [m]
+    const bool held_apart;   // true if neither partner can have passed through the other
     std::span<Real> asleep_until;
     Column<ContactRow>& found;
 
@@ -82,7 +84,7 @@ struct PairContacts : PairData {
         return gap <= reach(h, relative_speed, settings.gravity, scale.shell);
     }
 
-    /// Greatest speed of some nodes relative to `velocity` [m/s].
+    /// Greatest speed of the given nodes relative to `velocity` [m/s].
     Real speed_against(const Vec3& velocity, std::span<const Index> nodes) const {
         Real squared = 0;
         for (const Index n : nodes) squared = std::max(squared, (inputs.velocity[n] - velocity).squaredNorm());
@@ -98,15 +100,15 @@ struct PairContacts : PairData {
             }
     }
 
-    /// True if no other triangle among the candidates of the same point is nearer than `depth`: all triangles as near
-    /// are candidates, side by side in the list. `squared(i)`: squared distance of the point of candidate c to the
-    /// triangle of candidate i.
+    /// True if no other triangle near the same point is nearer than `depth`. All triangles within this distance are
+    /// candidates, side by side in the list. `squared(i)`: squared distance from the point of candidate c to the
+    /// triangle of candidate i [m^2].
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });
     }
 
-    /// True if `holds` is false for every other candidate of the point of candidate c.
+    /// True if `holds(i)` is false for every other candidate i that has the same point as candidate c.
     bool none_of_point(Index c, auto&& holds) const {
         const std::uint64_t group = point_of_feature(candidates[c].feature);
         const Index count = static_cast<Index>(candidates.size());

@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-// Up to this fraction of the distance, faces around a place may seem to lie before it by rounding.
+// Fraction of the distance to a point by which faces around the point may seem to lie in front of it, due to rounding.
 constexpr Real sight_slack = 1e-6;
 
 /// Tests candidates of two surfaces, one by one.
@@ -21,8 +21,8 @@ class CloseTest : PairContacts {
 public:
     using PairContacts::PairContacts;
 
-    /// Tests candidate c of the list, unless it is too slow for its distance. If surfaces may overlap, slow ones are
-    /// tested, too: they may have come through.
+    /// Tests candidate c of the list, unless it is too slow to close its distance in this step. If the surfaces may
+    /// overlap, slow candidates are tested, too, because they may already have passed through each other.
     void test(Index c, const CandidateNodes& node, Real distance) {
         const FeaturePair features = features_of(candidates[c]);
         const Real speed = relative_speed(features, node);
@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    /// Greatest difference between a velocity of the first feature and one of the second [m/s].
+    /// Greatest relative speed between a node of the first feature and a node of the second feature [m/s].
     Real relative_speed(FeaturePair features, const CandidateNodes& node) const {
         const std::size_t own = features == FeaturePair::edge_edge ? 2 : 1;
         Real squared = 0;
@@ -72,10 +72,10 @@ private:
             {contact.closest.on_second, contact.normal, contact.distance, scale.contact_distance - contact.slack});
     }
 
-    /// A point behind a triangle is held by it only if no other of the body's triangles is nearer: it may be in front
-    /// of the far side of a thin part, or be pushed out through a nearer face.
+    /// True if a point behind a triangle is held by this triangle. No other triangle of the body may be nearer: the
+    /// point may be in front of the far side of a thin part, or be pushed out through a nearer face.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In self-contact the point may simply be on the other side of a thin part.
+        // In self-contact, the point may simply be on the other side of a thin part of the body.
         if (kind == PairKind::self && !was_far_at_rest(inputs, scale, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs.surface.triangles.node[candidates[i].second];
@@ -85,8 +85,8 @@ private:
         });
     }
 
-    /// True if this point touches the core of a round body. If an end of an axis is nearest, that end is tested against
-    /// the other surface instead. Two ends are tested against each other once.
+    /// True if a point of the other body touches the core of a round body. If an end of the core's axis is nearest,
+    /// that end is tested against the other surface instead. Two ends are tested against each other once.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -99,8 +99,9 @@ private:
                                             inputs.position[b] - inputs.position[a], scale);
     }
 
-    /// True if a round body meets a place from behind because the other body is inside out there. A face between its
-    /// core and the place would hold it off. Other faces may be nearer: it lies on many faces at once.
+    /// True if no face of the other body lies between the core of a round body and `place`. The round body then touches
+    /// this place from behind, because the other body is inverted there. Other faces may be nearer, because a round
+    /// body lies on many faces at once.
     bool is_in_sight(Index c, Index core, const Vec3& place) const {
         const Vec3& from = inputs.position[core];
         const Vec3 until = from + (1 - sight_slack) * (place - from);
@@ -128,7 +129,7 @@ void SurfaceContacts::add(Index p, Range range) {
             test();
             begin = 0;
         }
-        __builtin_prefetch(list + c);  // without it each load would wait for the one before
+        __builtin_prefetch(list + c);  // without the prefetch, each load would wait for the previous one
         row_[count_++] = c;
     });
     close_pair();
@@ -142,7 +143,7 @@ void SurfaceContacts::test() {
     count_ = pair_count_ = 0;
 }
 
-/// Lists the nodes of the candidates, and the places of each kind.
+/// Lists the nodes of the candidates, and the indices of the candidates of each kind.
 void SurfaceContacts::list_nodes() {
     for (std::size_t i = 0; i < pair_count_; ++i) {
         const Candidate* const list = pairs_.candidates[pair_[i].pair].data();
@@ -171,7 +172,7 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
     }
 }
 
-/// Puts the candidates of a pair to sleep that it cannot close at its greatest speeds, and tests the others.
+/// Puts the candidates of a pair to sleep that cannot touch at the greatest speeds of the pair, and tests the others.
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],
@@ -183,7 +184,8 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
     ByPlace<std::uint16_t> close, meeting;
     std::size_t close_count = 0, meeting_count = 0;
     Real least = least_distance_;
-    for (std::size_t place = awake.begin; place < awake.end; ++place) {  // no branches: they would be hard to predict
+    // The loop has no branches, because they would be hard to predict.
+    for (std::size_t place = awake.begin; place < awake.end; ++place) {
         const Real zone = features_of(candidate_[place]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
         const Real distance = distance_[place], apart = distance - scale.radii;
         const bool is_close = distance <= std::max(near, zone);

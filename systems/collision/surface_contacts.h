@@ -13,39 +13,39 @@
 
 namespace skerry {
 
-/// Tests the awake candidates of several pairs together, eight at a time: most pairs have few. Candidates whose gap may
-/// close within the step of length h are appended to `found`, in order, and those that can meet in it to `near`. It
-/// stores until when the tested candidates may sleep.
+/// Tests the awake candidates of several pairs together, eight at a time, because most pairs have few candidates.
+/// Candidates whose gap may close within the step of length h are appended to `found`, in order. Candidates that could
+/// meet within the step are appended to `near`. Each tested candidate stores the travel until which it may sleep.
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
                     Column<ContactRow>& found, Column<NearCandidate>& near)
         : inputs_(inputs), settings_(settings), h_(h), pairs_(pairs), found_(found), near_(near) {}
 
-    /// Adds the awake candidates in a range of the list of pair p; without use_budgets it adds all. Neither partner is
-    /// a cylinder.
+    /// Collects the awake candidates in a range of the list of pair p. Without use_budgets, it collects all candidates.
+    /// Neither partner may be a cylinder.
     void add(Index p, Range range);
-    /// Tests the candidates that were added.
+    /// Tests the candidates that were collected.
     void test();
 
     /// Least distance of all candidates tested [m].
     Real least_distance() const { return least_distance_; }
 
 private:
-    static constexpr std::size_t most_candidates = 256;  // so that their data stays in the first-level cache
+    static constexpr std::size_t most_candidates = 256;  // small enough for their data to stay in the first-level cache
 
     template <class T>
     using ByPlace = std::array<T, most_candidates>;
 
-    /// Places of the candidates of one kind, ascending.
+    /// Indices of the candidates of one kind (FeaturePair), ascending.
     struct Places {
         std::size_t count = 0;
         ByPlace<std::uint16_t> place;
     };
-    /// The awake candidates of one pair, in the order of its list: points and triangles, then edges.
+    /// The awake candidates of one pair, in the order of its list: points against triangles, then edges against edges.
     struct AwakePair {
         Index pair;
-        std::size_t begin, end;  // places
+        std::size_t begin, end;  // range of indices of the collected candidates
     };
 
     void list_nodes();
@@ -61,8 +61,8 @@ private:
     Real least_distance_ = std::numeric_limits<Real>::infinity();
 
     std::size_t count_ = 0, pair_count_ = 0;
-    ByPlace<AwakePair> pair_;       // each pair has at least one candidate
-    ByPlace<Index> row_;            // row in the list of the pair
+    ByPlace<AwakePair> pair_;       // each pair has at least one collected candidate
+    ByPlace<Index> row_;            // index in the candidate list of the pair
     ByPlace<Candidate> candidate_;  // copies
     ByPlace<CandidateNodes> node_;
     ByPlace<Real> distance_;        // [m]

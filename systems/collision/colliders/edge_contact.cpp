@@ -10,28 +10,29 @@ namespace skerry {
 
 namespace {
 
-// Slopes of the distance along the edge below this count as zero. Over the whole edge such a slope changes the distance
-// by a hundredth of the default contact distance, which is 0.02 of an edge.
+// A derivative of the distance along the edge below this value counts as zero. If the derivative had this value on the
+// whole edge, the distance would change by a hundredth of the default contact distance, which is 0.02 edge lengths.
 constexpr Real flat_slope = 2e-4;
 
-// Beyond places where the slope exceeds this, the edge is out of reach unless it turns.
+// Where the derivative of the distance along the edge exceeds this value, the edge cannot touch unless it rotates.
 constexpr Real steep_slope = 0.05;
 
-// Accuracy of the ends of a flat stretch, and of a minimum, as a fraction of the edge.
+// Accuracy of the position of a minimum or of an end of a flat stretch, as a fraction of the edge length.
 constexpr Real place_tolerance = 1e-10;
 
-// Points nearer to each other than this fraction of the edge count as one.
+// Two points on an edge count as one if they are nearer to each other than this fraction of the edge length.
 constexpr Real shortest_stretch = 0.1;
 
-// The wall of a bucket is not convex: an edge across its rim has two minima. They are searched in this many intervals.
+// The wall of a bucket is not convex: the distance along an edge across its rim has two minima. So the edge is searched
+// in this many intervals.
 constexpr int wall_intervals = 16;
 
-/// An interval that contains the place searched for.
+/// An interval of edge parameters that contains the parameter to be found.
 struct Bracket {
     Real low, high;
 };
 
-/// Distance to the part as a function of the place on an edge.
+/// Distance between an edge and a collider part, as a function of the parameter s along the edge (0 to 1).
 class Along {
 public:
     Along(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
@@ -39,12 +40,12 @@ public:
 
     Real length() const { return length_; }
     SurfacePoint at(Real s) const { return local_distance(geometry_, a_ + s * edge_, part_); }
-    /// Derivative of the distance with respect to the length along the edge, -1 to 1.
+    /// Derivative of the distance with respect to the length along the edge, from -1 to 1.
     Real slope(const SurfacePoint& found) const { return found.normal.dot(edge_) / length_; }
     Real slope(Real s) const { return slope(at(s)); }
 
-    /// Minimum within an interval. At a kink its normal is combined from both sides so that it has no part along the
-    /// edge.
+    /// Returns the minimum of the distance in an interval. If the distance has a kink there, the normals of both sides
+    /// are combined into a normal without component along the edge.
     EdgePoint minimum(Real low, Real high) const {
         EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
         const SurfacePoint before = at(low), after = at(high);
@@ -56,22 +57,23 @@ public:
         return found;
     }
 
-    /// Visits the places where the edge passes the planes of a box's sides. Between them the nearest sides stay the
-    /// same.
+    /// Visits the parameters at which the edge crosses the planes of the sides of a box. Between these parameters, the
+    /// same sides stay nearest.
     void for_each_kink(auto&& visit) const {
         if (geometry_.shape != ColliderShape::box) return;
         for (int i = 0; i < 3; ++i)
             for (const Real side : {-geometry_.size[i], geometry_.size[i]}) visit((side - a_[i]) / edge_[i]);
     }
 
-    /// Place with a given slope in closed form: for a ball, and for a box as long as the same of its sides are nearest
-    /// as at `near`. As seen from outside, the distance along the edge is f = sqrt(q^2 (s - s0)^2 + f0^2), and its
-    /// slope is q^2 (s - s0) / (length f). The result is not a number if the slope is never reached or has no closed
-    /// form.
+    /// Parameter s at which the derivative of the distance has a given value, in closed form. For a box, it assumes
+    /// that the nearest corner, edge or side is the one at s = `near`. Outside of the shape, the distance along the
+    /// edge is f(s) = sqrt(q^2 (s - s0)^2 + f0^2), where f0 is the minimum and s0 its parameter. The derivative is q^2
+    /// (s - s0) / (length f). The result is not a number if the derivative never has this value or if the shape has no
+    /// closed form.
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
-        Vec3 from = a_, along = edge_;  // relative to the nearest point, edge or side of the shape
+        Vec3 from = a_, along = edge_;  // edge relative to the nearest corner, edge or side of the shape
         for (int i = 0; i < 3 && is_box; ++i) {
             const Real at = a_[i] + near * edge_[i];
             const bool beyond = std::abs(at) > geometry_.size[i];
@@ -89,12 +91,13 @@ private:
     const Real length_;
 };
 
-/// Finds the place along an edge where the slope passes a value. It first tests kinks and the prediction of a closed
-/// form, then uses the Illinois rule (regula falsi). Every fourth round halves the interval, which also finds kinks and
-/// stretches of constant slope.
+/// Finds the parameter along an edge at which the derivative of the distance passes a given value. It first tests kinks
+/// and the prediction of a closed form, then uses the Illinois variant of regula falsi. Every fourth iteration bisects
+/// the interval, which also finds kinks and stretches with constant derivative.
 class PlaceOfSlope {
 public:
-    /// `below` and `above`: slopes at both ends. `itself_is_below`: side to which a slope equal to `slope` counts.
+    /// `below` and `above`: derivatives at the two ends of the interval. `itself_is_below`: true if a derivative equal
+    /// to `slope` counts as below it.
     PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
@@ -120,9 +123,10 @@ public:
     }
 
 private:
-    static constexpr Real least_step = 0.45 * place_tolerance;  // steps past a place that is approached from one side
+    // Step past a position that is approached from one side only.
+    static constexpr Real least_step = 0.45 * place_tolerance;
 
-    /// Tests the place `s`, unless it is outside of the interval.
+    /// Evaluates the derivative at `s` and shrinks the interval, unless `s` is outside of it.
     void test(Real s) {
         if (!(s > on_.low && s < on_.high)) return;
         const Real value = along_.slope(s) - slope_;
@@ -143,7 +147,7 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the points of one interval in which the slope rises.
+/// Finds the possible contact points in one interval in which the derivative of the distance increases.
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -172,8 +176,9 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// Places where the distance no longer falls by more than `slope`, and where it begins to rise by more. They lie on
-    /// the flatter side of a kink, whose normal holds along the stretch.
+    /// first_place: position behind which the distance no longer falls by more than `slope`. last_place: position
+    /// behind which the distance rises by more than `slope`. Both are on the flatter side of a kink, whose normal is
+    /// valid along the stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
@@ -193,8 +198,8 @@ private:
             add(1, last);
         }
     }
-    /// Adds a point only if the slope is not too steep one stretch away from the other point. One evaluation tells
-    /// this, since slopes rise.
+    /// Adds a point only if the derivative at shortest_stretch from the other point is not too steep. One evaluation
+    /// shows this, because the derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -219,8 +224,8 @@ private:
     EdgeContact& contact_;
 };
 
-/// Calls `visit(low, high)` for each interval in which the slope rises past one of the limits above. Returns
-/// edge_distance.
+/// Calls `visit(low, high)` for each interval in which the derivative passes one of the values -steep_slope,
+/// -flat_slope, flat_slope or steep_slope. Returns a lower bound of the distance of the edge (edge_distance).
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
     Real nearest = std::numeric_limits<Real>::infinity(), low = 0;
@@ -229,7 +234,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const Real high = static_cast<Real>(i) / intervals;
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
-        // A convex part is bounded by the tangents at both ends, any other part by the length in between.
+        // For a convex part, the tangents at both ends bound the distance. For any other part, the length of the
+        // interval bounds it.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

@@ -1,4 +1,4 @@
-// Time at which a moving feature of a body and a moving collider meet (docs/methods/collision.md 7.5).
+// Time at which a moving feature of a body touches a moving collider (docs/methods/collision.md 7.5).
 #pragma once
 
 #include <array>
@@ -10,49 +10,54 @@
 
 namespace skerry {
 
-/// A node, edge or face of a body in one step, and the part or point of the collider that it is tested against.
+/// A node, edge or face of a body and its motion in one step, together with the part or point of the collider to test.
 struct TouchingFeature {
     enum class Kind : std::uint8_t { node, edge, face };
 
     Kind kind;
-    Index of_shape;                      // for a node or edge the part, for a face the point (see collider_point)
-    std::array<Vec3, 3> position;        // in the world at the start of the step, one for each node of the feature [m]
-    std::array<Vec3, 3> displacement{};  // in the step [m]
-    KeptApart kept{};                    // for a node or edge that is the core of a round body
+    // For a node or edge: number of the part; for a face: number of the point (see collider_point).
+    Index of_shape;
+    std::array<Vec3, 3> position;        // world position of each node at the start of the step [m]
+    std::array<Vec3, 3> displacement{};  // displacement of each node in the step [m]
+    KeptApart kept{};                    // distance to be kept by the core of a round body
 
     std::size_t nodes() const { return static_cast<std::size_t>(kind) + 1; }
 };
 
-/// The nearest points of a feature and a collider.
+/// Nearest points of a feature and a collider.
 struct Touch {
-    // distance; for the wall of a bucket, where several places may be nearest, a lower bound and at least a quarter of
-    // it [m]
+    // Distance between the nearest points [m]. For the wall of a bucket, where several points may be nearest, it is a
+    // lower bound and at least a quarter of the distance at `point`.
     Real distance;
     std::array<Real, 3> weight;  // weights of the feature's nodes at its nearest point
-    Vec3 point, normal;          // nearest point of the collider [m] and unit normal there, in its frame
-    bool in_face = true;         // false if an edge of the face is nearest; weights and normal are then zero
-    bool within = false;         // true if the face is touched on its inner side
+    // Nearest point of the collider [m] and unit normal there, both in the frame of the collider.
+    Vec3 point, normal;
+    bool in_face = true;  // false if an edge of the face is nearest; then weights and normal are zero
+    bool within = false;  // true if the face is touched on its inner side
 };
 
-/// Nearest points of the feature and the collider. `nodes`: the feature's nodes in the frame of the collider. For the
-/// point of a rim that follows a face, all points of the rim count. Distances of nodes and edges are signed and
-/// measured beyond the kept distance. If the collider has gone through a face, the distance is that of the face's
-/// edges.
+/// Nearest points of a feature and a collider. `nodes`: nodes of the feature in the frame of the collider. For the rim
+/// point that depends on the face, all points of the rim are considered. Distances of nodes and edges are signed and
+/// reduced by the distance to be kept. If the rim has passed through a face, the distance is that of the edges of the
+/// face.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
-/// True if the end of the step alone decides about a crossing. Nothing gets around a plane: a feature that has passed
-/// it ends behind it, and one that a contact stops before it has not crossed, however near. A round body is excluded,
-/// since no part of it may come behind the plane at any time of the step.
+/// True if a crossing can be decided at the end of the step alone, because the collider is a plane. No feature can get
+/// around a plane, so a feature that has passed it ends behind it. A feature that a contact stops in front of the plane
+/// has not crossed, however near it is. The result is false for round bodies, because no part of their surface may be
+/// behind the plane at any time of the step.
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
-/// Upper bound of how much nearer any point of the feature comes to the collider while both move for h seconds [m].
+/// Upper bound of the decrease in distance between any point of the feature and the collider while both move for h
+/// seconds [m].
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature);
 
-/// Nearest points at the time of the step at which feature and collider come near contact, or nothing if they do not.
-/// Uses conservative advancement, as time_of_contact does. Where the_end_tells, the result is the state at the end of
-/// the step if the feature is behind the plane then. Features that touch or overlap at the start give nothing, nor does
-/// a face whose edges touch first: edges are tested as features of their own. `time_of_touch`, unless null, receives
-/// the time found by advancement as a fraction of the step.
+/// Nearest points at the time at which feature and collider come near contact within the step, or nothing if they do
+/// not. It uses conservative advancement, similar to time_of_contact. If the_end_tells is true, the result is the state
+/// at the end of the step, provided that the feature is behind the plane then. The result is nothing for features that
+/// touch or overlap at the start. It is also nothing for a face whose edges touch first, because edges are tested as
+/// separate features. `time_of_touch`, unless null, receives the time of the touch as a fraction of the step, if it was
+/// found by advancement.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
                                  const TouchingFeature& feature, Real* time_of_touch = nullptr);
 

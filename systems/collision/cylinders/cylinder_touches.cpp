@@ -15,22 +15,29 @@ namespace skerry {
 
 namespace {
 
-// An end tilted by less than this stands on points that turn with the cylinder; at rest they stay the same [rad].
+// If the tilt between an end of the cylinder and a side is below this angle, the end is supported by rim points that
+// rotate with the cylinder. At rest these points stay the same [rad].
 constexpr Real standing_tilt = 1e-4;
-// If the sine of the angle between an end and a side exceeds this, the end lies on one point of its rim only.
+// If the sine of the angle between an end of the cylinder and a side exceeds this limit, the end touches the side at
+// only one point of its rim.
 constexpr Real lying_tilt = 0.5;
-// A touch may lie beyond the normals of an edge or rim by this, as for capsules (docs/methods/collision.md 4.5) [rad].
+// Tolerance by which the normal of a touch may lie outside the range of normals at an edge or rim, equal to that of
+// capsules (docs/methods/collision.md 4.5) [rad].
 constexpr Real rim_angle = 0.03;
-// A gradient this near to the axis is that of an end; one this near to the plane across the axis is that of the side.
+// A gradient of the cylinder's distance is that of an end if it differs from the axis by less than this. It is that of
+// the round side if its component along the axis is below this.
 constexpr Real place_rounding = 1e-9;
-// Tolerance of the border of a side, as a fraction of its size: places beside it by rounding count as over it.
+// Tolerance of the border of a side, as a fraction of the size of the side. Points that rounding puts beside a side
+// count as above the side.
 constexpr Real over_fraction = 1e-9;
-// A distance along a rim that changes by less than this counts as constant.
+// If the derivative of a distance along a rim is below this limit, the distance counts as constant.
 constexpr Real level_slope = 1e-9;
-constexpr int samples_around = 16;                         // samples of a rim, between which minima are searched
+// Number of samples of a rim, between which minima are searched.
+constexpr int samples_around = 16;
 constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
-// Numbering of the touches with a shape. of_rim and of_side are sizes of groups, the others are first numbers.
+// Numbering of the touching points on a shape. of_rim and of_side are the numbers of points per rim and per side. The
+// other constants are the first numbers of groups.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 
@@ -38,17 +45,17 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
     return {radius * direction[0], radius * direction[1], z};
 }
 
-/// A circle around z: the edge between a side around the axis and one across it.
+/// A circle around the z axis: the edge between a round side and a flat side.
 struct CylinderRim {
     Real radius, z;       // [m]
-    Real outward, along;  // 1 or -1: direction of the normals of its sides
+    Real outward, along;  // 1 or -1: directions of the normals of both sides, away from the axis and along it
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
     }
 };
 
-/// Visits the minima of the distance along a circle, each found between two samples. If the distance is constant along
-/// a stretch, both ends of the stretch are visited.
+/// Visits the minima of a distance along a rim, each of them found between two samples. If the distance is constant
+/// along a stretch, both ends of the stretch are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
     struct Sample {
@@ -65,8 +72,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     };
     constexpr Real round = 2 * std::numbers::pi, between = round / samples_around;
     Index number = 0;
-    std::optional<Real> first, last;  // places of the minima found first and last [rad]
-    // bisects for the place between two samples where the slope passes a value
+    std::optional<Real> first, last;  // angles of the first and of the last minimum found [rad]
+    // Bisects for the angle between two samples at which the derivative of the distance passes the value `slope`.
     const auto find = [&](Real low, Real high, Real slope, const Sample& behind) {
         Sample found = behind;
         while (high - low > turn_tolerance) {
@@ -82,7 +89,8 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
         last = high;
         if (!first) first = high;
-        // a kink in the distance is an edge of the other shape, which has its own touches
+        // A kink in the distance is at an edge of the other shape. The touching points of this edge are found
+        // separately.
         if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
     };
     Sample before = sample(0);
@@ -90,7 +98,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const Sample after = sample(i * between);
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
-        // a sample at a minimum is not a stretch
+        // A sample that happens to be at a minimum is not a stretch of constant distance.
         if (falls && after.slope >= -level_slope) {
             const Sample beyond = rises ? after : sample(high + same_place);
             if (beyond.slope > level_slope)
@@ -105,12 +113,12 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     }
 }
 
-/// A flat side of a shape, in its frame.
+/// A flat side of a shape, in the frame of the shape.
 struct FlatSide {
     Vec3 normal, at;
     enum class Region : std::uint8_t { all, rectangle, disc } region;
-    Vec3 half;                  // of a rectangle [m]
-    Real inner = 0, outer = 0;  // radii of a disc [m]
+    Vec3 half;                  // half extents of a rectangle [m]
+    Real inner = 0, outer = 0;  // inner and outer radius of a disc [m]
 
     bool holds(const Vec3& p) const {
         switch (region) {
@@ -128,7 +136,7 @@ struct FlatSide {
     }
 };
 
-/// Touches of the cylinder with one part of a shape.
+/// Finds the touching points of the cylinder on one part of another shape.
 class ShapeTouches {
 public:
     ShapeTouches(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
@@ -192,7 +200,8 @@ private:
         on.point = from_other(on.point);
         return on;
     }
-    /// True if a place over a side, or behind it, is nearest to that side; behind it another side may be nearer.
+    /// True if `side` is the nearest side of the shape for a point p at the given height above it. A point behind the
+    /// side may be nearer to another side.
     static bool is_before(const FlatSide& side, Real height, const ColliderGeometry& geometry, Index part,
                           const Vec3& p) {
         return height >= 0 || local_distance(geometry, p, part).normal.dot(side.normal) > 1 - over_fraction;
@@ -201,7 +210,7 @@ private:
         if (distance <= near_) found_.add({number, distance, normal, on_other});
     }
 
-    /// Adds the places where the rims of the cylinder are nearest to the other shape.
+    /// Adds the points where the rims of the cylinder are nearest to the other shape.
     void touch_rims() {
         for (Index end = 0; end < 2; ++end) {
             const CylinderRim rim = rim_of(own_, end);
@@ -213,7 +222,7 @@ private:
         }
     }
 
-    /// Adds the places where a rim of the other shape is nearest to the cylinder.
+    /// Adds the points where a rim of the other shape is nearest to the cylinder.
     void touch_rim_of_other(Index rim_number, const CylinderRim& rim) {
         for_each_minimum(
             rim,
@@ -229,8 +238,8 @@ private:
             });
     }
 
-    /// Adds the points of the rims over a flat side of the other shape, and the places where a rim passes the rim of a
-    /// disc.
+    /// Adds the rim points of the cylinder that are above a flat side of the other shape. If this side is a disc, it
+    /// also adds the points where a rim crosses the border of the disc.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = place_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -241,7 +250,7 @@ private:
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(of_sides + of_side * number + k, height, normal, foot);
         };
-        // otherwise touch_rims finds the points of the rims that reach furthest
+        // If the end is tilted more, touch_rims finds the rim points that reach furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
@@ -261,10 +270,11 @@ private:
             });
     }
 
-    /// Adds the points of a rim of the other shape, a cylinder, over an end of this one.
+    /// Adds the rim points of the other shape, a cylinder, that are above an end of this cylinder.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
-        const Vec3 normal = place_.rotation.transpose() * side.normal;  // in the frame of the other shape
+        // Normal of the end, in the frame of the other shape.
+        const Vec3 normal = place_.rotation.transpose() * side.normal;
         if (normal.head<2>().norm() > lying_tilt) return;
         const auto over = [&](Index k, const Vec3& p) {
             const Vec3 here = from_other(p);
@@ -329,8 +339,8 @@ private:
             }
     }
 
-    /// Adds the touch of two round sides that cross, between two heights of the other. Parallel sides touch at their
-    /// rims.
+    /// Adds the touch of two round sides whose axes cross. `low`, `high`: range of heights of the other round side.
+    /// Cylinders with parallel axes touch at their rims instead.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =
@@ -338,7 +348,7 @@ private:
         const Real length = std::sqrt(nearest.distance_squared);
         if (!nearest.interior || !(length > 0)) return;
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
-        // a cylinder within a hollow side does not touch it from outside
+        // A cylinder inside a hollow round side does not touch it from outside.
         if (other_.shape == ColliderShape::bucket && length < radius) return;
         add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }

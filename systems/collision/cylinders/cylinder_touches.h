@@ -1,4 +1,4 @@
-// Places where a cylinder and another shape may touch first (docs/methods/rigid_bodies.md 6.3).
+// Points where a cylinder and another shape may touch first (docs/methods/rigid_bodies.md 6.3).
 #pragma once
 
 #include <array>
@@ -9,19 +9,19 @@
 
 namespace skerry {
 
-/// A possible touch, in the frame of the cylinder.
+/// A possible touching point, in the frame of the cylinder.
 struct CylinderTouch {
-    Index number;                  // identifies the touch from step to step; ascending in a list
+    Index number;                  // identifies the touching point from step to step; ascending in a list
     Real distance;                 // signed [m]
-    Vec3 normal;                   // unit, from the other shape to the cylinder
-    Vec3 on_other;                 // on the surface of the other shape [m]
-    std::array<Real, 2> weight{};  // of the ends of a capsule's axis
+    Vec3 normal;                   // unit normal from the other shape to the cylinder
+    Vec3 on_other;                 // touching point on the surface of the other shape [m]
+    std::array<Real, 2> weight{};  // weights of the two ends of a capsule's axis
 };
 
-/// The touches of one pair or of one triangle, with room for as many as there can be.
+/// List of the touching points of one pair or of one triangle. The capacity suffices for the greatest possible number.
 class CylinderTouches {
 public:
-    static constexpr Index most = 256;  // numbers are below this
+    static constexpr Index most = 256;  // capacity, and upper limit of the touch numbers
 
     void clear() { count_ = 0; }
     void add(const CylinderTouch& touch) {
@@ -36,14 +36,15 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Points of the rims of a cylinder that can touch a flat side whose outward unit normal in the frame of the cylinder
-/// is `normal`. Each rim has the point that reaches furthest towards the side and, where an end nearly faces the side,
-/// some points that support it there. None of them comes nearer to the side when the cylinder turns about its axis by
-/// less than a radian per step; a point that turns with the cylinder would.
+/// Points of the rims of a cylinder that can touch a flat side. `normal`: outward unit normal of the side in the frame
+/// of the cylinder. Each rim has the point that reaches furthest towards the side. If an end of the cylinder nearly
+/// faces the side, its rim also has points that support the end on the side. None of these points comes nearer to the
+/// side when the cylinder rotates about its axis by less than a radian per step. For a tilted end, points that rotate
+/// with the cylinder would come nearer.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
-        Index number;  // below 2 * most_of_rim
+        Index number;  // less than 2 * most_of_rim
         Vec3 at;       // [m]
     };
     std::array<Point, 2 * most_of_rim> point;
@@ -54,34 +55,36 @@ struct RimPoints {
     const Point* end() const { return point.data() + count; }
 };
 
-/// Kind of surface of a cylinder at the place where its distance has the given gradient.
+/// Kind of the cylinder surface nearest to a point, from the gradient of the cylinder's distance at this point.
 enum class CylinderPlace : std::uint8_t { end, side, rim };
 CylinderPlace place_of(const Vec3& gradient);
 
-/// Touch with the ball of radius `radius` around `middle`. It is left out if further than `near` [m].
+/// Adds the touching point with the sphere of radius `radius` around `middle`, unless its distance exceeds `near` [m].
 void touch_ball(const ColliderGeometry& cylinder, const Vec3& middle, Real radius, Real near, CylinderTouches& found);
 
-/// Touches with a capsule whose axis runs from `a` to `b`. Touches further than `near` are left out [m].
+/// Adds the touching points with a capsule whose axis runs from `a` to `b`, if their distance is at most `near` [m].
 void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& b, Real radius, Real near,
                    CylinderTouches& found);
 
-/// Touches with a part of another shape, no mesh, at `place` in the frame of the cylinder. Touches further than `near`
-/// are left out [m].
+/// Adds the touching points with a part of another shape, which must not be a mesh, if their distance is at most `near`
+/// [m]. `place`: pose of the shape in the frame of the cylinder.
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
 
-/// Lower bound of the distance of a triangle, given in the frame of the cylinder [m].
+/// Lower bound of the distance between the cylinder and a triangle, which is given in the frame of the cylinder [m].
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// Two planes across `normal` (unit, towards the cylinder, in its frame) that lie `distance` apart [m] separate the
-/// cylinder from a shape. If the normal is zero, bounding balls or capsules do.
+/// Two parallel planes at the given distance from each other separate the cylinder from another shape [m]. `normal`:
+/// unit normal of the planes towards the cylinder, in the frame of the cylinder. If the normal is zero, bounding
+/// spheres or capsules separate the shapes instead.
 struct Separation {
     Real distance;
     Vec3 normal;
 };
 
-/// Best separation from a part of a shape at `place` in the frame of the cylinder: a lower bound of the distance of its
-/// convex hull. It uses the axes of both shapes and the normals of the touches, and the bounding balls.
+/// Greatest separation found between the cylinder and a part of another shape: a lower bound of the distance to the
+/// convex hull of the part. It tests the axes of both shapes, the normals of `touches` and the bounding spheres.
+/// `place`: pose of the other shape in the frame of the cylinder.
 Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                             const RigidMotion& place, const CylinderTouches& touches);
 

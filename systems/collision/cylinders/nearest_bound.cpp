@@ -32,7 +32,8 @@ Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeom
         const Vec3 normal = place.rotation.col(2);
         return {-normal.dot(place.position) - reach(normal), normal};
     }
-    const Vec3 middle = -(place.rotation.transpose() * place.position);  // of the cylinder, in the frame of the other
+    // Middle of the cylinder in the frame of the other shape.
+    const Vec3 middle = -(place.rotation.transpose() * place.position);
     Separation best{local_distance(other, middle, part).distance - ball_radius(cylinder), Vec3::Zero()};
     const auto test = [&](Real distance, const Vec3& normal) {
         if (best.distance < distance) best = {distance, normal};
@@ -45,7 +46,7 @@ Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeom
     for (const Vec3& axis :
          {Vec3(Vec3::UnitZ()), Vec3(place.rotation.col(0)), Vec3(place.rotation.col(1)), Vec3(place.rotation.col(2))})
         test_along(axis.dot(place.position) > 0 ? Vec3(-axis) : axis);
-    if (other.shape == ColliderShape::cylinder) {  // each lies within the capsule around its axis
+    if (other.shape == ColliderShape::cylinder) {  // each cylinder lies within a capsule around its axis
         const Vec3 own = cylinder.size[1] * Vec3::UnitZ(), half = other.size[1] * place.rotation.col(2);
         const Real apart =
             closest_points_of_segments(-own, own, place.position - half, place.position + half).distance_squared;

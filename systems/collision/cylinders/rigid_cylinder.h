@@ -1,4 +1,4 @@
-// Positions and motions of the rigid cylinders, from the nodes of their cores (BodyTable::core_nodes).
+// Poses and motions of rigid cylinders, computed from the nodes of their cores (BodyTable::core_nodes).
 #pragma once
 
 #include "components/collider_table.h"
@@ -10,7 +10,8 @@
 
 namespace skerry {
 
-/// A rigid cylinder in the form of a collider: features of others are tested in its frame.
+/// A rigid cylinder with the geometry and motion of a collider, so that features of other bodies can be tested in its
+/// frame.
 struct RigidCylinder {
     ColliderGeometry geometry;
     RigidMotion motion;
@@ -29,11 +30,11 @@ inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, 
            (pairs.kind[p] != PairKind::collider && is_cylinder(inputs, pairs.second[p]));
 }
 
-/// The cylinder at the start of the step, with its velocities at that time.
+/// The cylinder at the start of the step, with its velocities at this time.
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
-/// The cylinder at the start of the step, with the velocities that take it to its position at the end of the step.
-/// Since it is round, the rotation is the smallest that takes its axis there.
+/// The cylinder at the start of the step, with the constant velocities that move it to its position at the end of the
+/// step. Since the cylinder is round, the rotation is the smallest one that rotates its axis to the final direction.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 
 }  // namespace skerry

@@ -25,9 +25,9 @@ struct CollisionInputs {
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const LeafNodes> leaf_nodes;
     std::span<const LeafFeatures> leaf_features;
-    std::span<const Vec3> position;            // by node, start of the step
-    std::span<const Vec3> velocity;            // by node, start of the step
-    std::span<const Vec3> rest_position = {};  // by node; if empty, self-contact has no rest shape to compare with
+    std::span<const Vec3> position;            // by node, at the start of the step [m]
+    std::span<const Vec3> velocity;            // by node, at the start of the step [m/s]
+    std::span<const Vec3> rest_position = {};  // by node [m]; if empty, self-contact has no rest shape to compare with
     std::span<const std::uint64_t> disabled_pairs = {};  // ContactKey::pair, ascending
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
@@ -53,12 +53,15 @@ struct CollisionInputs {
 
 /// Settings of the collision stages.
 struct CollisionSettings {
-    Real gravity = 0;  // norm; bounds how much faster a body can become in a step [m/s^2]
-    // extra distance at which candidates are kept, beyond that at which they matter, as a fraction of the mean edge
+    Real gravity = 0;  // norm of the gravity; bounds how much faster a body can become in a step [m/s^2]
+    // Candidates are kept up to this distance beyond the distance at which they matter, as a fraction of the mean edge
+    // length.
     Real pair_skin = 0.3125;
-    Real broad_skin = 4.0;    // extra distance at which pairs of bodies are kept, as a fraction of the mean edge
-    bool use_budgets = true;  // off: every step searches everything (the simple twin, for tests)
-    bool continuous = true;   // off: the motion of a step is not tested for crossings
+    // Pairs of bodies are kept up to this distance beyond the distance at which they matter, as a fraction of the mean
+    // edge length.
+    Real broad_skin = 4.0;
+    bool use_budgets = true;  // false: every step searches all pairs and features (reference for tests)
+    bool continuous = true;   // false: the motion of a step is not tested for crossings
 };
 
 }  // namespace skerry

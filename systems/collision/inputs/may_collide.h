@@ -1,4 +1,4 @@
-// Selection of the pairs that may collide, by the groups of both and by the pairs that are switched off.
+// Test of whether a pair may collide, by the collision filters of both partners and the list of disabled pairs.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Key of a pair. `first`: a deformable row of BodyTable. `second`: a row of BodyTable, or of ColliderTable if the kind
-/// is collider.
+/// Key of a pair. `first`: row of a deformable body in BodyTable. `second`: row of BodyTable, or of ColliderTable if
+/// `kind` is collider.
 inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collider, PairKind kind, Index first,
                               Index second) {
     if (kind == PairKind::collider) return collider_pair_key(body.slot[first], collider.slot[second]);
@@ -21,8 +21,9 @@ inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collid
     return body_pair_key(std::min(body.slot[first], body.slot[second]), std::max(body.slot[first], body.slot[second]));
 }
 
-/// True if both groups allow it and the pair is not in `disabled`, the keys of DisabledPairTable. A body paired with
-/// itself may always collide here: whether it has self-contact is checked elsewhere.
+/// True if the collision filters of both partners allow contact and the pair is not in `disabled`, the keys of
+/// DisabledPairTable. For a body paired with itself the result is always true, because self-contact is checked
+/// elsewhere.
 inline bool may_collide(const BodyTable& body, const ColliderTable& collider, std::span<const std::uint64_t> disabled,
                         PairKind kind, Index first, Index second) {
     if (kind == PairKind::self) return true;

@@ -1,4 +1,4 @@
-// Motion of the step that is about to be taken.
+// Motion of all nodes in an attempt at the next step.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Signed distance to the analytic collider shapes.
+// Signed distances to the analytic collider shapes.
 #pragma once
 
 #include "components/bvh_table.h"
@@ -7,35 +7,38 @@
 namespace skerry {
 
 struct SurfacePoint {
-    Real distance;  // signed, positive outside [m]
-    Vec3 normal;    // unit gradient of the distance, in the frame of the query
-    Vec3 point;     // nearest point of the surface, in the frame of the query [m]
+    Real distance;  // signed distance, positive outside [m]
+    Vec3 normal;    // unit gradient of the distance, in the frame of the queried point
+    Vec3 point;     // nearest point of the surface, in the frame of the queried point [m]
 };
 
-/// Signed distance of a world point to a plane, sphere, box, capsule, cylinder or bucket. Exact outside and inside (a
-/// box or cylinder pushes out through the nearest face). On a medial axis, where the nearest point is not unique, one
-/// of them is chosen by a fixed rule.
+/// Signed distance of a world point to a plane, sphere, box, capsule, cylinder or bucket. It is exact outside and
+/// inside; inside a box or cylinder, the nearest face counts. On a medial axis the nearest point is not unique, and a
+/// fixed rule selects one.
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point);
 
-/// Number of parts. A bucket has two, floor and wall, so that a point in its corner touches both; other shapes have
-/// one.
+/// Number of parts of a collider. A bucket has two parts, floor and wall, so that a point in its corner touches both.
+/// Other shapes have one part.
 Index collider_part_count(ColliderShape shape);
 
-/// Signed distance to one part. Outside of the collider its distance is the least over its parts.
+/// Signed distance of a world point to one part of a collider. Outside of the collider, the distance to the whole
+/// collider is the least distance over its parts.
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point);
 
-/// Signed distance in the frame of the collider, to one part or to all of it (no_index).
+/// Signed distance of a point in the frame of the collider to one part of the collider, or to the whole collider if
+/// `part` is no_index.
 SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
 
-/// Extent of a shape from its origin along a unit direction in its frame [m]. For a part of a bucket it is that of the
-/// part's convex hull; no_index stands for all parts.
+/// Extent of a shape from its origin along a unit direction in its frame [m]. `part`: part of a bucket, whose convex
+/// hull is used, or no_index for all parts.
 Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& direction);
 
-/// World box around a collider of finite size; unbounded for a plane or a mesh.
+/// World box of a collider; unbounded for a plane or a mesh.
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion);
 
-/// Upper bound of the distance of a point of the collider from its origin [m]; 0 for a plane or a mesh.
+/// Upper bound of the distance between the collider's origin and any point of the collider [m]; 0 for a plane or a
+/// mesh.
 Real collider_radius(const ColliderGeometry& geometry);
 
 }  // namespace skerry

@@ -9,16 +9,17 @@ namespace skerry {
 
 namespace {
 
-// An edge that bends by less than this counts as flat [rad]. Leaving it out lets two edges come nearer than the points
-// around show, by at most a quarter of this fraction of the width of its faces: an eighth of the default contact
-// distance.
+// An edge counts as flat if its faces are bent by less than this angle [rad]. Two edges that are left out for this
+// reason can come nearer than the nodes around them. The difference is at most a quarter of this fraction of the width
+// of the faces, which is an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
 // Angle beyond the normals of its faces up to which an edge still counts as nearest [rad]. An edge that lies on a face
-// is exactly on that border. One that lies on two edges of the face is beyond it, since the flatter of the two lets it
-// come nearer: by a hundredth of the width of the face if they are equally long. If the other then no longer counted,
-// it would fall onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5). The rotation of
-// the step is added: where a point is stopped, the edge behind it goes on and can cross another within the same step.
+// is exactly at this border. An edge that lies on two edges of a face is beyond it, because the flatter edge lets it
+// come nearer: by a hundredth of the width of the face if both are equally long. If the other edge no longer counted,
+// the resting edge would fall onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5).
+// The rotation in the step is added. Otherwise an edge could cross another one within the same step after the point in
+// front of it was stopped.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -27,17 +28,18 @@ Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>&
     return triangle[0];
 }
 
-/// Unit normal of a triangle; zero if it has no area.
+/// Unit normal of a triangle; zero if the triangle has no area.
 Vec3 unit_normal(std::span<const Vec3> position, const std::array<Index, 3>& node) {
     const Vec3 normal = (position[node[1]] - position[node[0]]).cross(position[node[2]] - position[node[0]]);
     const Real length = normal.norm();
     return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }
 
-/// The faces at one edge.
+/// The one or two faces at an edge.
 class Wedge {
 public:
-    /// `closing`: how far features may move in this step [m]. `against_axis`: the other edge is the axis of a capsule.
+    /// `closing`: distance that features may move in this step [m]. `against_axis`: true if the other edge is the axis
+    /// of a capsule.
     Wedge(const SurfaceTables& surface, std::span<const Vec3> position, Index edge, Real closing, bool against_axis) {
         const auto& ends = surface.edges.node[edge];
         const auto& around = surface.edges.triangle[edge];
@@ -51,7 +53,7 @@ public:
         into_[0] = across(along, position[opposite(first, ends)] - origin);
         border_[0] = border_angle * into_[0].norm() + closing;
         if (around[1] == no_index) {
-            // The rim of an open surface is treated as if a wall went down from it.
+            // At the boundary of an open surface, a wall that goes down from the edge is assumed as the second face.
             into_[1] = -into_[0].norm() * normal;
             border_[1] = border_[0];
             convex_ = true;
@@ -61,52 +63,54 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // `fall`: how far the other face falls away below the plane of the first.
+        // `fall`: depth of the second face below the plane of the first face, at the corner opposite to the edge.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
-        if (against_axis) {  // an axis lies on nearly flat places by their edges alone
+        if (against_axis) {  // only the edges of a nearly flat surface support the axis of a capsule
             convex_ = fall > -min_bend * other_width - closing;
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The bend is the same as seen from either face.
+        // The bend has the same value when it is measured from the other face.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
     }
 
-    /// True for the core of a round body, which is touched from all sides.
+    /// True if the edge is the core of a round body, which can be touched from all sides.
     static bool is_axis(const SurfaceTables& surface, Index edge) {
         return is_core(surface.triangles.node[surface.edges.triangle[edge][0]]);
     }
 
     bool convex() const { return is_axis_ || convex_; }
 
-    /// How much nearer than the contact distance another edge may come that crosses this one at a fraction of its
-    /// length [m]. With it an edge that bends by min_bend starts to count where its points have left the other body,
-    /// not with a negative gap, which would make stacked blocks vibrate for ever. Towards its ends the faces are
-    /// narrower.
+    /// Distance by which another edge may come nearer than the contact distance if it crosses this edge at `fraction`
+    /// of its length [m]. Without this slack, an edge with a bend of min_bend would start to count with a negative gap
+    /// when its nodes have left the other body. Stacked blocks would then vibrate for ever. The slack decreases towards
+    /// the ends of the edge, where the faces are narrower.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
-    /// True if a point in this direction (unit, normal to the edge) is nearer to the edge than to its faces.
+    /// True if a point in this direction from the edge is nearer to the edge than to the faces of the edge.
+    /// `direction`: unit vector normal to the edge.
     bool faces(const Vec3& direction) const {
         if (is_axis_) return true;
-        // The mean normal tells the outside of a nearly flat edge from its inside, which the borders cannot.
+        // At a nearly flat edge, the borders do not separate the outside from the inside, so the mean normal is tested,
+        // too.
         return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] &&
                direction.dot(into_[1]) <= border_[1];
     }
 
 private:
-    /// Component of `v` normal to the edge: a face may be much wider or narrower than the edge is long.
+    /// Component of `v` normal to the edge. For a vector to the opposite corner, its length is the width of the face.
     static Vec3 across(const Vec3& along, const Vec3& v) {
         const Real squared = along.squaredNorm();
         return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
     }
 
-    std::array<Vec3, 2> into_;    // from the edge across either face [m]
-    std::array<Real, 2> border_;  // how far the end of a face may stand out beyond the direction [m]
-    Vec3 outward_;                // sum of the unit normals of both
+    std::array<Vec3, 2> into_;    // vectors from the edge across each face, normal to the edge [m]
+    std::array<Real, 2> border_;  // largest component of each `into_` along an accepted direction [m]
+    Vec3 outward_;                // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;
-    Real slack_ = 0;  // half way along the edge [m]
+    Real slack_ = 0;  // slack at the middle of the edge [m]
 };
 
 }  // namespace
@@ -127,7 +131,8 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     contact.sleep = distance - scale.edge_depth;
     if (!contact.closest.interior || !(distance <= std::max(near, scale.edge_depth))) return contact;
 
-    // The normal points along the connection, but is well defined even if the edges touch.
+    // The normal points along the line between the nearest points, but it is computed from the edges, so that it is
+    // defined even if they touch.
     Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;
@@ -141,7 +146,7 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
         contact.normal = normal;
     } else if (surfaces == Surfaces::may_overlap && distance <= scale.edge_depth && wedge_b.faces(-normal) &&
                wedge_a.faces(normal)) {
-        contact.distance = -distance;  // they have passed each other
+        contact.distance = -distance;  // the edges have passed each other
         contact.normal = -normal;
     } else {
         return contact;

@@ -1,4 +1,4 @@
-// Points of the world as seen from a rigid shape.
+// Conversion between world coordinates and the frame of a rigid shape.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,14 +7,14 @@
 
 namespace skerry {
 
-/// A point of the world in the frame of a shape [m].
+/// Converts a world point to the frame of a shape [m].
 inline Vec3 to_local(const RigidMotion& motion, const Vec3& point) {
     return motion.rotation.transpose() * (point - motion.position);
 }
 inline Vec3 to_world(const RigidMotion& motion, const Vec3& point) {
     return motion.position + motion.rotation * point;
 }
-/// Velocity of the shape at a point of the world [m/s].
+/// Velocity of a rigid shape at a world point [m/s].
 inline Vec3 velocity_at(const RigidMotion& motion, const Vec3& point) {
     return motion.velocity + motion.angular_velocity.cross(point - motion.position);
 }

@@ -5,12 +5,12 @@
 
 namespace skerry {
 
-/// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 where the body overlaps itself. It
-/// sums the solid angles of all triangles (Jacobson, Kavan, Sorkine-Hornung 2013, Robust inside-outside segmentation
-/// using generalized winding numbers, equation 5).
+/// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 where the body overlaps itself. It is
+/// the sum of the solid angles of all triangles, divided by 4 pi (Jacobson, Kavan, Sorkine-Hornung 2013, Robust
+/// inside-outside segmentation using generalized winding numbers, equation 5).
 Real winding_number(const CollisionInputs& inputs, Index body, const Vec3& point);
 
-/// True if the point is in no part of the body, however the body is folded.
+/// True if the point is in no part of the body, even if the body is folded.
 bool is_outside(const CollisionInputs& inputs, Index body, const Vec3& point);
 
 }  // namespace skerry

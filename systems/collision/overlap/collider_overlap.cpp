@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// A point inside a collider, in its own frame.
+/// Returns a point inside a collider, in the frame of the collider.
 Vec3 inner_point(const ColliderGeometry& geometry) {
-    // the middle of a bucket is empty, but that of its floor is solid
+    // the middle of a bucket is empty, but the middle of its floor is solid
     if (geometry.shape == ColliderShape::bucket) return {0, 0, -geometry.size[2] / 2};
     return Vec3::Zero();
 }
@@ -65,8 +65,8 @@ public:
         }
         for (const SolidTriangle& t : solid.surface)
             for (std::size_t k = 0; k < 3; ++k)
-                // A closed surface has each edge twice, once in either direction. In other surfaces some are tested
-                // twice.
+                // A closed surface contains each edge twice, once in each direction, and one of them is tested. In
+                // other surfaces, some edges are tested twice.
                 if (!solid.closed || t.node[k] < t.node[(k + 1) % 3])
                     add_edge(pair_.local(t.node[k]), pair_.local(t.node[(k + 1) % 3]));
         if (!(overlap_.depth > 0)) return std::nullopt;
@@ -101,7 +101,7 @@ private:
     Overlap overlap_{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
 };
 
-/// Corners, ends and rims of a collider that lie in a body.
+/// Corners, ends and rims of a collider that are inside a body.
 class PointsInside {
 public:
     PointsInside(const ColliderAndBody& pair, Real tolerance)
@@ -131,7 +131,7 @@ private:
         overlap_.direction = (within ? -way : way) / length;
         overlap_.place = at + body.shift;
     }
-    /// Adds the point of a rim that is deepest behind each face.
+    /// Adds the deepest rim point behind each face of the body.
     void add_rim(Index k) {
         for (const SolidTriangle& t : pair_.body.solid.surface) {
             const FaceContact face = face_contact(
@@ -158,7 +158,8 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
-    // The body moves against the way out of the collider, and past the collider's other side.
+    // The body moves away along the direction from its nearest surface point to the collider, past the far side of the
+    // collider.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }

@@ -9,27 +9,27 @@
 
 namespace skerry {
 
-/// Overlap of a collider with the nodes and edges of a body's surface that lie in it by more than `tolerance` [m].
-/// `depth` and `direction` are those of the deepest point. The kind is inside if all nodes lie in the collider, else
-/// crossing.
+/// Overlap of a collider with those nodes and edges of a body's surface that are inside the collider by more than
+/// `tolerance` [m]. `depth` and `direction` belong to the deepest point. The kind is `inside` if all nodes are in the
+/// collider, otherwise `crossing`.
 std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                            const PlacedSolid& body, Real tolerance);
 
-/// Overlap with a collider that contains no node or edge of the body. Either the whole collider is inside the body
-/// (around), or a corner, an end or a rim of it has entered between the edges of a face by more than `tolerance` [m]
-/// (crossing).
+/// Overlap of a body with a collider that contains no node or edge of the body. The kind is `around` if the whole
+/// collider is inside the body. It is `crossing` if a corner, an end or a rim of the collider has entered a face
+/// between its edges by more than `tolerance` [m].
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 
-/// A round body: all points within `radius` of its core, a point or a segment.
+/// A round body: all points within `radius` of a core, which is a point or a segment.
 struct RoundSolid {
-    std::array<Vec3, 2> end;  // for a point twice the same [m]
+    std::array<Vec3, 2> end;  // ends of the core; equal if the core is a point [m]
     bool is_segment;
     Real radius;  // [m]
 };
 
-/// Overlap of a round body with a collider by more than `tolerance` [m]. The kind is inside if both ends of the core
-/// lie in the collider, else crossing.
+/// Overlap of a round body with a collider by more than `tolerance` [m]. The kind is `inside` if both ends of the core
+/// are in the collider, otherwise `crossing`.
 std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
                                         const RigidMotion& motion, Real tolerance);
 

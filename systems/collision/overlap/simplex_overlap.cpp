@@ -54,13 +54,13 @@ SimplexOverlap::SimplexOverlap(const Simplex& first, const Simplex& second, Real
     overlapping_ = count_ > 0;
 }
 
-/// True if the two overlap along an axis by no more than `tolerance`. The axis of two nearly parallel edges has an
-/// arbitrary direction, but it is as valid as any other: the overlap along it is true.
+/// True if two simplices overlap along an axis by no more than `tolerance` [m]. For two nearly parallel edges, the
+/// direction of the axis is arbitrary. The overlap along this axis is still correct.
 bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance) {
     const Real length = along.norm();
     if (!(length > 0)) return false;
     const Vec3 axis = along / length;
-    // near both simplices, so that their common distance from the world's origin causes no rounding
+    // This origin is near both simplices. So their distance from the world's origin causes no rounding.
     const Vec3& origin = first.point[0];
     const auto [lower, upper] = interval(first, origin, axis);
     const auto [other_lower, other_upper] = interval(second, origin, axis);

@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// The convex hull of four points, or of the first three. At least one simplex of a pair has four.
+/// The convex hull of four points, or of the first three points. In each pair of simplices, at least one has four
+/// points.
 struct Simplex {
     std::array<Vec3, 4> point;  // [m]
     std::size_t count;
@@ -15,24 +16,27 @@ struct Simplex {
     Simplex moved(const Vec3& shift) const;
 };
 
-/// Separating axis test of two simplices. For each axis along which a face or two edges can separate them, it stores
-/// how far the first would have to move. The two share a ball if, and only if, no axis separates them.
+/// Separating axis test of two simplices. For each axis normal to a face or to an edge of each simplex, it stores the
+/// distance that the first simplex would have to move to be apart. The interiors of the simplices overlap if, and only
+/// if, no axis separates them.
 class SimplexOverlap {
 public:
-    /// Tests axis after axis, until one shows that they overlap by no more than `tolerance` [m].
+    /// Tests one axis after another, until the simplices overlap along an axis by no more than `tolerance` [m].
     SimplexOverlap(const Simplex& first, const Simplex& second, Real tolerance);
 
     bool overlapping() const { return overlapping_; }
-    /// Distance the first has to move along a unit direction to be apart [m]. Valid only if the two overlap.
+    /// Distance by which the first simplex has to move along a unit direction to be apart from the second [m]. Valid
+    /// only if the simplices overlap.
     Real way_out(const Vec3& direction) const;
 
 private:
     bool separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance);
 
-    // Face normals of both, and cross products of an edge of each: 4 + 4 + 6 x 6.
+    // Greatest number of axes: 4 + 4 face normals, and 6 x 6 cross products of an edge of each simplex.
     static constexpr std::size_t most_axes = 44;
     std::array<Vec3, most_axes> axis_;
-    std::array<Real, most_axes> forward_, backward_;  // along the axis and against it [m]
+    // Distances to move the first simplex along each axis and against it [m]
+    std::array<Real, most_axes> forward_, backward_;
     std::size_t count_ = 0;
     bool overlapping_ = true;
 };

@@ -10,10 +10,10 @@ namespace skerry {
 
 namespace {
 
-/// Two simplices that overlap, and the place where they do.
+/// Two simplices that overlap, and the position of their overlap.
 struct Meeting {
     Index first, second;
-    Vec3 place;  // middle of the box that their boxes share [m]
+    Vec3 place;  // middle of the region that both bounding boxes share [m]
 };
 
 Aabb box_of(const Simplex& s) {
@@ -30,12 +30,13 @@ Vec3 middle(const Aabb& box) {
     return (box.lower + box.upper) / 2;
 }
 
-/// Calls meet(first, second, overlap) for the simplices of two solids that overlap.
+/// Calls `meet` for each pair of overlapping simplices of two solids, with the indices of both, both simplices in the
+/// frame of the second solid, and their overlap.
 template <class Meet>
 void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
-    // relative to the second solid
+    // shift of the first solid relative to the second solid
     const Vec3 shift = first.shift - second.shift;
-    // A triangle in an axis-aligned plane has a box of no thickness.
+    // The margin is needed because the box of a triangle in an axis-aligned plane has no thickness.
     const Vec3 skin = Vec3::Constant(tolerance);
     const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
     first.solid.tree.for_each_overlap(of_second, [&](Index f) {
@@ -60,7 +61,8 @@ std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& 
     return found;
 }
 
-/// Distance the first has to move in each direction to come out of the simplices that it meets now [m].
+/// For each direction: distance that the first solid has to move to leave all simplices of the second solid that it
+/// overlaps now [m].
 std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                            std::span<const Vec3> direction) {
     std::vector<Real> way(direction.size(), 0);
@@ -86,7 +88,8 @@ OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real to
     return inside ? OverlapKind::inside : around ? OverlapKind::around : OverlapKind::crossing;
 }
 
-/// Distance the first has to move along a unit direction to begin where the second ends [m].
+/// Distance that the first solid has to move along a unit direction until all its points are beyond the second solid
+/// [m].
 Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
     Real lowest = infinite, highest = -infinite;
     for (const Index n : first.solid.surface_point)
@@ -102,11 +105,11 @@ Vec3 middle_of_points(const PlacedSolid& placed) {
     return sum / static_cast<Real>(placed.solid.surface_point.size()) + placed.shift;
 }
 
-/// Directions that are tried, each some degrees from all others.
+/// List of candidate directions. Each direction differs from all others by at least some degrees.
 class Directions {
 public:
     void add(const Vec3& along) {
-        constexpr Real nearly_same = 0.995;  // cosine: 6 degrees make a way 0.5 % longer
+        constexpr Real nearly_same = 0.995;  // cosine of 6 degrees; such an angle makes a way out 0.5 % longer
         constexpr std::size_t most = 48;
         const Real length = along.norm();
         if (!(length > 0) || found_.size() == most) return;
@@ -131,7 +134,8 @@ void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Di
     }
 }
 
-/// Directions that may lead out: from middle to middle, and the normals of the faces that are met.
+/// Directions along which the first solid may leave the second: the line between their middles, and the normals of
+/// overlapping faces.
 Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -143,7 +147,7 @@ Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second
     return directions;
 }
 
-/// Extent of the meetings along a direction [m].
+/// Extent of the overlap positions along a direction [m].
 Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     Real lowest = infinite, highest = -infinite;
     for (const Meeting& m : meetings) {
@@ -153,13 +157,13 @@ Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     return highest - lowest;
 }
 
-/// The direction in which the shared region is thinnest. For solids that overlap slightly it is that of the shortest
-/// way out.
+/// The direction along which the overlap region is thinnest. For solids that overlap slightly, it is the direction of
+/// the shortest way out.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                     std::span<const Meeting> meetings) {
     const Directions directions = likely_directions(first, second, meetings);
     const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
-    constexpr Real shorter = 1 - 1e-6;  // by more than rounding; the first among equals
+    constexpr Real shorter = 1 - 1e-6;  // shorter by more than rounding, so that the first of equal ways is used
     Vec3 best = Vec3::UnitZ();
     Real least = infinite;
     for (std::size_t d = 0; d < way.size(); ++d)
@@ -170,7 +174,8 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     return best;
 }
 
-/// Distance the first has to move to come out of the simplices it meets, and again of those it meets there [m].
+/// Distance that the first solid has to move along `direction` until it overlaps no simplex of the second [m]. Each
+/// iteration leaves the simplices that are overlapped at the current position.
 Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int most_tries = 16;
     Real gone = 0;
@@ -183,7 +188,7 @@ Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tol
     return way_out_of_points(first, second, direction);
 }
 
-/// Way out of a solid that the first is in or around: past the end of that solid.
+/// Finds the way out of a solid that contains the first solid or is contained in it: past the end of the second solid.
 void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));

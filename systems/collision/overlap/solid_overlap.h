@@ -1,4 +1,4 @@
-// Overlap of two solids, and the way to take them apart (docs/methods/collision.md 9).
+// Overlap of two solids, and the direction and distance that separate them (docs/methods/collision.md 9).
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ namespace skerry {
 
 struct Overlap {
     OverlapKind kind;
-    Real depth;      // the first is apart from the second when moved this far along `direction` [m]
+    Real depth;      // distance along `direction` by which the first solid has to move to be apart [m]
     Vec3 direction;  // unit
-    Vec3 place;      // middle of the shared region [m]
+    Vec3 place;      // middle of the overlap region [m]
 };
 
-/// A solid, and how far it has been moved since it was made.
+/// A solid, and its translation since the solid was made.
 struct PlacedSolid {
     const Solid& solid;
     Vec3 shift;  // [m]
@@ -23,10 +23,10 @@ struct PlacedSolid {
     Aabb box() const { return {solid.box.lower + shift, solid.box.upper + shift}; }
 };
 
-/// Overlap of two solids, the first of which has volume. They overlap if a tetrahedron of the first and a simplex of
-/// the second overlap by more than `tolerance` [m], or if the first lies in the closed surface that is the second. For
-/// surfaces that go through each other, `direction` is about the one of the shortest way out. For solids inside each
-/// other, it is the best of a few, and `depth` takes the extent of the first past that of the second.
+/// Overlap of two solids, of which the first consists of tetrahedra. They overlap if a tetrahedron of the first and a
+/// simplex of the second overlap by more than `tolerance` [m], or if the first is inside a closed surface that is the
+/// second. If their surfaces cross, `direction` is close to the direction of the shortest way out. If one contains the
+/// other, it is the best of a few directions, and `depth` moves the first beyond the end of the second.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
 }  // namespace skerry

@@ -10,11 +10,11 @@ namespace skerry {
 
 struct ShapePoint {
     Real distance;  // [m]
-    Vec3 normal;    // unit, outward, world frame
+    Vec3 normal;    // unit outward normal in the world frame
 };
 
-/// First intersection of a ray with the surface of a plane, sphere, box, capsule, cylinder or bucket, from either side,
-/// at no more than `limit` [m]. A ray within a flat side does not meet that side.
+/// First intersection of a ray with the surface of a plane, sphere, box, capsule, cylinder or bucket, at a distance of
+/// at most `limit` [m]. The surface is hit from either side. A ray within a flat side does not hit this side.
 std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const RigidMotion& motion, const Ray& ray,
                                    Real limit);
 

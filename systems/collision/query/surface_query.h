@@ -1,4 +1,4 @@
-// Rays and nearest points on the present surface of one body or mesh (docs/methods/collision.md 10).
+// Ray casts and nearest points on the present surface of one body or mesh (docs/methods/collision.md 10).
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace skerry {
 
-/// The points origin + t direction with t >= 0.
+/// The points origin + t direction of a ray, with t >= 0.
 struct Ray {
     Vec3 origin;     // [m]
     Vec3 direction;  // unit
 };
 
-/// A surface and its tree, whose boxes are fitted around the present positions.
+/// A surface and its bounding volume hierarchy, whose boxes fit the present positions.
 struct SurfaceTree {
-    Range tree;  // rows of `node` and `box`
+    Range tree;  // rows of `node` and `box` of this surface
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const Aabb> box;                            // [m]
@@ -32,12 +32,13 @@ struct TrianglePoint {
     Real distance;  // [m]
 };
 
-/// The first triangle that the ray meets at no more than `limit` [m] (may be infinite), from either side. Among equally
-/// near ones it is the lowest row. The test is watertight: a ray that meets an edge or a corner of several triangles
-/// meets one of them (Woop, Benthin and Wald 2013).
+/// The first triangle that a ray hits from either side, at a distance of at most `limit` [m], which may be infinite.
+/// Among equally near triangles, it is the one with the lowest row. The test is watertight: a ray through an edge or
+/// corner of several triangles hits one of them (Woop, Benthin and Wald 2013).
 std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray, Real limit);
 
-/// The nearest point of the surface within `limit` [m]; among equally near ones that of the lowest row.
+/// The point of the surface nearest to `point` within a distance of `limit` [m]. Among equally near points, it is the
+/// one on the triangle with the lowest row.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
 
 }  // namespace skerry

@@ -17,7 +17,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_block = 16;
-// A block of any of these takes some microseconds.
+// A block of this many rows, groups or pairs takes some microseconds.
 constexpr std::size_t rows_per_block = 64, groups_per_block = 256, pairs_per_block = 256;
 
 bool is_movable(const BodyTable& body, Index b) {
@@ -40,7 +40,7 @@ Real mean_body_edge(const BodyTable& body) {
     return count > 0 ? sum / count : 0;
 }
 
-/// Computes the boxes of the bodies, and until when they are valid.
+/// Computes the boxes of the bodies, and the travel up to which these boxes are valid.
 void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
@@ -58,8 +58,8 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
     });
 }
 
-/// Distance of the furthest relevant point of a collider from its origin [m]: its own size; for a plane the furthest
-/// point of any body's box.
+/// Largest distance from the origin of a collider to a point of the collider that may touch a body [m]. For a plane, it
+/// is the distance to the furthest corner of any body's box.
 Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<const Aabb> body_box) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -72,7 +72,7 @@ Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<co
     return extent;
 }
 
-/// Computes the boxes of the colliders, stored after those of the bodies.
+/// Computes the boxes of the colliders. They are stored after the boxes of the bodies.
 void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_travel, SearchState& search) {
     const ColliderTable& collider = inputs.collider;
     const std::size_t body_count = inputs.body.slot.size();
@@ -80,7 +80,8 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // The difference of bound and travel is not used: a shape that turns may have travelled without bounds.
+        // The reach of the collider is computed again. It is not the difference of bound and travel, because the travel
+        // of a rotating shape grows without limit, so that this difference would be inexact.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);
@@ -88,14 +89,14 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     }
 }
 
-/// Least distance of a box to a plane; negative if the box reaches behind it [m].
+/// Least signed distance of a box to a plane; negative if the box reaches behind the plane [m].
 Real distance_to_plane(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
     return normal.dot(lowest - plane.position);
 }
 
-/// Search for pairs of boxes that overlap. The pairs go to memory.pairs, in key order.
+/// Search for pairs of overlapping boxes. The pairs are stored in memory.pairs, in key order.
 class BroadSearch {
 public:
     BroadSearch(Executor& executor, const CollisionInputs& inputs, SearchMemory& memory)
@@ -119,7 +120,8 @@ public:
 private:
     Index body_count() const { return static_cast<Index>(inputs_.body.slot.size()); }
 
-    /// Lists the boxes of finite size that can be part of a pair. A body with a position that is not finite has none.
+    /// Lists the boxes of finite size that can be part of a pair. A body with a position that is not finite has no such
+    /// box.
     void list_entries() {
         memory_.entry.clear();
         memory_.has_box.assign(memory_.box.size(), 0);
@@ -187,7 +189,8 @@ private:
                 collider, found);
     }
 
-    /// Adds a pair with a used up budget. It is searched at once: only a search tells how far apart the two really are.
+    /// Adds a pair with an expired candidate list, so that the pair is searched at once. Only a search shows how far
+    /// apart the two partners are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
@@ -197,7 +200,7 @@ private:
             {key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown, apart, 0});
     }
 
-    /// Groups the pairs by kind and first body, then sorts each group by itself.
+    /// Groups the pairs by kind and first body, then sorts each group.
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
@@ -239,7 +242,7 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// Copies the values of pairs that stay from their old rows. memory.old_row tells which pairs those are.
+/// Copies values of pairs that existed before from their old rows. It stores these old rows in memory.old_row.
 void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -257,7 +260,7 @@ void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pai
     });
 }
 
-/// Moves the lists of pairs that stay. New pairs reuse the memory of those that went.
+/// Moves the candidate lists of pairs that existed before. New pairs reuse the memory of removed pairs.
 void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     const std::size_t count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
@@ -320,7 +323,8 @@ void write_rows(Executor& executor, const SearchMemory& memory, PairTable& pairs
     });
 }
 
-/// Replaces the old rows by memory.pairs. Pairs that stay keep their lists, unless one of the two is forgotten.
+/// Replaces the rows of PairTable by memory.pairs. Pairs that existed before keep their candidate lists, unless one of
+/// the partners is forgotten.
 void replace_rows(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     recall_pairs(executor, memory, pairs);
     move_lists(executor, memory, pairs);
@@ -346,7 +350,7 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // Bodies and colliders moved by a script may travel as far as a mean body.
+    // Bodies and colliders moved by a script may travel as far as an average body before the next broad search.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

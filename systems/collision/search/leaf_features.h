@@ -1,4 +1,5 @@
-// The features of a leaf side by side, so that one feature is compared with eight of them at once.
+// Features of a leaf of a bounding volume hierarchy, stored side by side, so that one feature is compared with eight at
+// once.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 namespace skerry {
 
-/// Coordinates of eight points [m], by axis.
+/// Coordinates of eight points [m], in the order of the axes.
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
 inline LaneVec3<Real8> load(const PointLanes& points) {
@@ -28,7 +29,7 @@ inline LaneVec3<Real8> spread(const Vec3& point) {
     return a < b ? b : a;
 }
 
-/// Positions of eight nodes.
+/// Returns the positions of eight nodes.
 inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::array<Index, leaf_lanes>& node) {
     PointLanes lanes;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -40,7 +41,7 @@ inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::arr
     return lanes;
 }
 
-/// The corners of the triangles of a leaf. Lanes without a triangle repeat the first triangle.
+/// Corners of the triangles of a leaf. Lanes without a triangle repeat the first triangle.
 struct LeafCorners {
     Index leaf = no_index;  // row of BvhLeafTable
     std::array<PointLanes, 3> corner;
@@ -58,7 +59,7 @@ struct LeafCorners {
     }
 };
 
-/// Squared distances of eight points from a box; 0 within it [m^2].
+/// Squared distances of eight points from a box; 0 for points inside the box [m^2].
 inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
     const Real8 none{};
     Real8 sum{};
@@ -71,7 +72,7 @@ inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
     return sum;
 }
 
-/// Number of groups of eight features. The last group may be shorter.
+/// Number of groups of eight features. The last group may contain fewer features.
 inline std::size_t groups_of(Index count) {
     return (static_cast<std::size_t>(count) + leaf_lanes - 1) / leaf_lanes;
 }
@@ -80,11 +81,11 @@ inline unsigned used_lanes(Index count, std::size_t group) {
     return left < leaf_lanes ? (1U << left) - 1 : (1U << leaf_lanes) - 1;
 }
 
-/// The points that the triangles of a leaf own.
+/// The points that are owned by the triangles of a leaf.
 struct LeafPoints {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<PointLanes, 3> at;  // groups of eight; lanes after the last point repeat it
+    std::array<PointLanes, 3> at;  // groups of eight; lanes after the last point repeat the last point
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
@@ -101,11 +102,11 @@ struct LeafPoints {
     unsigned used(std::size_t group) const { return used_lanes(list->point_count, group); }
 };
 
-/// The edges that the triangles of a leaf own.
+/// The edges that are owned by the triangles of a leaf.
 struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<LeafBoxes, 3> box;  // groups of eight; lanes after the last edge repeat it
+    std::array<LeafBoxes, 3> box;  // groups of eight; lanes after the last edge repeat the last edge
     std::array<std::array<PointLanes, 2>, 3> end;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {

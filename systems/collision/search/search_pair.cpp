@@ -19,12 +19,12 @@ namespace skerry {
 
 namespace {
 
-// Number of leaves whose features are kept. Two bodies that lie on each other touch with some ten leaves.
+// Number of leaves whose data is cached. Two bodies that lie on each other touch with some ten leaves.
 constexpr std::size_t kept_leaves = 16;
 template <class Features>
 using KeptLeaves = std::array<Features, kept_leaves>;
 
-// Number of pairs of leaves that are collected before any is compared.
+// Number of pairs of leaves that are collected before they are compared.
 constexpr std::size_t most_near = 32;
 
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
@@ -67,10 +67,10 @@ private:
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
 
-    /// Prefetches the data of a leaf, which lie too far apart for caches. Leaves are prefetched when they are found,
-    /// and compared when several have been found.
+    /// Prefetches the data of a leaf, which is spread too widely in memory to be cached. Leaves are prefetched when
+    /// they are found, and compared when several pairs have been found.
     void prefetch_leaf(Index a) const {
-        constexpr std::size_t owned_edges = 12, owned_points = 4;  // average for eight triangles
+        constexpr std::size_t owned_edges = 12, owned_points = 4;  // average numbers for eight triangles
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
         const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
         ask_for_lines(features.edge.data(), owned_edges);
@@ -99,9 +99,9 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // The core of a sphere, or of the ball around a cylinder, is a point that is tested against faces and axes.
-        // That test also finds a node that is nearest, and a node within a flat face does not obstruct the sphere. For
-        // two spheres the first is tested against the second.
+        // The core of a sphere, or of the sphere around a cylinder, is a point that is tested against faces and axes.
+        // This test also finds the case that a node is nearest. A node within a flat surface then does not obstruct the
+        // sphere. For two spheres, the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
@@ -113,7 +113,7 @@ private:
                 [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
-    /// Compares a leaf with itself: points against all triangles, and every pair of edges once.
+    /// Compares the features of a leaf with each other: points against all triangles, and every pair of edges once.
     void compare_within(Index a) {
         compare_points(a, a, false);
         const LeafEdges& own = features_of(a, edges_[0]);
@@ -136,7 +136,7 @@ private:
         return features;
     }
 
-    /// Marks the edges that are near a box. Returns true if there are any.
+    /// Marks the edges that are near a box. Returns true if there is any.
     bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
@@ -145,7 +145,7 @@ private:
         return any != 0;
     }
 
-    /// Compares the points of one leaf with the triangles of another.
+    /// Compares the points of one leaf with the triangles of another leaf.
     void compare_points(Index owner, Index other, bool of_second) {
         const LeafPoints& points = features_of(owner, points_[of_second]);
         for (std::size_t group = 0; group < points.groups(); ++group)
@@ -179,7 +179,7 @@ private:
         });
     }
 
-    /// Compares edge i of one leaf with some edges of another.
+    /// Compares edge i of one leaf with the marked edges of another leaf.
     void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
         const LaneVec3<Real8> a0 = spread(position(a.node(i)[0])), a1 = spread(position(a.node(i)[1]));
@@ -217,7 +217,8 @@ private:
                                                      pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
-    /// Adds a candidate. It sleeps until it may have come within the zone in which it gets a close test.
+    /// Adds a candidate. It sleeps until the features may have come within `zone`, the distance at which they get a
+    /// closer test.
     void add(const Candidate& candidate, Real squared, Real zone) {
         found_.push_back({candidate, pair_.travel_base + std::sqrt(squared) - zone});
     }
@@ -229,10 +230,11 @@ private:
     Column<FoundCandidate>& found_;
     const Real radius_;
     const Real radius_squared_;
-    const Real edge_radius_squared_;  // edges are tested to a smaller depth
+    const Real edge_radius_squared_;  // edges are tested to a smaller depth than points
     const bool self_;
-    const bool first_is_point_, second_is_point_;  // true for a sphere or a cylinder
-    // Data of recent leaves of the first and of the second tree: each leaf is compared with several of the other tree.
+    const bool first_is_point_, second_is_point_;  // true for a sphere or a cylinder, whose core is a point here
+    // Cached data of recent leaves of the first and of the second tree, because each leaf is compared with several
+    // leaves of the other tree.
     std::array<KeptLeaves<LeafPoints>, 2> points_;
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
     std::array<KeptLeaves<LeafCorners>, 2> corners_;

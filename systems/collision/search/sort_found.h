@@ -1,4 +1,4 @@
-// Sorting of the features that a search has found.
+// Sorting of the candidates that a search has found.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,9 @@
 
 namespace skerry {
 
-/// Up to this many are sorted by counting for each the others of its kind that come before it. A pair of bodies has
-/// some hundreds: the branches that a sort mispredicts take longer than comparing all of them, eight at a time.
+/// Up to this number, candidates are sorted by their rank. The rank is the number of candidates of one kind that come
+/// before. A pair of bodies has some hundreds of candidates. To compare all of them, eight at a time, is faster than
+/// the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
@@ -21,7 +22,7 @@ inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
 
 namespace sort_found_detail {
 
-/// The kind is in the two highest bits. The bits below ascend as features of one kind do.
+/// The two highest bits of a feature key are the kind. The bits below are in the order of features of one kind.
 inline constexpr int kind_shift = 62;
 inline std::size_t kind_of(const FoundCandidate& found) {
     return static_cast<std::size_t>(found.candidate.feature >> kind_shift);
@@ -48,7 +49,7 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
                 i < count[kind] ? order_of(found[row[kind][i]]) : std::numeric_limits<std::int64_t>::max();
         for (std::size_t i = 0; i < count[kind]; ++i) {
             const LaneBits own = LaneBits{} + order[i / lanes][i % lanes];
-            LaneBits less{};  // -1 for each that comes before
+            LaneBits less{};  // -1 for each candidate that comes before
             for (std::size_t b = 0; b < blocks; ++b) less += order[b] < own;
             std::int64_t rank = 0;
             for (std::size_t l = 0; l < lanes; ++l) rank -= less[l];
@@ -61,7 +62,7 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
 
 }  // namespace sort_found_detail
 
-/// Sorts into feature order. No feature may occur twice.
+/// Sorts candidates into feature order. No feature may occur twice.
 inline void sort_by_feature(Column<FoundCandidate>& found) {
     if (found.size() <= counted_at_most)
         sort_found_detail::sort_by_counting(found);

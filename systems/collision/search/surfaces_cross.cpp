@@ -26,7 +26,7 @@ public:
 
 private:
     bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
-        // squared distances of overlapping boxes are below this; denormal numbers may count as 0
+        // The squared distance of overlapping boxes is below this limit. Denormal numbers may count as 0.
         constexpr Real overlap = std::numeric_limits<Real>::min();
         const LeafBoxes first = boxes_of(own), second = boxes_of(other);
         bool crossing = false;

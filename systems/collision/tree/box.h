@@ -1,5 +1,4 @@
-// Axis-aligned boxes that tolerate coordinates that are not numbers: they do not enter a box. An empty box is far from
-// everything.
+// Axis-aligned boxes. Coordinates that are not numbers do not extend a box. An empty box is far from everything.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +30,8 @@ inline void grow(Aabb& box, const Aabb& other) {
     }
 }
 
-/// Squared distance; 0 if the boxes overlap [m^2]. Half of a search is spent here, so it is written without a loop: -O2
-/// unrolls none.
+/// Squared distance of two boxes; 0 if they overlap [m^2]. Half of the time of a search is spent here. The function is
+/// written without a loop, because -O2 does not unroll loops.
 inline Real distance_squared(const Aabb& a, const Aabb& b) {
     const auto gap = [&](int i) {
         return std::max(Real(0), std::max(a.lower[i] - b.upper[i], b.lower[i] - a.upper[i]));
@@ -41,12 +40,12 @@ inline Real distance_squared(const Aabb& a, const Aabb& b) {
     return x * x + y * y + z * z;
 }
 
-/// Squared distance; 0 if the point is inside [m^2].
+/// Squared distance of a point from a box; 0 if the point is inside [m^2].
 inline Real distance_squared(const Aabb& box, const Vec3& point) {
     return distance_squared(box, Aabb{point, point});
 }
 
-/// Sphere around points, with its centre in the middle of their box. Points that are not numbers do not count.
+/// Sphere around points, centred in the middle of the box of these points. Points that are not numbers are ignored.
 template <class PointOf>
 BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& point_of) {
     const Vec3 centre = 0.5 * (box.lower + box.upper);
@@ -58,7 +57,7 @@ BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& 
     return {centre, std::sqrt(squared)};
 }
 
-/// Lower bound of the distance between the contents of two spheres; 0 if they overlap or are not finite [m].
+/// Lower bound of the distance between the contents of two spheres [m]; 0 if the spheres overlap or are not finite.
 inline Real gap_between(const BoundingSphere& a, const BoundingSphere& b) {
     const Real gap = (a.centre - b.centre).norm() - a.radius - b.radius;
     return gap > 0 && gap < std::numeric_limits<Real>::infinity() ? gap : 0;

@@ -1,4 +1,5 @@
-// A tree over boxes of any items, for sets that are searched once and not in every step (tree/bvh.h is for those).
+// Tree over the boxes of arbitrary items, for sets that are searched once. For sets that are searched in every step see
+// tree/bvh.h.
 #pragma once
 
 #include <span>
@@ -8,7 +9,8 @@
 
 namespace skerry {
 
-/// True if two boxes share more than a face. A box with a coordinate that is not a number shares nothing.
+/// True if two boxes share a volume, and not just a face. A box with a coordinate that is not a number overlaps
+/// nothing.
 inline bool boxes_overlap(const Aabb& a, const Aabb& b) {
     for (int i = 0; i < 3; ++i)
         if (!(a.lower[i] < b.upper[i] && b.lower[i] < a.upper[i])) return false;
@@ -20,8 +22,8 @@ public:
     BoxTree() = default;
     explicit BoxTree(std::span<const Aabb> boxes);
 
-    /// Calls visit(item) for every box for which touches(box) holds. If touches holds for a box, it must hold for any
-    /// box around it. The order depends on the boxes alone.
+    /// Calls visit(item) for every item whose box satisfies touches(box). If a box satisfies touches, every box around
+    /// it must do so, too. The order of the calls depends on the boxes alone.
     template <class Touches, class Visit>
     void for_each(Touches&& touches, Visit&& visit) const {
         for (std::size_t row = 0; row < nodes_.size();) {
@@ -34,18 +36,19 @@ public:
             ++row;
         }
     }
-    /// Calls visit(item) for every box that overlaps `box`.
+    /// Calls visit(item) for every item whose box overlaps `box`.
     template <class Visit>
     void for_each_overlap(const Aabb& box, Visit&& visit) const {
         for_each([&box](const Aabb& other) { return boxes_overlap(box, other); }, visit);
     }
 
 private:
-    /// Depth-first, as BvhNode: children follow their parent, `skip` is one past the last descendant.
+    /// Node of the tree. The nodes are stored depth-first, like BvhNode: children follow their parent, and `skip` is
+    /// one past the last descendant.
     struct Node {
         Aabb box;
         std::size_t skip;
-        Index item;  // no_index in an inner node
+        Index item;  // no_index for an inner node
     };
 
     void append(std::span<const Aabb> boxes, std::span<Index> items);

@@ -22,8 +22,8 @@ struct Build {
         return position[node[0]] + position[node[1]] + position[node[2]];
     }
 
-    /// Splits the triangles first .. end - 1 of `order` near the median of the longest axis, so that the left half has
-    /// full leaves. The depth is log2, whatever the shape.
+    /// Splits the triangles first .. end - 1 of `order` near the median along their longest axis. The left half gets
+    /// full leaves only. The depth of the tree is logarithmic for all shapes.
     void append(Index first, Index end) {
         const Index row = static_cast<Index>(bvh.node.size());
         bvh.node.push_back({row + 1, no_index, no_index, 0});
@@ -37,8 +37,8 @@ struct Build {
         const Vec3 size = box.upper - box.lower;
         const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
         const Index half = (end - first) / 2, middle = first + std::max(leaf_lanes, half - half % leaf_lanes);
-        // Ties are broken by row, so that the tree depends on the mesh alone. Positions are finite here: the scene
-        // builder has checked them.
+        // Equal coordinates are ordered by row, so that the tree depends on the mesh alone. All positions are finite
+        // here, because the scene builder has checked them.
         std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + end, [&](Index a, Index b) {
             const Real ca = centre(a)[axis], cb = centre(b)[axis];
             return ca != cb ? ca < cb : a < b;
@@ -141,7 +141,7 @@ BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std:
 
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box) {
-    // Children follow their parent, so that a loop backwards is bottom-up.
+    // Children follow their parent, so a backward loop visits them first.
     for (Index row = bvh_nodes.end - 1; row >= bvh_nodes.begin; --row) {
         const BvhNode& own = node[row];
         Aabb around = own.count > 0 ? empty_box() : box[row + 1];

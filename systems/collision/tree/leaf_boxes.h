@@ -1,4 +1,4 @@
-// Eight boxes compared with one at once. They tolerate coordinates that are not numbers, as in box.h.
+// Eight boxes that are compared with one box at once. Coordinates that are not numbers are ignored, as in box.h.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@ namespace skerry {
 
 static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
 
-/// Eight boxes side by side [m]: one is compared with all of them at once. Empty ones are far from everything.
+/// Eight boxes side by side, so that one box is compared with all of them at once [m]. Empty boxes are far from
+/// everything.
 struct LeafBoxes {
     std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
 };
@@ -35,7 +36,7 @@ inline LeafBoxes empty_leaf() {
     return boxes;
 }
 
-/// Boxes of the first `count` triangles of a leaf; the others are empty.
+/// Boxes of the first `count` triangles of a leaf. The remaining boxes are empty.
 inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::span<const Vec3> position) {
     LeafBoxes boxes = empty_leaf();
     for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
@@ -46,7 +47,7 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// Squared distances by lane; 0 where the boxes overlap [m^2].
+/// Squared distances of eight boxes from a box, by lane; 0 where the boxes overlap [m^2].
 inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     const Real8 none{};
     Real8 sum{};
@@ -59,7 +60,7 @@ inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     return sum;
 }
 
-/// Mask of the lanes whose value is below the limit.
+/// Bit mask of the lanes whose value is below the limit.
 inline unsigned lanes_below(const Real8& value, Real limit) {
     return bits_of(value < Real8{} + limit);
 }
