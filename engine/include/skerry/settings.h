@@ -163,8 +163,8 @@ struct Settings {
     Backend backend = Backend::automatic;
     // Number of threads; 0: those of the caller's task arena. Change it when other work shares the processor.
     int threads = 0;
-    // separate: contacts that do not influence each other are solved apart. Change it to global when you compare solvers
-    // on one large problem.
+    // separate: contacts that do not influence each other are solved apart. Change it to global when you compare
+    // solvers on one large problem.
     ContactRegions contact_regions = ContactRegions::separate;
     // Contact solver. Change it when you compare solvers, or when contacts stay unconverged (docs/solvers.md).
     SolverMethod method = SolverMethod::automatic;
