@@ -83,7 +83,7 @@ struct RegionMemory {
     Column<std::size_t> joint_base;
     std::size_t contact_rows = 0, rows = 0;  // number of contact rows; this number plus the rows of regions with joints
     Column<Vec4> free_velocity;              // by row of `velocity`; empty without rigid bodies [m/s]
-    // By row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
+    // For each row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
     // there.
     Column<Index> place;
     // by region
