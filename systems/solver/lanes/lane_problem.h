@@ -29,7 +29,7 @@ struct LaneProblem {
     LaneVec3<T> normal[K];         // unit vector; zero for unused contacts
     LaneVec3<T> free_velocity[K];  // q, velocity without impulses [m/s]
     LaneVec3<T> impulse[K];        // start value as input, then the solution [N s]
-    T diagonal[K];                 // D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
+    T diagonal[K];                 // mobility D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
     T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
     T scale;      // scale of e_nat [sqrt(J)]

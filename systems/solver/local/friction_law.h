@@ -95,8 +95,8 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
     const Real growth = normal.dot(residual);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
-    constexpr Real rounding =
-        1e-9;  // relative distance from the cone surface below which a projected impulse counts as on the surface
+    // Relative distance from the cone surface below which a projected impulse counts as on the surface.
+    constexpr Real rounding = 1e-9;
     const Real limit = mu.slide * along * (1 - rounding);
     if (friction != Friction::pyramid) {
         const V tangential = impulse - along * normal;

@@ -29,7 +29,7 @@ inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
 
 /// Three joint rows with their diagonal block of W, in the frame of the joint.
 struct JointLaw {
-    bool axis_free;  // true: the third row is a free axis; false: it is locked, too
+    bool axis_free;  // true: the third row is a free axis; false: the third row is locked
     AxisBounds axis{};
     Mat3 block;          // block of W
     Mat3 inverse;        // inverse of the locked part of the block

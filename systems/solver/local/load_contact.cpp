@@ -48,7 +48,7 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     // (docs/methods/contact.md 3.2). Weight alone gives a resting contact the speed g h. Elastic forces can push a node
     // down in every step, and rebounds would then keep the node bouncing forever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
-    constexpr Real clearly = 2;  // an impact is faster than this multiple of the velocity change
+    constexpr Real clearly = 2;  // factor: an impact is faster than this multiple of the velocity change
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;

@@ -20,9 +20,9 @@ struct LumpedContact {
     std::array<Real, 4> step;    // weight times inverse mass of each moving node [1/kg]
     std::array<Index, 4> node;   // rows of the moving nodes in the region's list
     Index node_count;            // number of moving nodes; 0 if the contact moves only rigid bodies or nothing
-    Real diagonal;               // D of docs/methods/contact.md 2.1 [1/kg]
+    Real diagonal;               // mobility D of docs/methods/contact.md 2.1 [1/kg]
     Real inverse_diagonal;       // 1/D; 0 if no impulse of this contact can move anything [kg]
-    Real bias;                   // b_n of docs/methods/contact.md 3.1, included in `offset` [m/s]
+    Real bias;                   // normal bias b_n of docs/methods/contact.md 3.1, included in `offset` [m/s]
     FrictionLimits friction;
 };
 
@@ -72,8 +72,8 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
         [](const LumpedContact& of, const Vec4& change, Vec4* moved) { apply_impulse(of, change, moved); });
 }
 
-/// F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the velocity u. Uses
-/// the De Saxce form for a cone with equal coefficients, otherwise the residual of the contact step.
+/// Natural map F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the
+/// velocity u. Uses the De Saxce form for a cone with equal coefficients, otherwise the residual of the contact step.
 inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
     const FrictionLimits mu = contact.friction;
     if (friction == Friction::cone && mu.stick == mu.slide) {

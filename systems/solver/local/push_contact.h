@@ -23,8 +23,8 @@ inline Real push_slop(Real gravity, Real h) {
 /// lifting the mass m by `depth`; this bound is at least a hundredth of recovery_speed (docs/methods/contact.md 3.4)
 /// [m/s]
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
-    constexpr Real of_fall = 0.03,
-                   of_limit = 0.01;  // the two bounds as fractions of sqrt(gravity depth) and of recovery_speed
+    // Bounds of the speed, as fractions of sqrt(gravity depth) and of recovery_speed.
+    constexpr Real of_fall = 0.03, of_limit = 0.01;
     const Real cheap = std::max(of_fall * std::sqrt(gravity * depth), of_limit * settings.recovery_speed);
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }

@@ -120,7 +120,7 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // For a rank-deficient block, rounding errors make this eigenvalue slightly positive or negative.
+    // If the block is rank-deficient, rounding errors make an eigenvalue of zero slightly positive or negative.
     constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);

@@ -110,7 +110,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;
-        if (looks_later && trial > 0) {  // the first sweeps are always fast, so only the later half counts
+        if (looks_later && trial > 0) {  // measure the rate in the later half: the first sweeps are always fast
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();

@@ -8,10 +8,8 @@
 
 namespace skerry {
 
-enum class ConjugateBeta {
-    fletcher_reeves,
-    polak_ribiere
-};  // formulas for the factor beta, (17) and (18) of the paper
+/// Formula of the factor beta: equation (17) or (18) of the paper.
+enum class ConjugateBeta { fletcher_reeves, polak_ribiere };
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
     Real sum = 0;

@@ -23,7 +23,8 @@ inline constexpr Real suspicious_start = 0.5;
 /// grown by an eighth. A measurement costs half a sweep. Convergence is detected late by at most an eighth of the
 /// iterations plus five.
 inline Index next_check(Index iteration) {
-    // The interval is half of the iterations so far, later an eighth of them plus an offset.
+    // The interval between measurements is half of the iterations so far, later an eighth of the iterations plus an
+    // offset.
     constexpr Index first = 2, later = 8, offset = 4;
     return iteration + 1 + std::min(iteration / first, offset + iteration / later);
 }

@@ -35,7 +35,7 @@ void start_conjugate_gradients(AnyOperator& op) {
 /// End criteria of the conjugate gradient phase, apart from the error.
 struct ConjugateLimits {
     Index iterations;  // upper limit
-    Real tolerance;    // of (20), (21): relative to the largest impulse and the first residual; 0: unused
+    Real tolerance;    // tolerance in (20), (21) of the paper; 0 switches both criteria off
 };
 
 /// Runs the conjugate gradient phase from the present impulse. The final impulse is the one that converged, otherwise

@@ -39,7 +39,7 @@ struct BlockMemory {
     using Columns = Columns3;
 
     std::vector<Contact> contact;
-    std::vector<Index> offset;    // first block of each row; contact count + 1 entries
+    std::vector<Index> offset;    // first off-diagonal block of each row; contact count + 1 entries
     std::vector<Index> neighbor;  // position of the other contact of each off-diagonal block
     std::vector<Columns> block;   // off-diagonal blocks W_ij
     std::vector<Vec4> impulse;    // [N s]

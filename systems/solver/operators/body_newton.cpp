@@ -153,14 +153,14 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
-    constexpr Index most_parts = 4000;  // limit, because all pairs of parts are stored
+    constexpr Index most_parts = 4000;  // limits memory: all pairs of parts are stored
     if (equations.factor().part_count() > most_parts) return equations;
     couple_parts(equations);
     if (!equations.factor().analyse()) return equations;
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // Cost of inverting the response matrix, divided among about ten steps.
+        // Inverting the response matrix costs this once; the cost is divided among about ten steps.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
     // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per

@@ -139,7 +139,8 @@ void BodyOperator::assemble(Eigen::MatrixXd& matrix) const {
 }
 
 Real BodyOperator::sweep_cost() const {
-    constexpr Real contact_cost = 100, node_cost = 3;  // measured on a 3 GHz core [ns]
+    // Costs per contact and per update of a node velocity, measured on a 3 GHz core [ns]
+    constexpr Real contact_cost = 100, node_cost = 3;
     Real cost = contact_cost * static_cast<Real>(size());
     if (!runs_) return cost;
     list_runs();

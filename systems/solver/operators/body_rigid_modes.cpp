@@ -70,11 +70,12 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    // Fraction of D. It exceeds the compliance of the bodies; otherwise rounds gain nothing.
+    // Compliance of the contacts as a fraction of D. It exceeds the compliance of the bodies; otherwise rounds gain
+    // nothing.
     constexpr Real softness = 0.3;
-    // A round ends when the square root of the merit falls below this fraction of the error at its start.
+    // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
     constexpr Real enough = 0.01;
-    constexpr Real gain = 0.5;  // another round follows if the error falls below this fraction of its last value
+    constexpr Real gain = 0.5;           // another round follows if a round reduces the error below this fraction
     constexpr Index most_in_round = 14;  // limit of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();

@@ -26,7 +26,7 @@ struct SolveResult {
 template <class T>
 struct SweepChangeOf {
     T size{};     // sum of change . W_ii change
-    T against{};  // -sum of change . W_ii (impulse - previous); positive if the sweep reverses the motion
+    T against{};  // minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the motion
 
     SweepChangeOf& operator+=(const SweepChangeOf& other) {
         size += other.size;

@@ -73,17 +73,19 @@ struct RegionMemory {
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
     // Data of regions that touch clusters of nodes or rigid bodies.
-    Ragged<Index> region_clusters, region_rigid;       // by region; empty if no region touches any
-    Column<std::size_t> node_base;                     // by region: index of its first node row
-    Column<Index> region_of_cluster, region_of_rigid;  // by cluster and by body: last region that touched it
-    Column<RigidPart> rigid_part;                      // by contact; empty without rigid bodies
-    Column<JointLaw> joint_law;                        // by joint row; index 0 is row contact_rows
+    Ragged<Index> region_clusters, region_rigid;  // by region: touched clusters, bodies; may be empty
+    Column<std::size_t> node_base;                // by region: index of its first node row
+    // by cluster, by body: last region that touched the cluster or body
+    Column<Index> region_of_cluster, region_of_rigid;
+    Column<RigidPart> rigid_part;  // by contact; empty without rigid bodies
+    Column<JointLaw> joint_law;    // by joint row; index 0 is row contact_rows
     // For regions with joints: index of the region's first row. Its contacts come first, then its joints.
     Column<std::size_t> joint_base;
     std::size_t contact_rows = 0, rows = 0;  // number of contact rows; this number plus the rows of regions with joints
     Column<Vec4> free_velocity;              // by row of `velocity`; empty without rigid bodies [m/s]
-    // by row of NodeTable
-    Column<Index> place;  // position in the node list of its region; invalid if that list holds another node there
+    // For each row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
+    // there.
+    Column<Index> place;
     // by region
     Column<Real> cost;           // predicted [microseconds]
     Column<Real> cost_parts;     // partial sums of `cost`
