@@ -11,7 +11,8 @@ constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_us
 constexpr Index tail_bin = colour_limit;  // bin of the tail; the bins of the hubs follow
 
 /// Number of blocks into which a colour with this many contacts is divided. A block has at most 64 contacts. The number
-/// is a power of two or a multiple of 16, so that 2, 4, 8 or 16 workers get equal shares. Solving a block takes a
+/// is a power of two or a multiple of 16, so that each of 2, 4, 8 or 16 workers, if not more than the blocks, gets an
+/// equal share. Solving a block takes a
 /// microsecond; claiming a block takes a twentieth of a microsecond.
 Index blocks_of_colour(Index contacts) {
     // `even`: largest number of workers that share a phase without remainder

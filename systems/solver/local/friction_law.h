@@ -47,8 +47,8 @@ inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     return pressed + (mu.slide * along / std::sqrt(length_squared)) * tangential;
 }
 
-/// Version of project_coulomb for the friction pyramid (eq. 6 of the paper). Each tangential component is clamped
-/// separately.
+/// Version of project_coulomb for the friction pyramid (eq. 6 of Lazarevych et al. (2010)). Each tangential component
+/// is clamped separately.
 template <class V>
 inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
@@ -85,9 +85,9 @@ inline V project_friction(const V& z, const V& normal, FrictionLimits mu, Fricti
     return friction == Friction::cone ? project_coulomb(z, normal, mu) : project_pyramid(z, normal, mu);
 }
 
-/// W(lambda) of equation (19) of the paper, interpreted as in docs/methods/contact.md 5.6. It is the part of the
-/// residual along which the impulse may move without violating its limits. A zero impulse can only grow. An impulse at
-/// the friction limit cannot move outwards.
+/// W(lambda) of equation (19) of Lazarevych et al. (2010), interpreted as in docs/methods/contact.md 5.6. It is the
+/// part of the residual along which the impulse may move without violating its limits. A zero impulse can only grow. An
+/// impulse at the friction limit cannot move outwards.
 template <class V>
 inline V feasible_direction(const V& residual, const V& impulse, const V& normal, FrictionLimits mu,
                             Friction friction) {

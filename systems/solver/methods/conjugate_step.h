@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Formula of the factor beta: equation (17) or (18) of the paper.
+/// Formula of the factor beta: equation (17) or (18) of Lazarevych et al. (2010).
 enum class ConjugateBeta { fletcher_reeves, polak_ribiere };
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
@@ -18,14 +18,14 @@ inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {
 }
 
 /// Largest absolute entries of the impulse change and of the residual in one iteration, for the end criteria (20) and
-/// (21) of the paper.
+/// (21) of Lazarevych et al. (2010).
 struct ConjugateChange {
     Real impulse = 0, residual = 0;
     bool used_up = false;  // true if no search direction is left
 };
 
 /// One iteration: the impulse moves along the search direction and is projected onto the friction law. The residual is
-/// updated by equation (19) of the paper.
+/// updated by equation (19) of Lazarevych et al. (2010).
 template <ContactOperator Op>
 ConjugateChange advance_conjugate_gradients(Op& op, ConjugateBeta formula) {
     const std::span<Vec4> impulse = op.impulse(), residual = op.workspace(1), direction = op.workspace(2),

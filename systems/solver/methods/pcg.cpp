@@ -8,8 +8,8 @@
 namespace skerry {
 namespace {
 
-/// Number of scalar rows (n in the paper), which limits the conjugate gradient iterations. A contact without friction
-/// has one row, other contacts have three.
+/// Number of scalar rows (n in Lazarevych et al. (2010)), which limits the conjugate gradient iterations. A contact
+/// without friction has one row, other contacts have three.
 Index row_count(const AnyOperator& op) {
     Index rows = 0;
     for (Index i = 0; i < op.size(); ++i) rows += op.limits(i).stick > 0 ? 3 : 1;
@@ -35,7 +35,7 @@ void start_conjugate_gradients(AnyOperator& op) {
 /// End criteria of the conjugate gradient phase, apart from the error.
 struct ConjugateLimits {
     Index iterations;  // upper limit
-    Real tolerance;    // tolerance in (20), (21) of the paper; 0 switches both criteria off
+    Real tolerance;    // tolerance in (20), (21) of Lazarevych et al. (2010); 0 switches both criteria off
 };
 
 /// Runs the conjugate gradient phase from the present impulse. The final impulse is the one that converged, otherwise

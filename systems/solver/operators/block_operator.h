@@ -52,7 +52,7 @@ struct BlockMemory {
 };
 
 /// Natural map F_i of a contact for rho = 1: residual of the impulse with respect to its velocity u, for the cone of
-/// FCLIB or the pyramid of the paper.
+/// FCLIB or the pyramid of Lazarevych et al. (2010).
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// Operator of one region: the contacts at positions [begin, end) of the memory. Blocks must not couple them to

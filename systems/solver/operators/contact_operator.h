@@ -62,11 +62,13 @@ concept ContactOperator = SweptOperator<Op> &&
     // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
     { op.sweep(number) } -> std::convertible_to<Real>;  // a sweep that returns only the size of its change
-    op.residual(out);                                   // writes -u of each contact; the paper calls it b - A lambda
-    op.multiply(in, out);                               // W d
-    { constant.project(i, vector) } -> std::convertible_to<Vec4>;   // projection of an impulse onto the friction law
-    { constant.feasible(i, vector) } -> std::convertible_to<Vec4>;  // W(lambda) in equation (19) of the paper
-    { constant.normal(i) } -> std::convertible_to<Vec4>;            // unit vector
+    op.residual(out);      // writes -u of each contact; Lazarevych et al. (2010) call it b - A lambda
+    op.multiply(in, out);  // W d
+    { constant.project(i, vector) } -> std::convertible_to<Vec4>;  // projection of an impulse onto the friction law
+    {
+        constant.feasible(i, vector)
+        } -> std::convertible_to<Vec4>;                   // W(lambda) in equation (19) of Lazarevych et al. (2010)
+    { constant.normal(i) } -> std::convertible_to<Vec4>;  // unit vector
     { constant.limits(i) } -> std::convertible_to<FrictionLimits>;
     // Scalar substitute for W_ii: a third of the trace of W_ii; 0 if the contact can move nothing [1/kg]
     { constant.mobility(i) } -> std::convertible_to<Real>;
