@@ -394,7 +394,7 @@ TEST_CASE("what an implicit body cannot have is refused by name", "[scene][impli
     CHECK_THROWS_WITH(
         scene.world.add_body(
             cube, {.material = scene.material, .self_contact = true, .dynamics = BodyDynamics::implicit_elastic}),
-        Catch::Contains("self_contact") && Catch::Contains("dynamics are implicit"));
+        Catch::Contains("self_contact") && Catch::Contains("the dynamics implicit"));
 }
 
 TEST_CASE("an implicit body comes to rest, sleeps, and wakes when it is hit", "[scene][implicit]") {

@@ -202,7 +202,7 @@ TEST_CASE("materials of tetrahedra that do not fit the mesh are refused", "[scen
     Mesh short_of_one = mesh;
     short_of_one.label.pop_back();
     CHECK_THAT(refusal(world, short_of_one, {.material = rubber}),
-               Contains("mesh: found 95 labels, expected 96, one for each tetrahedron, or none"));
+               Contains("mesh: found 95 labels, expected 96 labels, one for each tetrahedron, or none"));
     CHECK(world.state_hash() == before);
 }
 
