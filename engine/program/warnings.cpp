@@ -74,10 +74,11 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     for (const std::string& boundary : result.bad_boundaries)
         warnings.push_back(boundary +
                            "; contacts may fail there: repair the mesh (`skerry inspect MESH --repair NEW.msh`)");
-    const Real longest = std::min(r.stable_step, result.settings.step_size.value_or(r.stable_step));
-    const std::string shorter =
-        bad_start ? "first correct the start as described above"
-                  : "shorten the step (--step, or settings.step_size, below " + with_unit(longest, "s") + ")";
+    const auto steps = static_cast<Real>(std::max<std::uint64_t>(r.steps, 1));
+    const Real mean_step = result.seconds_simulated / steps;
+    const std::string shorter = bad_start ? "first correct the start as described above"
+                                          : "shorten the step (--step, or settings.step_size, below the mean step of " +
+                                                with_unit(mean_step, "s") + ")";
     if (r.unconverged > 0)
         warnings.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
                            " groups of contacts were solved with an error above the tolerance " +

@@ -91,7 +91,8 @@ void WorldState::settle() {
     }
     erase_gone_rows();
     model.extend_derived();
-    note_seams(model);
+    note_forces(model);
+    model.links_open = true;
     find_holders(model);
     cache.extend(model);
     query_trees.forget();

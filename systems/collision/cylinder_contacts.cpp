@@ -224,9 +224,9 @@ private:
         const RigidMotion place{cylinder_.local(motion.position),
                                 cylinder_.motion.rotation.transpose() * motion.rotation, Vec3::Zero(), Vec3::Zero()};
         touches_.clear();
-        if (is_far(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance)) return;
+        if (is_far(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_))) return;
         touch_shape(cylinder_.geometry, other, part, place, near_surface(), touches_);
-        note(c, shape_separation(cylinder_.geometry, other, part, place, touches_).distance);
+        note(c, shape_distance_bound(cylinder_.geometry, other, part, place, touches_));
     }
 
     Vec3 local(Index node) const { return cylinder_.local(inputs.position[node]); }

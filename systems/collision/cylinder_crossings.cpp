@@ -4,15 +4,14 @@
 #include <functional>
 #include <limits>
 
-#include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/cylinders/cylinder_touches.h"
 #include "systems/collision/cylinders/rigid_cylinder.h"
+#include "systems/collision/cylinders/shape_facets.h"
 #include "systems/collision/inputs/contact_key.h"
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/winding_number.h"
 #include "systems/collision/pair_crossings.h"
-#include "systems/geometry/conservative_advancement.h"
 #include "systems/geometry/rotation.h"
 
 namespace skerry {
@@ -24,7 +23,7 @@ namespace {
 // the step, and one for the first touch during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
                 crossing_on_the_way = touches_of_shape - 1;
-static_assert(crossing_of_triangle + 8 <= touches_of_triangle);
+static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::most <= touches_of_shape);
 
 // If the motion in the step is below this fraction of the smaller half thickness, no shape can pass through the other
 // between the start and the end of the step.
@@ -79,14 +78,10 @@ private:
                       Index of_shape = 0, Real radius = 0) {
         const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
         if (!may_meet(feature, nearest(feature).distance)) return false;
-        Real time = 0;
-        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
-        if (!touch || (touch->within && !is_outside(inputs, second, cylinder_.world(touch->point)))) return true;
-        const Vec3 normal = -(rotation_at(time) * touch->normal), arm = cylinder_.motion.rotation * touch->point;
-        Vec3 at_start = Vec3::Zero();  // touched point of the feature at the start of the step
-        for (std::size_t i = 0; i < feature.nodes(); ++i) at_start += touch->weight[i] * feature.position[i];
-        put(candidate, number, stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, touch->weight), arm,
-            normal, normal.dot(cylinder_.motion.position + arm - at_start) - feature.kept.distance, Vec3::Zero());
+        const std::optional<Hit> hit = first_hit(feature);
+        if (!hit || (hit->touch.within && !is_outside(inputs, second, cylinder_.world(hit->touch.point)))) return true;
+        add_hit(candidate, number, stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, hit->touch.weight),
+                feature, *hit, Vec3::Zero());
         return true;
     }
 
@@ -110,17 +105,17 @@ private:
     bool against_shape(const Candidate& candidate, const OtherShape& other) {
         if (!(inputs.inverse_mass[cylinder_.middle] > 0) && !other.stencil) return false;
         touches_.clear();
-        const Real bound = separation_at(0, other).distance;
+        const Real bound = distance_bound_at(0, other);
         if (other.geometry.shape == ColliderShape::plane) return against_plane(candidate, other.motion, bound);
         const Real furthest = motion.h * (other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
                                           other.motion.velocity.norm()) +
                               greatest_way_of_cylinder();
         if (!(furthest > slow_fraction * bound)) return false;
         find_touches(0, other, furthest + scale.shell);
-        if (!(furthest > slow_fraction * separation_at(0, other).distance)) return false;
+        if (!(furthest > slow_fraction * distance_bound_at(0, other))) return false;
         if (!any_overlap() && add_end(candidate, other)) return true;
         if (furthest > thin_fraction * std::min(thickness(cylinder_.geometry), thickness(other.geometry)))
-            add_on_the_way(candidate, other, furthest);
+            add_on_the_way(candidate, other);
         return true;
     }
 
@@ -135,38 +130,54 @@ private:
         return true;
     }
 
-    /// Adds the first touch during the step, found by conservative advancement. Each advance uses the distance of the
-    /// shapes or a plane that separates them.
-    void add_on_the_way(const Candidate& candidate, const OtherShape& other, Real furthest) {
-        Separation separation;
-        const auto gap_at = [&](Real time) {
-            find_touches(time, other, std::numeric_limits<Real>::infinity());
-            separation = separation_at(time, other);
-            // The hollow of a bucket is inside its convex hull. There the distance follows from the touching points.
-            if (!is_convex_part(other.geometry, other.part) && !(separation.distance > 0) && nearest_touch_found())
-                separation = {nearest_touch_found()->distance, Vec3::Zero()};
-            return separation.distance;
-        };
-        const Real start = gap_at(0);
-        if (!(start > 0)) return;
-        const std::optional<Real> time = advance_conservatively(
-            start, std::min(contact_slack * start, kept(0).near),
-            [&](Real gap, Real now) {
-                const Vec3 normal = rotation_at(now) * separation.normal;
-                const Real closing = separation.normal.isZero(0) ? furthest : closing_along(normal, other);
-                return gap / std::min(furthest, std::max(closing, Real(0)));
-            },
-            gap_at);
-        if (time && nearest_touch_found())
-            add_touch(candidate, crossing_on_the_way, other, *nearest_touch_found(), *time, 0);
+    /// Adds the first touch during the step of the cylinder and the facets of the other shape.
+    void add_on_the_way(const Candidate& candidate, const OtherShape& other) {
+        std::optional<Hit> first_found;
+        TouchingFeature of_first{};
+        const RigidMotion end = at(other.motion, 1);
+        ShapeFacets(other.geometry, other.part).for_each([&](const Facet& facet) {
+            TouchingFeature feature{.kind = facet.kind, .of_shape = 0, .position = {}, .kept = kept(facet.radius)};
+            for (std::size_t i = 0; i < feature.nodes(); ++i) {
+                feature.position[i] = to_world(other.motion, facet.at[i]);
+                feature.displacement[i] = to_world(end, facet.at[i]) - feature.position[i];
+            }
+            for (Index rim = 0; rim < (facet.kind == Kind::face ? 2 : 1); ++rim) {
+                feature.of_shape = point_of_rim(rim);
+                if (!may_meet(feature, nearest(feature).distance)) continue;
+                const std::optional<Hit> hit = first_hit(feature);
+                if (!hit || hit->touch.within || (first_found && first_found->time <= hit->time)) continue;
+                first_found = hit;
+                of_first = feature;
+            }
+        });
+        if (!first_found) return;
+        const Vec3 point = touched_point(of_first, *first_found);
+        add_hit(candidate, crossing_on_the_way, other.stencil.value_or(stencil_of_middle()), of_first, *first_found,
+                other.stencil ? Vec3(Vec3::Zero()) : velocity_at(other.motion, point));
     }
 
-    /// Upper bound of the decrease in distance between both shapes in the step along a fixed normal [m]. The normal
-    /// points to the cylinder.
-    Real closing_along(const Vec3& normal, const OtherShape& other) const {
-        return motion.h * (normal.dot(other.motion.velocity - cylinder_.motion.velocity) +
-                           other.motion.angular_velocity.norm() * collider_radius(other.geometry) +
-                           cylinder_.motion.angular_velocity.norm() * ball_radius());
+    struct Hit {
+        Touch touch;
+        Real time;  // fraction of the step
+    };
+    std::optional<Hit> first_hit(const TouchingFeature& feature) const {
+        Real time = 0;
+        const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
+        return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
+    }
+    /// Position of the touched point of the feature at the start of the step [m].
+    static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
+        return sum;
+    }
+    void add_hit(const Candidate& candidate, Index number, const Stencil& stencil, const TouchingFeature& feature,
+                 const Hit& hit, const Vec3& surface_velocity) {
+        const Vec3 normal = -(rotation_at(hit.time) * hit.touch.normal),
+                   arm = cylinder_.motion.rotation * hit.touch.point;
+        const Real along =
+            normal.dot(cylinder_.motion.position + arm - touched_point(feature, hit)) - feature.kept.distance;
+        put(candidate, number, stencil, arm, normal, along, surface_velocity);
     }
 
     void add_touch(const Candidate& candidate, Index number, const OtherShape& other, const CylinderTouch& touch,
@@ -184,8 +195,8 @@ private:
         touches_.clear();
         touch_shape(cylinder_.geometry, other.geometry, other.part, place_at(time, other), near, touches_);
     }
-    Separation separation_at(Real time, const OtherShape& other) const {
-        return shape_separation(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
+    Real distance_bound_at(Real time, const OtherShape& other) const {
+        return shape_distance_bound(cylinder_.geometry, other.geometry, other.part, place_at(time, other), touches_);
     }
     RigidMotion place_at(Real time, const OtherShape& other) const {
         const RigidMotion own = at(cylinder_.motion, time), there = at(other.motion, time);
@@ -194,13 +205,6 @@ private:
     }
     bool any_overlap() const {
         return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
-    }
-    /// Returns the touching point with the least distance, or null if there is none.
-    const CylinderTouch* nearest_touch_found() const {
-        const auto* const found_touch =
-            std::min_element(touches_.begin(), touches_.end(),
-                             [](const CylinderTouch& a, const CylinderTouch& b) { return a.distance < b.distance; });
-        return found_touch == touches_.end() ? nullptr : found_touch;
     }
 
     /// Tests the cylinder against a plane. Only the end of the step is tested, because no shape can get around a plane.

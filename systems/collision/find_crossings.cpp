@@ -166,8 +166,10 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
     return near.subspan(first, next - first);
 }
 
-std::uint64_t test_block(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs, std::size_t b,
-                         std::span<const ContactRow> known, Column<ContactRow>& found) {
+/// Tests a block of candidates. Without `use_budgets` all of them, not only those that find_contacts has tested.
+std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const StepMotion& motion,
+                         const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
+                         Column<ContactRow>& found) {
     const CandidatePlace begin = pairs.block[b], end = pairs.block[b + 1];
     std::uint64_t tested = 0;
     std::size_t next = 0;
@@ -186,7 +188,7 @@ std::uint64_t test_block(const CollisionInputs& inputs, const StepMotion& motion
             tested += find_cylinder_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, known, found);
         else if (pairs.kind[p] == PairKind::collider)
             tested += find_collider_crossings(inputs, motion, pairs, p, {from, to}, reach.travel_bound, found);
-        else if (in_front)
+        else if (in_front && use_budgets)
             tested += SurfaceCrossings({inputs, motion, pairs, p, found}, pairs.asleep_until[p].span())
                           .run(take_near(pairs.near[b].span(), p, next), reach.motion, reach.travel_bound);
         else
@@ -272,7 +274,7 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)
-            tested += test_block(inputs, motion, pairs, b, crossings.row, crossings.found[b]);
+            tested += test_block(inputs, settings.use_budgets, motion, pairs, b, crossings.row, crossings.found[b]);
     });
     crossings.tested += tested;
     std::size_t hits = 0;

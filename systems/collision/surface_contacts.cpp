@@ -7,6 +7,7 @@
 #include "systems/collision/narrow/point_triangle_contact.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/pair_contacts.h"
+#include "systems/collision/tree/box.h"
 #include "systems/geometry/passes_through.h"
 
 namespace skerry {
@@ -26,7 +27,7 @@ public:
     void test(Index c, const CandidateNodes& node, Real distance) {
         const FeaturePair features = features_of(candidates[c]);
         const Real speed = relative_speed(features, node);
-        if (held_apart && !within_reach(distance, speed)) return;
+        if (settings.use_budgets && held_apart && !within_reach(distance, speed)) return;
         if (features == FeaturePair::edge_edge)
             edge_against_edge(c, node, speed);
         else
@@ -179,7 +180,8 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
                                                 pair_scale(inputs_, pairs_.kind[p], pairs_.first[p], pairs_.second[p]));
     const Real travel_base = pair_travel_base(inputs_, pairs_, p), close_until = travel_base - scale.edge_depth,
                near = near_distance(scale, pairs_.closing[p]),
-               can_meet = (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction;
+               can_meet =
+                   settings_.use_budgets ? (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction : infinite;
     Real* const asleep_until = pairs_.asleep_until[p].data();
     ByPlace<std::uint16_t> close, meeting;
     std::size_t close_count = 0, meeting_count = 0;
@@ -188,7 +190,7 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
     for (std::size_t place = awake.begin; place < awake.end; ++place) {
         const Real zone = features_of(candidate_[place]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
         const Real distance = distance_[place], apart = distance - scale.radii;
-        const bool is_close = distance <= std::max(near, zone);
+        const bool is_close = distance <= std::max(near, zone) || !settings_.use_budgets;
         asleep_until[row_[place]] = distance + (is_close ? close_until : travel_base - zone);
         close[close_count] = meeting[meeting_count] = static_cast<std::uint16_t>(place);
         close_count += is_close;

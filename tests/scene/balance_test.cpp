@@ -110,6 +110,31 @@ TEST_CASE("motion that is small, but none of rounding, has the share of error th
     CHECK(shares[1] == Approx(shares[0]).epsilon(0.05));
 }
 
+TEST_CASE("a load that changes, or is taken away, on a moving body keeps the balance", "[scene]") {
+    const auto dynamics = GENERATE(BodyDynamics::explicit_elastic, BodyDynamics::rigid);
+    const auto integrator = GENERATE(Integrator::symplectic_euler, Integrator::leapfrog);
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    settings.step_size = 1e-4;  // divides the intervals below, so that all steps are equally long
+    settings.integrator = integrator;
+    World world(settings);
+    const Mesh cube = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    const auto rubber = world.add_material({});
+    const auto body = world.add_body(cube, {.material = rubber, .velocity = {3, 0, 0}, .dynamics = dynamics});
+    const std::vector<Real> mass = node_masses(world, body, cube, MaterialSettings{}.density);
+    for (const Real acceleration : {10.0, -20.0, 5.0, 0.0, 0.0, 10.0, 0.0}) {
+        std::vector<Vec3> load;
+        for (const Real m : mass) load.push_back({m * acceleration, 0, 0});
+        world.set_loads(body, load);
+        REQUIRE(world.advance(0.01).ok());
+        World copy = world.clone();
+        CHECK(copy.report().energy_error_share == world.report().energy_error_share);
+    }
+    // Leapfrog books the work of a constant load with an error of h F dv / 2.
+    CHECK(world.report().energy_error_share < (integrator == Integrator::leapfrog ? 5e-5 : 1e-10));
+    CHECK(world.report().momentum_error_share < 1e-12);
+}
+
 TEST_CASE("a report names the body and the element that turned inside out", "[scene]") {
     Settings settings;
     settings.gravity = Vec3::Zero();

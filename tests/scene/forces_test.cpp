@@ -6,6 +6,7 @@
 
 #include "engine/world/tuning.h"
 #include "tests/support/sliver_box.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::forces_test {
@@ -312,6 +313,27 @@ TEST_CASE("an attachment that turns a bar gives the force that keeps it on its c
         CHECK(by.moment().head<2>().norm() < 1e-2);
     }
     CHECK(worst < 0.03);
+}
+
+TEST_CASE("the reaction of a sleeping held body contains its loads, also in a world from a file", "[scene]") {
+    World world = tuned_world({}, {.sleep_speed = 1e-3});
+    const auto rubber = world.add_material({.young_modulus = 1e5, .damping = 20});
+    const Mesh block = mesh::box({0.2, 0.2, 0.1}, {3, 3, 2});
+    const auto body = world.add_body(block, {.material = rubber});
+    const auto hold = world.attach(body, nodes_where(world, body, [](const Vec3& x) { return x.z() < -0.049; }));
+    world.set_loads(body, std::vector<Vec3>(block.nodes.size(), Vec3(0.05, 0, 0)));
+    while (!world.asleep(body) && world.time() < 10) REQUIRE(world.advance(0.1).ok());
+    REQUIRE(world.asleep(body));
+    const TemporaryFolder folder("reaction");
+    world.save(folder.path() / "world");
+    World from_file = World::load(folder.path() / "world");
+    const Vec3 expected{-0.05 * static_cast<Real>(block.nodes.size()), 0, world.mass(body) * standard_gravity};
+    for (World* each : {&world, &from_file}) {
+        each->measure_forces(true);
+        REQUIRE(each->advance(0.1).ok());
+        CHECK((each->forces().by(hold).force() - expected).norm() < 1e-2 * expected.norm());
+    }
+    CHECK(world.forces().by(hold).impulse == from_file.forces().by(hold).impulse);
 }
 
 TEST_CASE("what holds a body at rest goes on as it was while it was still", "[scene]") {

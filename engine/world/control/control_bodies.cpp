@@ -191,7 +191,7 @@ void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
     const bool before = model.has_loads(row);
     std::ranges::copy(load, target.begin());
     model.note_loads(row, before);
-    note_seams(model);
+    note_forces(model);
     model.wake(row);
 }
 

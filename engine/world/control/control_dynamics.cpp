@@ -7,6 +7,7 @@
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
+#include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
@@ -27,7 +28,7 @@ namespace {
         .raise();
 }
 
-void require_changeable(const Model& model, std::size_t body, BodyDynamics next) {
+void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
     const auto row = static_cast<Index>(body);
     if (next == BodyDynamics::automatic)
         refuse(model, body, "dynamics", "automatic",
@@ -40,7 +41,7 @@ void require_changeable(const Model& model, std::size_t body, BodyDynamics next)
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
         refuse(model, body, "dynamics", "a change for an attached body", "a body without attachments");
-    if (std::ranges::any_of(model.joints.first, is_of_body) || std::ranges::any_of(model.joints.second, is_of_body))
+    if (has_rows_joining(body, model))
         refuse(model, body, "dynamics", "a change for a body with joints", "a body without joints");
 }
 
@@ -155,7 +156,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     copy_rows(model.nodes.load, from, to);
     copy_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);
-    note_seams(model);
+    note_forces(model);
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
         return;  // the undeformed shape may overlap other objects: checked as for a new body

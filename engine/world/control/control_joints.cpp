@@ -1,11 +1,11 @@
 // Adds, removes and drives joints between steps (docs/methods/joints.md).
 #include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "engine/world/control/control.h"
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
-#include "engine/world/step/step.h"
 #include "engine/world/validate.h"
 #include "skerry/joint.h"
 #include "systems/contact/tangent_frame.h"
@@ -155,7 +155,7 @@ JointHandle Joints::add(const JointSettings& joint) {
         world_->set_collision(joint.first, *joint.second, false);
     }
     wake_both(model, row);
-    note_seams(model);
+    model.links_open = true;
     return handle;
 }
 
@@ -167,8 +167,10 @@ void Joints::remove(JointHandle joint) {
     wake_both(model, row);
     if (model.joints.parts[row] != 0 && !parted_elsewhere(model.joints, row))
         world_->set_collision(first_of(model, row), *second_of(model, row), true);
-    erase_joining_row(row, model.joints, model.joint_map);
-    note_seams(model);
+    std::vector<bool> gone(model.joints.size(), false);
+    gone[row] = true;
+    erase_joining_rows(gone, model.joints, model.joint_map);
+    model.links_open = true;
 }
 
 bool Joints::alive(JointHandle joint) const {

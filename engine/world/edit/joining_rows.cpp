@@ -30,9 +30,16 @@ void erase_rows_joining(std::size_t body, Model& model) {
         for_each_joined_body(table, [&](std::size_t row, Index joined) {
             if (gone[row]) model.wake(static_cast<std::size_t>(joined));
         });
-        for (std::size_t row = gone.size(); row-- > 0;)
-            if (gone[row]) erase_joining_row(row, table, map);
+        erase_joining_rows(gone, table, map);
     });
+}
+
+bool has_rows_joining(std::size_t body, Model& model) {
+    bool found = false;
+    model.for_each_joining([&](const char*, auto& table, auto&) {
+        for_each_joined_body(table, [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
+    });
+    return found;
 }
 
 void renumber_joining_rows(std::span<const Index> body_now, Model& model) {

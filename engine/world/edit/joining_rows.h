@@ -3,26 +3,36 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "components/any_table.h"
 #include "engine/world/state/model.h"
 
 namespace skerry {
 
-/// Removes one row of a table and the handle of this row.
+/// Removes the marked rows of a table and their handles. `gone`: by row.
 template <class Table, class Handle>
-void erase_joining_row(std::size_t row, Table& table, HandleMap<Handle>& map) {
-    map.forget(map.handle_of_slot(table.slot[row]));
+void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<Handle>& map) {
     std::vector<Index> row_now;
-    for (std::size_t r = 0; r < table.slot.size(); ++r)
-        row_now.push_back(r == row ? no_index : static_cast<Index>(r < row ? r : r - 1));
-    const Range gone{static_cast<Index>(row), static_cast<Index>(row) + 1};
-    AnyTable(table).erase({&gone, 1});
+    std::vector<Range> ranges;
+    Index next = 0;
+    for (std::size_t row = 0; row < gone.size(); ++row) {
+        const auto index = static_cast<Index>(row);
+        row_now.push_back(gone[row] ? no_index : next++);
+        if (!gone[row]) continue;
+        append_gone(Range{index, index + 1}, ranges);
+        map.forget(map.handle_of_slot(table.slot[row]));
+    }
+    if (ranges.empty()) return;
+    AnyTable(table).erase(ranges);
     map.rows_moved(row_now);
 }
 
 /// Removes all rows that join a body, before this body is removed. Wakes all bodies of these rows.
 void erase_rows_joining(std::size_t body, Model& model);
+
+/// Whether a row joins a body to another one or to the world.
+bool has_rows_joining(std::size_t body, Model& model);
 
 /// Renumbers the joined bodies after other bodies were removed. `body_now`: new row for each old row of BodyTable.
 void renumber_joining_rows(std::span<const Index> body_now, Model& model);

@@ -131,8 +131,7 @@ void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> 
         AttachmentRow& row = attachments_[model.attachments.slot[a]];
         row.still_seconds = 1;
         for (const std::size_t n : held) {
-            const Vec3 applied = model.forced ? nodes.applied_force[n] : Vec3(Vec3::Zero());
-            const Vec3 others = nodes.mass[n] * model.settings.gravity + applied + contact_force[n];
+            const Vec3 others = nodes.mass[n] * model.settings.gravity + nodes.applied_before[n] + contact_force[n];
             row.still += {-others, (moment_point_ - nodes.position[n]).cross(others)};
         }
         if (model.is_held(static_cast<std::size_t>(body)) && !model.is_rigid(static_cast<std::size_t>(body))) {

@@ -165,7 +165,9 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
-    note_seams(model);
+    model.forced = true;  // a force may have been taken away just before
+    note_forces(model);
+    model.links_open = true;
     find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);

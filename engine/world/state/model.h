@@ -102,11 +102,12 @@ struct Model {
     bool clusters_open = true;
     bool settled = true;      // all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
-    bool forced = false;      // the world has some force element, loads included; derived: note_seams
+    bool forced = false;      // the world has some force element, loads included; derived: note_forces
     // Sum of the bounds of all force elements for each body (ForceElement::add_rate); empty: zero [1/s^2]. Derived:
-    // note_seams.
+    // note_forces.
     Column<Real> force_rate;
-    BodyLinks links;  // pairs of bodies joined by a row, such as a joint; derived: note_seams
+    BodyLinks links;          // pairs of bodies joined by a row, such as a joint; derived: note_changed_seams
+    bool links_open = false;  // rows that join bodies have changed since links were derived
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Derived: note_rest.
     bool any_asleep = false;
 

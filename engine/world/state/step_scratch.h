@@ -35,6 +35,7 @@ struct StepParameters {
     Real kick_over_last = 0;
     Real longest = 0;             // upper bound of the length of the next step, as far as known [s]
     Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
+    Real work_lag = 0;            // lag between the steps: equals lag, or 0 for leapfrog [s]
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;

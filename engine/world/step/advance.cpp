@@ -195,6 +195,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     SearchMemory& search = world.cache.search.memory;
     const bool leapfrog = model.settings.integrator == Integrator::leapfrog;
     world.settle();
+    note_changed_seams(model);
     settle_clusters(model, world.scratch.stiffness_sum);
     require_countable(model, dt);
     StepReport report;

@@ -170,7 +170,7 @@ void check_end(WorldState& w, TaskGraph& g) {
                                 value(m.forced), read(m.attachments.node));
     g.stage_with_result("dynamics/measure_work", found.external, measure_work,
                         inputs<WorkInputs>(n, m.attachments, b, m.rigid_bodies, m.forced, m.any_asleep, p.gravity),
-                        value(p.h), value(p.kick), value(p.lag), make(w.scratch.work_parts), if_any);
+                        value(p.h), value(p.kick), value(p.work_lag), make(w.scratch.work_parts), if_any);
 }
 
 auto if_sleepy(const WorldState& w) {

@@ -13,10 +13,12 @@ void build_step(WorldState& world);
 /// Adds a committed step to the counters of the run.
 void count_step(const StepScratch& scratch, RunCounters& counters);
 
-// note_seams.cpp
-/// Must be called after force elements, or rows that join bodies, were added, changed or removed. Computes whether the
-/// world has force elements, their contribution to stable steps, and which bodies are joined.
-void note_seams(Model& model);
+// note_forces.cpp
+/// After force elements, or bodies with any, were added, changed or removed: derives Model::forced and force_rate.
+void note_forces(Model& model);
+/// Before steps: derives Model::links if rows that join bodies have changed, and Model::forced if the last force
+/// element is gone.
+void note_changed_seams(Model& model);
 
 // stable_steps.cpp
 /// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of this body.

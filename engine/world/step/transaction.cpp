@@ -184,8 +184,7 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     Index body = fast ? tries.fastest : tries.body;
     if (!(tries.at_most() < plan.stable)) {
         const auto b = static_cast<std::size_t>(plan.stiffest);
-        const bool set =
-            plan.stiffest == no_index || plan.stable < model.bodies.stable_step[b] * model.tuning.step_safety;
+        const bool set = plan.stiffest == no_index || plan.stable < step_of_body(model, b) * model.tuning.step_safety;
         limit = set ? StepLimit::setting
                     : (model.bodies.stable_step[b] < as_at_rest * model.bodies.rest_step[b] ? StepLimit::strain
                                                                                             : StepLimit::rest);
@@ -292,6 +291,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
     scratch.parameters.kick_over_last = kick_over_last(scratch.parameters.kick, world.clock.kick_before);
     scratch.parameters.lag = scratch.parameters.kick - plan.h / 2;
+    const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
+    scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
     scratch.parameters.let_invert =
         tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);

@@ -74,18 +74,10 @@ void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other
 /// Lower bound of the distance between the cylinder and a triangle, which is given in the frame of the cylinder [m].
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// Two parallel planes at the given distance from each other separate the cylinder from another shape [m]. `normal`:
-/// unit normal of the planes towards the cylinder, in the frame of the cylinder. If the normal is zero, bounding
-/// spheres or capsules separate the shapes instead.
-struct Separation {
-    Real distance;
-    Vec3 normal;
-};
-
-/// Greatest separation found between the cylinder and a part of another shape: a lower bound of the distance to the
-/// convex hull of the part. It tests the axes of both shapes, the normals of `touches` and the bounding spheres.
-/// `place`: pose of the other shape in the frame of the cylinder.
-Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
-                            const RigidMotion& place, const CylinderTouches& touches);
+/// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]: the greatest
+/// distance of parallel planes that separate both, along the axes of both shapes and the normals of `touches`, or of
+/// bounding spheres. `place`: pose of the other shape in the frame of the cylinder.
+Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
+                          const RigidMotion& place, const CylinderTouches& touches);
 
 }  // namespace skerry

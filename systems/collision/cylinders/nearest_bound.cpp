@@ -25,23 +25,19 @@ Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face) {
     return std::max(least, std::sqrt(nearest.distance_squared) - ball_radius(cylinder));
 }
 
-Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
-                            const RigidMotion& place, const CylinderTouches& touches) {
+Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
+                          const RigidMotion& place, const CylinderTouches& touches) {
     const auto reach = [&](const Vec3& direction) { return extent_along(cylinder, 0, direction); };
     if (other.shape == ColliderShape::plane) {
         const Vec3 normal = place.rotation.col(2);
-        return {-normal.dot(place.position) - reach(normal), normal};
+        return -normal.dot(place.position) - reach(normal);
     }
     // Middle of the cylinder in the frame of the other shape.
     const Vec3 middle = -(place.rotation.transpose() * place.position);
-    Separation best{local_distance(other, middle, part).distance - ball_radius(cylinder), Vec3::Zero()};
-    const auto test = [&](Real distance, const Vec3& normal) {
-        if (best.distance < distance) best = {distance, normal};
-    };
+    Real bound = local_distance(other, middle, part).distance - ball_radius(cylinder);
     const auto test_along = [&](const Vec3& normal) {
-        test(-normal.dot(place.position) - reach(normal) -
-                 extent_along(other, part, place.rotation.transpose() * normal),
-             normal);
+        bound = std::max(bound, -normal.dot(place.position) - reach(normal) -
+                                    extent_along(other, part, place.rotation.transpose() * normal));
     };
     for (const Vec3& axis :
          {Vec3(Vec3::UnitZ()), Vec3(place.rotation.col(0)), Vec3(place.rotation.col(1)), Vec3(place.rotation.col(2))})
@@ -50,10 +46,10 @@ Separation shape_separation(const ColliderGeometry& cylinder, const ColliderGeom
         const Vec3 own = cylinder.size[1] * Vec3::UnitZ(), half = other.size[1] * place.rotation.col(2);
         const Real apart =
             closest_points_of_segments(-own, own, place.position - half, place.position + half).distance_squared;
-        test(std::sqrt(apart) - cylinder.size[0] - other.size[0], Vec3::Zero());
+        bound = std::max(bound, std::sqrt(apart) - cylinder.size[0] - other.size[0]);
     }
     for (const CylinderTouch& touch : touches) test_along(touch.normal);
-    return best;
+    return bound;
 }
 
 }  // namespace skerry

@@ -27,7 +27,7 @@ class ProgramRunTest(ProgramCase):
         trust = json.loads(self.run_with_stats(self.write("tumbling.json", tumbling)))["trust"]
         self.assertGreater(trust["energy"]["share"], 0.02)
         warning = next(warning for warning in trust["warnings"] if "energy balance has an error" in warning)
-        self.assertIn("settings.step_size, below 8.33 ms", warning)
+        self.assertIn("settings.step_size, below the mean step of 8.33 ms", warning)
         calm = json.loads(self.run_with_stats(self.scene))["trust"]
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["warnings"], [])

@@ -30,7 +30,8 @@ void add_links(AnyTable table, BodyLinks& links) {
 
 }  // namespace
 
-void note_seams(Model& model) {
+void note_forces(Model& model) {
+    const bool was_forced = model.forced;
     model.forced = false;
     model.force_rate.clear();
     for (const ForceElement* element : force_elements) {
@@ -40,8 +41,19 @@ void note_seams(Model& model) {
         model.force_rate.resize(model.bodies.slot.size());
         element->add_rate(model, model.force_rate);
     }
-    if (!model.forced) std::ranges::fill(model.nodes.applied_before, Vec3::Zero());
-    model.links = {};
+    // The next step accounts for the work of forces that are gone.
+    if (was_forced && !model.forced)
+        model.forced =
+            std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });
+}
+
+void note_changed_seams(Model& model) {
+    const auto has_one = [&](const ForceElement* element) { return element->any(model); };
+    if (model.forced && std::ranges::none_of(force_elements, has_one)) note_forces(model);
+    if (!model.links_open) return;
+    model.links_open = false;
+    model.links.first.clear();
+    model.links.second.clear();
     model.for_each_joining([&](const char*, auto& table, auto&) { add_links(table, model.links); });
 }
 
