@@ -19,8 +19,8 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// The elements of an implicit body, which no table stores, and its node positions in the mesh frame. Stress is
-/// computed in this frame and then rotated to world axes.
+/// The elements of an implicit body and the positions of its nodes in the mesh frame. No table stores such elements.
+/// Stress is computed in the mesh frame and then rotated to world axes.
 struct ImplicitElements {
     std::vector<Vec3> shape;
     ElementBlockTable table;
@@ -96,7 +96,7 @@ std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span
             for (const Index t : around.tetrahedron)
                 volume.push_back(volume_of(model, row, static_cast<std::size_t>(t)));
             std::vector<Mat3> mean = kernels().means_of_nodes(around.corners, volume, of_tetrahedra, nodes.size() + 1);
-            mean.pop_back();  // the last entry is the mean of all other nodes
+            mean.pop_back();  // removes the last value: the mean of all nodes that were not requested
             return mean;
         });
 }
@@ -152,8 +152,8 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
     kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // Steps from mass shares have the right ratios between elements but are too short. They are scaled to the
-        // stable step.
+        // The step computed for each element with mass shares is too short, but the ratios between elements are right.
+        // All these steps are multiplied by one factor, so that the shortest equals the stable step with mass forms.
         Real shortest = std::numeric_limits<Real>::infinity();
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

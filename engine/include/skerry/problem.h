@@ -26,7 +26,8 @@ struct ContactProblem {
     std::vector<Vec3> q;            // relative velocities without reactions [m/s]
     std::vector<Real> mu;           // coefficient of friction of each contact
     std::string description;        // description text of the file
-    // Degrees of freedom of the global problem from which this problem was condensed; 0 if it was local from the start.
+    // Number of degrees of freedom of the global problem from which this local problem was computed; 0 if the problem
+    // was local from the start.
     Index freedoms = 0;
 
     Index contacts() const { return static_cast<Index>(q.size()); }
@@ -85,7 +86,7 @@ ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettin
 /// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the energy gap of
 /// Coulomb's law.
 struct ProblemError {
-    Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
+    Real absolute, relative, over_q;  // the members error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
@@ -104,7 +105,7 @@ struct RigidPoints {
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
     // For a sphere or capsule: distance of the contact points from the centre or the axis, where the nodes lie [m].
     Real radius = 0;
-    // For a cylinder: position of each contact's point relative to the centre of mass [m].
+    // For a cylinder: position of the contact point of each contact relative to the centre of mass [m].
     std::vector<Vec3> touch{};
 };
 
@@ -123,14 +124,15 @@ struct LumpedContacts {
     std::vector<std::array<Index, 4>> node;
     std::vector<std::array<Real, 4>> weight;
     std::vector<Vec3> normal;  // unit normal of the contact
-    // Velocity offset: the contribution of the gap, of the collider's motion and of the angular velocity of round
-    // bodies, minus half of the change in sliding direction caused by the forces of the step [m/s].
+    // Velocity offset of the contact [m/s]. It is the sum of the contributions of the gap, of the collider's motion and
+    // of the angular velocity of round bodies. One part is subtracted: half of the change of the sliding velocity by
+    // the forces of the step, perpendicular to the sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
     // The next arrays have one entry per node.
     std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
     std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
-    // For nodes in the following lists inverse_mass must not be 0, but its value is not used.
+    // For nodes in the lists below, inverse_mass must not be 0. Its value is not used.
     std::vector<CoupledNodes> coupled{};
     std::vector<RigidPoints> rigid{};
     std::vector<StrainedPoints> strained{};

@@ -141,7 +141,7 @@ public:
     std::string body_name;  // name of `body`, if not ok
 };
 
-/// All steps since the world was made whose length was limited by one and the same cause.
+/// Statistics of all steps since the world was made whose length one particular cause has limited.
 struct StepLimitReport {
     StepLimit limit = StepLimit::rest;
     BodyHandle body{};      // a stale handle if the cause is not a body, for example a setting or a crossing
@@ -173,8 +173,8 @@ struct DynamicsEstimate {
     DynamicsReason reason = DynamicsReason::given;
     Real explicit_step = 0;  // step length of the world if the body is explicit [s]
     Real implicit_step = 0;  // step length of the world if the body is implicit [s]
-    // Step length for the deformation of the body if it is implicit: the larger of implicit_step above and
-    // Settings::implicit_step [s].
+    // Step length for the deformation of the body if it is implicit [s]: the larger of the member implicit_step and
+    // Settings::implicit_step.
     Real deforming_step = 0;
     // Computing time per simulated second on one core, for the elements of the world and the solves for this body [s].
     Real explicit_cost = 0, implicit_cost = 0;
@@ -279,8 +279,9 @@ struct WorldReport : RunCounters {
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;
     // `candidates`: number of pairs in all candidate lists now
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    // Number of fast features whose motion was tested for crossings, of crossings found in attempts that were then
-    // discarded, and of crossings that no attempt at a step could prevent.
+    // Sums over the run: tests of fast candidates (pairs of a node and a triangle, of two edges, or of a feature and a
+    // collider) for crossings; crossings found in discarded attempts; crossings that no attempt at a step could
+    // prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;
     Vec3 momentum = Vec3::Zero();          // [kg m/s]

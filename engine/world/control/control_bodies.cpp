@@ -88,11 +88,11 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
-    world.edits.places.add_body(model, body);  // old place: bodies there may lose their support
+    world.edits.places.add_body(model, body);  // bodies at the old position may lose their support
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        origin[n] += position[n] - target[n];  // keeps the displacement of the node from this origin
+        origin[n] += position[n] - target[n];  // the distance between node and displacement origin stays the same
         target[n] = position[n];
     }
     if (model.bodies.blocks[body].size() > 0)
@@ -104,7 +104,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     world.cache.forget_body(model, body);
     world.record.balance.close();
     model.wake(body);
-    world.edits.places.add_body(model, body);  // new place: the body may touch others there
+    world.edits.places.add_body(model, body);  // the body may touch other bodies at the new position
 }
 
 void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
@@ -149,7 +149,8 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     }
     if (!changed) return;
     if (model.has_frame(row)) follow_node_velocities(model, row);
-    state_->cache.forget_body(model, row);  // the contact search assumed the speeds of the last step
+    // pairs must be searched again, because the last contact search assumed the old speeds
+    state_->cache.forget_body(model, row);
     state_->record.balance.close();
     model.wake(row);
 }

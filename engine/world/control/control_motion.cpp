@@ -155,8 +155,8 @@ std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, cons
     return position;
 }
 
-// `object` is a function that returns the name of the object. It is called only if a value is refused, so that control
-// loops allocate no memory.
+// In the next functions `object` is a function that returns the name of the object for error messages. It is called
+// only if a value is refused, so that control loops allocate no memory.
 
 void require_velocities(auto&& object, const Vec3& velocity, const Vec3& angular_velocity) {
     if (velocity.allFinite() && angular_velocity.allFinite()) return;
@@ -222,7 +222,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
     if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
-    state_->edits.places.add_collider(model, c, time());  // old place: bodies there may lose their support
+    state_->edits.places.add_collider(model, c, time());  // bodies at the old position may lose their support
     const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {
         const auto of_mesh = static_cast<std::size_t>(a);
@@ -233,7 +233,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     model.colliders.motion[c] = {there.position, there.rotation, Vec3::Zero(), Vec3::Zero()};
     model.collider_records[c].settled = model.settled = false;
     state_->cache.forget_collider(model, c);
-    state_->edits.places.add_collider(model, c, time());  // new place: bodies there may be touched
+    state_->edits.places.add_collider(model, c, time());  // bodies at the new position may now be touched
 }
 
 void World::set_pose(AttachmentHandle attachment, const Pose& pose) {

@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Places are stored as boxes and planes. They do not follow the objects that are moved later.
+/// Places are stored as boxes and planes in world coordinates. If an object moves later, its place stays where it was.
 class ChangedPlaces {
 public:
     /// Adds the bounding box of a body, or of the body of a mesh collider.

@@ -14,16 +14,17 @@ namespace {
 // profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
-// Fraction of the cost of an implicit step that is due to contacts. Every short step needs this part too. For a cube on
-// a face it is half or more.
+// Fraction of the cost of an implicit step that is spent on contacts. If an implicit body takes long steps, this part
+// is still needed in every short step of the other bodies. For a cube on a face the fraction is a half or more.
 constexpr Real contact_share = 0.5;
-constexpr Real factor_time = 150e6, factor_power = 2.7;  // cost of a factorisation, with the columns for contacts [ns]
-// Factorisations per simulated second, after changes of the step length.
+// Cost of factorising the matrix of an implicit body and of computing its columns for contacts [ns].
+constexpr Real factor_time = 150e6, factor_power = 2.7;
+// Assumed number of factorisations in a simulated second. A change of the step length requires a new factorisation.
 constexpr Real factors_a_second = 1;
 /// Least ratio of explicit to implicit cost for which a body becomes implicit. It exceeds 1, since implicit steps damp
 /// vibrations and the estimates are rough.
 constexpr Real least_saving = 2;
-constexpr Real most_strain = 0.02;  // beyond this strain linear elasticity is invalid
+constexpr Real most_strain = 0.02;  // above this strain linear elasticity is not valid
 constexpr Real fall = 10;           // assumed height of a fall, in multiples of the size of the body
 
 /// Largest expected strain in the materials of a body: under its own weight, or in an impact. The impact strain is v/c,

@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-// Initial value of uninverted_until: find_inversions has checked nothing yet [m].
+// Initial value of uninverted_until [m]: tetrahedra that find_inversions has not checked yet.
 constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
 
 constexpr Real default_contact_distance = 0.02;  // fraction of the mean surface edge, small against the mesh resolution
@@ -52,8 +52,8 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// The element kind that all zones share. If `smoothed` was resolved to both of its kinds, the result is
-/// edge_node_smoothed. Without zones it is linear.
+/// The element kind that all material zones share; linear if there are no zones. If `smoothed` became edge_smoothed in
+/// some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
@@ -175,8 +175,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // Rigid and implicit bodies have tetrahedra, but no rows in the element tables.
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
-    // Elements are rotated last, after all data that do not depend on the rotation. Bodies with the same mesh share
-    // these data.
+    // Elements are first built without the rotation of the body, and rotated at the end. Bodies with the same mesh can
+    // therefore copy all data that are computed before the rotation.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
@@ -228,7 +228,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         remember_elements(model, row, body, std::move(rows.places));
     }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
-    // Evaluated last, so that later evaluations of the unmoved body give the same bits.
+    // The stable step is evaluated after the rotation. A later evaluation of the unmoved body then gives the same bits.
     bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;

@@ -19,12 +19,15 @@ struct NewBody {
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
     CollisionFilter filter = {};
     ElementKind element = ElementKind::linear;
-    Index material = no_index;                         // material of the surface and of tetrahedra without their own
-    std::span<const Index> tetrahedron_material = {};  // material row of each tetrahedron; empty: `material`
+    Index material = no_index;  // material of the surface and of tetrahedra that have no other material
+    // row of MaterialTable for each tetrahedron; empty: `material` for all
+    std::span<const Index> tetrahedron_material = {};
     Index collider = no_index;
-    Real contact_distance = -1;  // < 0: 2 % of the mean surface edge [m]
-    Index core_nodes = 0;        // > 0: round body defined by its first nodes (see BodyTable); its mesh only draws it
-    Real round_radius = 0;       // [m]
+    Real contact_distance = -1;  // contact distance [m]; negative: 2 % of the mean surface edge
+    // Number of nodes that define a round body (see BodyTable); 0: not a round body. All other nodes of a round body
+    // only draw it.
+    Index core_nodes = 0;
+    Real round_radius = 0;  // [m]
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const std::array<Index, 3>> triangles;  // surface of a body without tetrahedra
@@ -49,8 +52,8 @@ struct NewBody {
 /// Density of each tetrahedron [kg/m^3].
 std::vector<Real> densities(const Model& model, const NewBody& body);
 
-/// Lists the tetrahedra covered by the element at each place of the element blocks of a body. `element_at`: number of
-/// the element at each place; no_index in an unused lane.
+/// Lists the tetrahedra that each element of a body covers. The order is that of the lanes in the element blocks of the
+/// body. `element_at`: number of the element in each lane; no_index in an unused lane.
 Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at);
 
 /// Appends a surface, with or without tetrahedra, as a body. Returns its row. `stiffness_sum`: working memory with one

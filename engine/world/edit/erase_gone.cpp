@@ -128,8 +128,8 @@ void erase_records(std::span<const Index> row_now, std::vector<Record>& records)
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Removes rows together with the keyframes of their scripts. Other scripts may have empty keyframe ranges at any
-/// position.
+/// Removes scripts together with their keyframes. Remaining scripts without keyframes may have an empty range that
+/// starts at any index.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)

@@ -419,7 +419,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        set_motion(table, r, velocity, turn);  // set again, with the inertia of the undeformed body
+        // The spin is converted to angular momentum again, now with the inertia of the undeformed body.
+        set_motion(table, r, velocity, turn);
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
         const auto first = static_cast<std::size_t>(model.bodies.nodes[body].begin);
@@ -433,8 +434,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// Energies and momenta, summed over the nodes with counts(n). A held body needs such sums, since its momenta are in
-/// its nodes and not in its frame. The elastic energy is always that of the whole body.
+/// Energies and momenta, summed over the nodes n with counts(n). They are computed from nodes for a held body, because
+/// the motion of its frame is prescribed. The elastic energy is always that of the whole body.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

@@ -30,13 +30,14 @@ struct OfBodyTables {
 OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 
 struct RowMoves {
-    OfBodyTables<std::vector<Range>> gone;  // ascending
-    std::vector<OfBodyTables<Index>> down;  // for each old body row: how far the rows of this body move down
-    std::vector<Index> body_now;            // new body row for each old row; no_index: removed
-    std::vector<Range> colliders_gone;      // ascending
-    std::vector<Index> collider_now;        // new collider row for each old row; no_index: removed
-    std::vector<Range> attachments_gone;    // attachments of removed bodies
-    std::vector<Index> attachment_now;      // new attachment row for each old row; no_index: removed
+    OfBodyTables<std::vector<Range>> gone;  // removed rows of each table, ascending
+    // for each old body row: how far its rows in each table move towards the start
+    std::vector<OfBodyTables<Index>> down;
+    std::vector<Index> body_now;          // new body row for each old row; no_index: removed
+    std::vector<Range> colliders_gone;    // ascending
+    std::vector<Index> collider_now;      // new collider row for each old row; no_index: removed
+    std::vector<Range> attachments_gone;  // attachments of removed bodies
+    std::vector<Index> attachment_now;    // new attachment row for each old row; no_index: removed
 
     bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
 };

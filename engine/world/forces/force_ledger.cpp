@@ -90,8 +90,8 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// Starts the sums of sleeping bodies with the forces of the last step before they fell asleep, as impulses over one
-/// second.
+/// Initialises the sums of pairs and attachments of sleeping bodies. The sums are the forces of the last step before
+/// the bodies fell asleep, multiplied by one second.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -110,8 +110,9 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Computes the forces of attachments on sleeping bodies. The elastic forces and moments on held nodes follow from
-/// virtual work: the change of elastic energy when only these nodes move. `contact_force`: by node [N].
+/// Computes the forces of attachments on sleeping bodies, and initialises their sums with these forces times one
+/// second. The elastic forces and moments on held nodes follow from virtual work: the change of elastic energy when
+/// only these nodes move. `contact_force`: by node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
@@ -202,9 +203,9 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// Ends the step of a pair. If both bodies were asleep and had no contact in this step, their mean forces since they
-/// became still are added to the call. If one was awake, the time since both became still is updated; the sums restart
-/// when one of them moves.
+/// Completes the sums of a pair at the end of a step. If both bodies slept and had no contact in this step, adds their
+/// mean forces over the time in which both were still. If one body was awake, updates this time, and clears the sums
+/// over this time when one of the bodies moves.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;

@@ -48,9 +48,9 @@ public:
     struct PairRow {
         PairKey key{};
         ContactSums sums{};   // sums over the call
-        ContactSums still{};  // sums since one of the two objects last moved
+        ContactSums still{};  // sums over the time in which both objects were still
         Real still_seconds = 0;
-        Index still_contacts = 0;  // contacts in the last step in which one of the two objects was awake
+        Index still_contacts = 0;  // number of contacts in the last step in which one of the objects was awake
         Peak peak{};
         bool touched = false;  // the pair had contacts in the present step
     };
@@ -62,11 +62,11 @@ public:
 
     bool on() const { return on_; }
     const Vec3& moment_point() const { return moment_point_; }
-    /// Time for which forces have acted on a body in this call [s]. `row`: row of BodyTable; no_index for anything that
-    /// is not an implicit body.
+    /// Time for which forces have acted on an object in this call [s]. `row`: row of BodyTable for a body; no_index for
+    /// a collider.
     Real seconds_on(const Model& model, Index row) const;
-    /// Time for which forces have acted between the objects of a pair in this call [s]. It is the time for implicit
-    /// bodies only if all bodies of the pair are implicit.
+    /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
+    /// implicit, this is the sum of the step lengths. Otherwise it is the sum of the kicks.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
     /// Starts measuring. Sleeping bodies get the contact and attachment forces of the last step before they fell
@@ -78,7 +78,8 @@ public:
     void begin_call(const Model& model, StepScratch& scratch);
     /// Must be called after a committed step. `rested`: by body, nonzero if it was asleep when the step began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// Must be called after leapfrog has drifted positions by `seconds`, when held nodes have their new velocities.
+    /// Must be called after leapfrog has moved positions ahead by `seconds`. Held nodes must already have their new
+    /// velocities.
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);
@@ -101,7 +102,7 @@ private:
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]
-    // Time for which forces acted on implicit bodies (`whole`) and on all other objects (`kick`) [s].
+    // Durations of forces [s]. On implicit bodies forces act for the whole step, on all other objects for the kick.
     struct Seconds {
         Real whole = 0, kick = 0;
     };

@@ -60,7 +60,8 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
             file.complain("/pairs/second", at_row(second, p), "the same body as /pairs/first");
     }
 
-    // A search column may be empty, which starts a new search. Otherwise it must have one row per object.
+    // A column of the contact search has one row per object, or no row at all. Without rows the next step searches all
+    // pairs.
     const SearchState& search = cache.search;
     const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
         if (found != 0) expect_size(file, path, found, expected);

@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinite numbers, in bounds without a value or in unused lanes.
+/// True for columns that may contain infinity: as a bound that does not exist, or in an unused lane.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 18> paths{"/watch/step",
                                                      "/watch/look/in_frame",
@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    using Place = FunctionRef<std::byte*(std::size_t)>;  // returns memory for a number of rows
+    using Place = FunctionRef<std::byte*(std::size_t)>;  // function that allocates memory for a number of rows
 
     void put_value(const std::string& path, void* value, const RowType& type) override {
         read(path, type, [&](std::size_t count) {
@@ -81,7 +81,8 @@ private:
         });
         check(path, type, rows, count);
     }
-    /// Reads the members of rows one by one. The first member allocates all rows.
+    /// Reads a column of structs, one data set for each member. The size of the first data set determines the number of
+    /// rows.
     void read_members(const std::string& path, const RowType& type, Place place) const {
         std::byte* rows = nullptr;
         std::size_t count = 0;
@@ -172,7 +173,8 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);
-    world.cache.search.memory.sphere.resize(model.bodies.slot.size());  // otherwise allocated only by a broad search
+    // this column is not saved, and only a search of all pairs would resize it
+    world.cache.search.memory.sphere.resize(model.bodies.slot.size());
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);
     world.scratch.contacts = saved.contacts;

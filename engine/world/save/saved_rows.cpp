@@ -28,7 +28,7 @@ std::string text_of(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 
-/// All data of a mesh. Two meshes are stored as one only if all these data are equal.
+/// All data that distinguish two meshes. Meshes are stored once if all these data are equal.
 struct MeshParts {
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;

@@ -36,9 +36,9 @@ struct SavedRows {
     std::uint32_t world = 0;  // world number in the handles of this world
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
-    Column<DynamicsReason> choice_reason;           // reason of BodyRecord::choice
-    Column<std::array<Real, 7>> choice_estimate;    // other members of BodyRecord::choice, in their order
-    Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
+    Column<DynamicsReason> choice_reason;         // reason of BodyRecord::choice
+    Column<std::array<Real, 7>> choice_estimate;  // all members of BodyRecord::choice except the reason, in their order
+    Ragged<Index> tetrahedron_material;           // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // alternative of Shape
     Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros

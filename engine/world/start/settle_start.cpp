@@ -34,8 +34,8 @@ StartOverlap report_of(const Model& model, const PairOverlap& found) {
     return report;
 }
 
-/// Moves overlapping bodies apart in rounds. Each round moves bodies until all gaps required so far are open, and then
-/// searches for overlaps again.
+/// Moves overlapping bodies apart. Each round moves bodies until all gaps found so far are open, and then searches for
+/// new overlaps.
 class MoveApart {
 public:
     MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
@@ -63,8 +63,8 @@ public:
     }
 
 private:
-    /// A gap required between the bodies of a pair. `least`: least shift of the first body relative to the second,
-    /// along `direction`.
+    /// A separation that a pair needs. The first body must be shifted by at least `least` along `direction`, relative
+    /// to the second body.
     struct Gap {
         Vec3 direction;  // unit vector
         Real least;      // [m]
@@ -84,8 +84,8 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Greatest depth of an overlap for which the way out is certain [m]. If one body is half through the other, the
-    /// shorter way out depends on chance.
+    /// Greatest depth of an overlap that can be resolved: half the thickness of the thinner object [m]. If an object is
+    /// deeper than this, the shorter way out may lead to the wrong side.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
         if (!pair.is_analytic && search_.has_inside(pair.second))
@@ -122,8 +122,8 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// Adds a required gap to a pair. A pair in a corner has several gaps; a new gap replaces gaps of nearly the same
-    /// direction.
+    /// Adds the separation that an overlap requires to its pair. Replaces earlier separations of the pair in nearly the
+    /// same direction. A body in a corner needs separations in several directions.
     void ask_for(const PairOverlap& found) {
         constexpr Real about_the_same = 0.9;  // cosine
         const Vec3& direction = found.overlap.direction;
@@ -133,11 +133,11 @@ private:
         gaps.push_back(gap);
     }
 
-    /// Moves pairs of bodies in sweeps, until no gap is short by more than a fraction of its margin. The common centre
-    /// of mass of a moved pair stays in place.
+    /// Shifts one pair after the other, in repeated sweeps, until all required gaps are open up to a tolerance. The
+    /// common centre of mass of a shifted pair stays in place.
     void satisfy() {
         constexpr int most_sweeps = 1000;
-        constexpr Real slack = 0.1;  // allowed shortfall of a gap, as a fraction of the margin
+        constexpr Real slack = 0.1;  // tolerance of a gap, as a fraction of the margin
         bool moving = true;
         for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
             moving = false;

@@ -14,8 +14,8 @@ namespace skerry {
 
 namespace {
 
-// Largest margin between bodies, as a fraction of the mean edge length. A larger contact distance is no measure of
-// touch, nor of the distance to move bodies apart.
+// Largest gap to leave between separated bodies, as a fraction of the mean edge length. It limits the gap if the user
+// has set a very large contact distance.
 constexpr Real largest_margin = 0.02;
 
 /// True if a part of the box lies behind the plane.
@@ -93,7 +93,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
-    // A step also treats an overlap of so small a depth as touch.
+    // A step treats such a small overlap as touching, too.
     if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
     return overlap;
 }
@@ -112,8 +112,8 @@ std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
         second->motion.position += shift(pair.second);
         return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // A round body and a body with faces: the search uses the triangles that draw the round body. Smaller overlaps are
-    // left to the steps.
+    // Between a round body and a body with faces, the search uses the triangles that draw the round body. An overlap of
+    // the exact shapes may be missed if it is small; the contacts of the steps resolve it.
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }

@@ -31,11 +31,11 @@ public:
     /// `now`: present time, for which scripts give the poses of colliders [s].
     StartSearch(const Model& model, Real now);
 
-    /// Finds all overlapping pairs, sorted by their rows. Pairs of two settled objects, which were checked before, are
-    /// left out.
+    /// Finds all overlapping pairs, sorted by their rows. Pairs of two objects that an earlier search has checked are
+    /// skipped.
     std::vector<PairOverlap> find_all();
-    /// Finds pairs whose bounding boxes overlap. At least one object of a pair is marked, and at least one is not
-    /// settled (was not checked before). `marked`: by row of BodyTable.
+    /// Finds pairs whose bounding boxes overlap. At least one object of a pair must be marked, and at least one must
+    /// not have been checked by an earlier search. `marked`: by row of BodyTable.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> look_at(const StartPair& pair);
 

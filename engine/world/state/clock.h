@@ -18,8 +18,9 @@ struct Clock {
     Real offset = 0;  // lead of positions over velocities; nonzero only with leapfrog, within advance() [s]
     // Length of the last step; 0: no step yet [s]. With symplectic Euler, velocities are half a step behind positions.
     Real step_before = 0;
-    // Time for which forces acted in the last step [s]. It is 0 if the elements no longer store the relaxed strain of
-    // that step. Only the measured dissipation depends on it.
+    // Duration of the forces in the last step [s]. It is 0 before the first step, and after an abandoned attempt, which
+    // overwrites the relaxed strain of the last step in the elements. Only the measured dissipation depends on this
+    // value.
     Real kick_before = 0;
     LongStepClock long_step;
 };

@@ -16,8 +16,8 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Deletes the known distances of a body that was moved between steps, or of a collider. The distances within the
-    /// body are deleted too. The next step searches all pairs of this object again, and no other pairs.
+    /// Deletes the stored distances of all pairs of an object that was moved between steps, including the distances
+    /// within a body. The next step searches these pairs again, and no other pairs.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
     /// Adds rows for new bodies and colliders. Their distances are unknown.

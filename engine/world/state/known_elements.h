@@ -11,8 +11,7 @@
 namespace skerry {
 
 /// Order, mass shares and relaxation of the elements of a body, and the stable step of its mesh. These data depend only
-/// on mesh, materials and element kind. They are stored from the time the body is added until the world is settled or
-/// body rows move.
+/// on mesh, materials and element kind. The entry is deleted when the world is settled or rows of bodies move.
 struct KnownElements {
     Index body;           // row of the body with this mesh and these materials
     ElementKind element;  // the kind requested by the user

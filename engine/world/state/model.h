@@ -50,7 +50,7 @@ struct BodyRecord {
     std::vector<std::array<Index, 3>> surface;     // local nodes
     // Row of MaterialTable by tetrahedron; empty: the material of the body.
     std::vector<Index> tetrahedron_material;
-    // Tetrahedra covered by the element at each place of the element blocks of the body; none in an unused lane.
+    // Tetrahedra that the element in each lane of the element blocks of the body covers; none in an unused lane.
     Ragged<Index> element_tetrahedra;
     bool settled = false;       // the body was checked for overlaps
     DynamicsEstimate choice{};  // estimate made for BodyDynamics::automatic
@@ -95,19 +95,19 @@ struct Model {
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // by row
     std::vector<ColliderRecord> collider_records;  // by row
-    std::vector<KnownElements> known_elements;     // one for each different mesh added since the world was settled
+    std::vector<KnownElements> known_elements;     // one entry for each mesh added since the last settle()
 
     Column<Real> body_mass;  // by body: mass of all nodes, including held ones [kg]; derived: extend_derived
-    // Bodies, colliders or settings have changed since the implicit elements were last chosen.
+    // True if the implicit elements must be chosen again, because bodies, colliders or settings have changed.
     bool clusters_open = true;
     bool settled = true;      // all bodies and colliders were checked for overlaps
     Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
-    bool forced = false;      // the world has some force element, loads included; derived: note_forces
-    // Sum of the bounds of all force elements for each body (ForceElement::add_rate); empty: zero [1/s^2]. Derived:
+    bool forced = false;      // true if any force element acts, loads included; derived: note_forces
+    // For each body: sum of ForceElement::add_rate over all force elements [1/s^2]; empty: all zero. Derived:
     // note_forces.
     Column<Real> force_rate;
-    BodyLinks links;          // pairs of bodies joined by a row, such as a joint; derived: note_changed_seams
-    bool links_open = false;  // rows that join bodies have changed since links were derived
+    BodyLinks links;  // pairs of bodies that a joining row connects, such as a joint; derived: note_changed_seams
+    bool links_open = false;  // joining rows have changed since links were derived
     // True if a body is asleep. If false, no stage tests for sleeping bodies. Derived: note_rest.
     bool any_asleep = false;
 
@@ -134,8 +134,8 @@ struct Model {
     void wake_all();
     /// Must be called before a step: sets any_asleep. Returns the mass of all bodies that are awake [kg].
     Real note_rest();
-    /// Must be called after the loads of a body were set: updates loaded_bodies. `before`: whether the body had loads
-    /// before.
+    /// Must be called after the loads of a body were set. Updates loaded_bodies. `before`: true if the body already had
+    /// loads.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
     /// Shape and pose of a round body, in the form used for colliders.
@@ -182,7 +182,7 @@ struct Model {
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
     /// Builds the surface and the bounding volume hierarchy of one body from its record and its rest shape. The body
-    /// must be the last one in these tables. If one of the bodies just before it has the same mesh, its data are
+    /// must be the last one in these tables. If a body just before it has the same mesh, the data of that body are
     /// copied.
     void append_outline(std::size_t body);
     /// Copies surface and hierarchy from a body just before this one with the same mesh. Returns false, and does

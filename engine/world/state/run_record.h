@@ -34,9 +34,9 @@ struct RunRecord {
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
     std::vector<Contact> contact_view;  // the result of contacts()
-    Column<Index> contact_rows;         // from merge_contacts: row of the contact behind each entry of the view
+    Column<Index> contact_rows;  // by entry of contact_view: row of the contact; ~row for a contact of sleeping bodies
     bool contact_view_is_current = false;
-    bool balance_of_rest = false;  // the last check of the balance was made after all motion had stopped
+    bool balance_of_rest = false;  // nothing has moved since the last check of the balance
 };
 
 }  // namespace skerry

@@ -33,8 +33,8 @@ StepParameters step_parameters(const Settings& settings, const Tuning& tuning) {
     step.collision.use_budgets = tuning.contact_budgets;
     step.collision.continuous = settings.continuous_collision;
     step.solver = solver_settings(settings, tuning);
-    // Tolerance for regions whose bodies are all still. It is small enough for a still pile to fall asleep. A warm
-    // start reaches this error at rest without sweeps.
+    // Solver tolerance for regions whose bodies are all still. It is so small that errors of the impulses do not keep a
+    // pile awake. In a pile at rest the warm start alone is accurate to this tolerance.
     constexpr Real still_tolerance = 1e-5;
     if (step.sleep.own_limits) step.solver.still_tolerance = still_tolerance;
     return step;

@@ -1,6 +1,6 @@
 // Data that the stages of one step pass to each other, and their working memory. Nothing here outlives the step, with
-// two exceptions: contacts and regions can be read until the next step, and data for estimates of the solver's cost
-// stay.
+// two exceptions: contacts and regions can be read until the next step, and the data for estimating the cost of the
+// solver are not cleared.
 #pragma once
 
 #include "components/contact_table.h"
@@ -30,10 +30,10 @@ namespace skerry {
 struct StepParameters {
     Real h = 0;     // step length: time by which positions move [s]
     Real kick = 0;  // time for which forces act on velocities in this step [s]
-    // `kick` over the kick of the previous step, whose relaxed strain the elements still store; 0: they do not store
-    // it.
+    // Ratio of the kick of this step to the kick of the previous step. It is 0 if the elements do not store the relaxed
+    // strain of the previous step.
     Real kick_over_last = 0;
-    Real longest = 0;             // upper bound of the length of the next step, as far as known [s]
+    Real longest = 0;             // estimated upper bound of the length of the next step [s]
     Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
     Real work_lag = 0;            // lag between the steps: equals lag, or 0 for leapfrog [s]
     Vec3 gravity = Vec3::Zero();  // m/s^2
@@ -46,19 +46,19 @@ struct StepParameters {
     bool takes_long_steps = false;  // implicit bodies may take long steps
     SleepSettings sleep;
     bool let_invert = false;  // elements may turn inside out in this attempt at the step
-    // The previous attempt at this step had the same length and left valid forces.
+    // True if the elastic forces of the previous attempt at this step are still valid, because it had the same length.
     bool forces_known = false;
     bool problem_wanted = false;       // a user requested the contact problem of this step
     bool forces_wanted = false;        // a user requested forces of contacts and attachments
     Vec3 moment_point = Vec3::Zero();  // reference point of the requested moments [m]
-    bool draws_late = false;           // nodes that only draw round bodies are updated on demand
+    bool draws_late = false;           // true: nodes that only draw round bodies are updated on demand
 };
 
 /// Results of the stages of a step.
 struct StepFindings {
     StepVerdict verdict;
     Inversions inversions;
-    Index crossings = 0;  // number of features that would cross; if not zero, the step is repeated
+    Index crossings = 0;  // number of crossings in this attempt; if not zero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
@@ -67,7 +67,7 @@ struct StepFindings {
     Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
     Real damped = 0;       // energy dissipated by damping in this step [J]
-    // Energy added before this attempt, when clusters were updated to stiffened elements [J].
+    // Energy that the update of clusters with stiffened elements has added at the start of this attempt [J].
     Real stiffened = 0;
     StrainFindings strained;  // results of the deformation of implicit bodies
 };

@@ -22,18 +22,19 @@ std::uint64_t steps_per_round(const WorldState& world) {
 }
 
 /// Counts a step of the present round. At the end of a round, replaces the stable steps by the newly evaluated ones.
-/// Returns true if the energy balance is due for a check, too.
+/// Returns true at the end of every second round, when the energy balance must be checked.
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
-    world.record.balance.work += follow_stiffening(world.model);  // first, since the stable steps depend on it
+    world.record.balance.work +=
+        follow_stiffening(world.model);  // must come first, because stable steps depend on the updated clusters
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
 }
 
-/// Limits of the first attempt at a step in a call, from the velocities at its start.
+/// Limits of the first attempt at a step in a call. They follow from the velocities at the start of the call.
 Tries first_tries(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
@@ -165,7 +166,7 @@ private:
 }  // namespace
 
 Real lag_between_steps(const WorldState& world) {
-    // The drift at the end of the call removes the lag.
+    // With leapfrog the drift at the end of a call removes the lag.
     if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
     return (before > 0 ? before : trusted_step(world.model)) / 2;
@@ -186,7 +187,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    // Code between the stages must not depend on the floating-point mode of the host either.
+    // Sets the floating-point mode for the code between the stages. This code must not depend on the mode of the
+    // caller.
     const ArithmeticScope arithmetic;
     settle_start();
     const AdvanceScope scope(world.advancing);
@@ -202,14 +204,15 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    world.cache.crossings.row.clear();  // rows of an abandoned step; bodies may have changed since
+    world.cache.crossings.row
+        .clear();  // these rows belong to an abandoned step, and bodies may have changed since then
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
     world.scratch.parameters.draws_late = !model.forced;  // force elements read all nodes in every step
     Real stiffened = 0;                                   // energy added by clusters since the last committed step [J]
     // Leapfrog checks the balance at the end of the call, since only then all energies belong to one time.
     bool look_at_end = false;
-    // Exception thrown by a callback. The call still ends between two steps and then throws it again.
+    // Exception thrown by a callback. It is rethrown at the end of the call.
     std::exception_ptr thrown;
     const auto call_back = [&thrown](auto&& call) {
         try {
@@ -247,7 +250,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
-        stiffened += world.scratch.findings.stiffened;  // added for every outcome of the attempt
+        stiffened += world.scratch.findings.stiffened;  // also for attempts that are not committed
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -278,15 +281,15 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
-    clock.long_step = {};                // implicit bodies have reached the present time
-    world.cache.search.end_step(false);  // this has an effect only if the call ends with an abandoned step
+    clock.long_step = {};                // at the end of a call implicit bodies have reached the present time
+    world.cache.search.end_step(false);  // only needed if the last attempt was not committed
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
-        stiffened += follow_stiffening(model);  // otherwise the first attempt of the next call would do this
+        stiffened += follow_stiffening(model);  // otherwise the next call would do this update
         world.record.balance.work += stiffened;
     }
     world.draw();

@@ -31,7 +31,8 @@ Present measure(const Model& model, Real lag) {
         now.momentum_size += momentum.norm();
     }
     Real implicit = 0;  // [J]
-    // Momentum of nodes and bodies that get kicks. Nodes of held implicit bodies take theta steps instead [kg m/s].
+    // Momentum of all nodes and bodies that receive kicks [kg m/s]. Nodes of held implicit bodies do not: the theta
+    // method moves them.
     Vec3 kicked = now.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
@@ -44,9 +45,9 @@ Present measure(const Model& model, Real lag) {
         if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
-    // Adds the change of kinetic energy in half of the next kick, to first order and without contacts. Let v and v' be
-    // the velocities before and after a kick, and m the mass. Elastic bodies conserve m v.v' / 2 plus their elastic
-    // energy, as leapfrog does.
+    // The velocities lag by half a step. Adds the change of kinetic energy in half of the next kick, to first order and
+    // without contacts. Let v and v' be the velocities before and after a kick, and m the mass. Elastic bodies conserve
+    // m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);

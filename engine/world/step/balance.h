@@ -24,7 +24,7 @@ struct Balance {
     Vec3 momentum = Vec3::Zero();             // momentum of moving nodes [kg m/s]
     Vec3 impulse = Vec3::Zero();              // external impulse since the opening [N s]
     Real work = 0;                            // external work minus dissipation since the opening [J]
-    Real energy_flow = 0, momentum_flow = 0;  // sums of |work| and |impulse| over steps and kinds of impulse [J, N s]
+    Real energy_flow = 0, momentum_flow = 0;  // sums of |work| and |impulse| over all steps and causes [J, N s]
     // Largest values of the run.
     Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy available for exchange [J]
     Real momentum_error = 0, momentum_scale = 0;  // [kg m/s]

@@ -26,21 +26,24 @@ namespace {
 // Cost of one entry of a cluster matrix in a step [ns]. On a busy core six thrown meshes took 100 ns per element and
 // 1.5 ns per entry. Only the ratio to element_cost matters.
 constexpr Real entry_cost = 0.7;
-/// Least factor by which clusters must reduce the cost of a simulated second. It exceeds 1, since clusters change
-/// results a little.
+/// Factor by which clusters must at least reduce the cost of a simulated second. Smaller savings do not justify the
+/// slight change of the results.
 constexpr Real least_gain = 1.5;
-/// Largest increase of the smallest moment of inertia of a body by clusters. It is the larger of two bounds: the
-/// fraction most_moment of this moment, and the fraction of_lumping of its increase by lumped masses. In typical meshes
-/// it is 3 to 20 % of the moment.
+/// Bounds of the moment of inertia I that clusters may add to a body, where I is the smallest principal moment. The
+/// larger of two bounds counts: the fraction most_moment of I, and the fraction of_lumping of the increase of I by
+/// lumped masses. In typical meshes the larger bound is 3 to 20 % of I.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
 constexpr std::size_t largest_cluster = 1024;  // nodes; their matrix takes 8 MB and about a second to invert
-/// Implicit elements are assumed to be stiffer by this factor, so that steps stay stable while these elements stiffen.
+/// The matrices of clusters are computed for elements that are stiffer than at rest by this factor. Steps then stay
+/// stable while strain stiffens these elements.
 constexpr Real headroom = 4;
-constexpr Real most_lengthening = 32;  // ratio of the step with clusters to the step without
-/// Least ratio of the step with clusters to the step without. A smaller ratio could hardly save the factor least_gain.
+constexpr Real most_lengthening = 32;  // largest ratio of the step with clusters to the step without
+/// Least ratio of the step with clusters to the step without. With a smaller ratio the cost could hardly fall by the
+/// factor least_gain.
 constexpr Real least_lengthening = 1.68;
-/// Ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. The search is
-/// based on mass shares. The ratio was 1.27 to 1.34 for four meshes.
+/// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. The
+/// search for implicit elements computes the latter, but steps use mass forms. The ratio was 1.27 to 1.34 for four
+/// meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
@@ -104,8 +107,8 @@ Real most_moment_of(const Model& model, std::size_t b) {
 }
 
 struct Found {
-    bool possible = false;  // neither too many implicit elements nor too heavy clusters
-    Real moment = 0;        // moment of inertia that clusters add, over its limit
+    bool possible = false;  // true unless there are too many implicit elements or too heavy clusters
+    Real moment = 0;        // moment of inertia that clusters add, divided by its limit
     ClusterSizes sizes{};
 };
 
@@ -197,7 +200,7 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // moment of inertia that clusters add, over its limit
+    Real moment;    // moment of inertia that clusters add, divided by its limit
     Kept elements;  // its planned elements
 };
 
@@ -241,7 +244,7 @@ void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
 }
 
 /// Longest step at which clusters planned for the length `step` are not too heavy [s]. `moment`: moment of inertia that
-/// the clusters add at this length, over its limit.
+/// the clusters add at the length `step`, divided by its limit.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
 }
@@ -284,8 +287,9 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Makes plans for 2, 4, ... times the shortest stable step, then for some steps between the best of these and the
-/// next. Returns the plan of least cost. Its step is 0 if clusters do not pay.
+/// Makes plans for steps of 2, 4, ... times the shortest stable step. Then makes plans for some steps between the
+/// cheapest of these steps and the next longer one. Returns the cheapest plan, or a plan with step 0 if clusters do not
+/// pay.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};
@@ -317,15 +321,16 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    constexpr Real inversion_cost = 0.4;  // cost of inverting a matrix, over the cube of its width [ns]
-    constexpr Real lasts = 128;           // number of steps until the next inversion may be due
+    constexpr Real inversion_cost = 0.4;  // cost of inverting a matrix, divided by the cube of its width [ns]
+    constexpr Real lasts = 128;           // assumed number of steps between two inversions
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
-    // The search needs mass shares, which can follow a deformation.
+    // Mass forms are removed, because the search for implicit elements evaluates stable steps with mass shares. The
+    // division of nodal masses by shares adapts to the deformed shape; mass forms are the same in every shape.
     forget_mass_forms(model, blocks);
     const Real most = most_moment_of(model, body);
     const Found found =

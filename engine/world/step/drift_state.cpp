@@ -40,7 +40,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
-    const bool pushed = false;  // contacts push positions only in a step
+    const bool pushed = false;  // no contact pushes positions during a drift
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
@@ -69,14 +69,14 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
             n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
             model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, 0, search);  // after a drift of 0 s the frames keep their places
+    measure_displacement_of(executor, model, 0, search);  // a duration of 0 s: the frames do not move
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const RigidMotion& motion = colliders.motion[c];
-        // The points farthest from the axis of a rotating shape are the fastest. All parts near a body lie within the
-        // extent that the contact search has recorded.
+        // The fastest point of a rotating shape is the one farthest from the axis. Only points near a body matter. They
+        // lie within the distance `extent` from the origin of the collider, as found by the contact search.
         const Real turning = motion.angular_velocity.norm();
         const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
         colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);

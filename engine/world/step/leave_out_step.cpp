@@ -12,7 +12,8 @@ namespace {
 bool all_bodies_rest(const BodyTable& bodies) {
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         if (bodies.kind[b] == BodyKind::deformable && !bodies.asleep[b]) return false;
-        if (bodies.max_speed[b] != 0) return false;  // the stages have not yet set the speed to zero
+        if (bodies.max_speed[b] != 0)
+            return false;  // a body that has just fallen asleep: a step with stages must first set its speed to zero
     }
     return true;
 }
@@ -51,7 +52,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
 
 void look_at_balance(WorldState& world) {
     Balance& balance = world.record.balance;
-    // the last check saw this same state
+    // nothing has moved since the last check
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
     check_balance(world.model, lag_between_steps(world), balance);
     world.record.balance_of_rest = world.scratch.left_out;

@@ -28,7 +28,7 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
     const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
-    return times.starts && times.ends ? LongStepTimes{} : times;  // the long step equals one step of the other bodies
+    return times.starts && times.ends ? LongStepTimes{} : times;  // the long step is one ordinary step
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {

@@ -27,12 +27,13 @@ constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
-    // The largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
+    // Adds the bounds of squared natural frequencies: 4 / step^2 of the elements, and `rate` of the force elements. The
+    // largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
     if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
         step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
-    // Damping reduces a velocity to the fraction `kept` in this step. A mode of the circular frequency omega is then
+    // Damping multiplies velocities by a factor, `kept`, in a step. A mode of the circular frequency omega is then
     // stable for steps h with omega h < sqrt(2 (1 + kept)).
     return damping > 0 && std::isfinite(step) ? step * std::sqrt((1 + std::exp(-damping * step)) / 2) : step;
 }
@@ -69,9 +70,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Stable step of the explicit elements of a body with clusters that is strained in a few places [s]. `stands`: a step
-/// length known to be stable. If `stands` is at least `asked`, or if no better bound is found, the result is `stands`.
-/// Otherwise the result is at most `asked`.
+/// Better bound of the stable step for a body with clusters that is strained in a few places [s]. It covers the
+/// explicit elements only. `stands`: a step length known to be stable. `asked`: no longer step is searched for. Returns
+/// `stands` if it is at least `asked`, or if no longer stable step is found.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -124,10 +125,11 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // A body gets clusters when strain makes its stable step shorter than goal_ by the factor worth_clusters. The
-        // factor `reserve` keeps it stable until the next evaluation. A body that has clusters may shorten the steps
-        // further before it gets more of them. Its stable step recovers as soon as the strain decreases, but its
-        // implicit elements stay implicit.
+        // A body gets clusters when strain makes its stable step shorter than goal_ by the factor worth_clusters. Its
+        // implicit elements are chosen for the step length reserve * goal_, so that the body stays stable until the
+        // next evaluation. If a body already has clusters, both factors are different, so that more clusters are added
+        // later. The reason: implicit elements stay implicit, although the stable step grows again when the strain
+        // decreases.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -189,8 +191,8 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     const auto pieces_of = [&](Index row) {
         return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
     };
-    // Counted in parallel: a step cannot begin before the count is known, and the first elements of bodies are
-    // scattered in memory.
+    // The pieces are counted in parallel. The count is slow, because it reads memory at scattered addresses, and a step
+    // cannot begin before the count is known.
     constexpr std::size_t bodies_per_block = 64;
     const WatchPieces all = reduce(
         executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
@@ -211,7 +213,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
-    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // one row per node, as in a saved world
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // saved worlds have one row per node, too
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);

@@ -43,11 +43,11 @@ Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum);
 /// get clusters as in look_at_stable_steps. Returns the energy that the inertia of new clusters adds to the balance
 /// [J].
 Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
-/// Must be called before each step of a round of `round` steps. Copies the shapes for which stable steps are evaluated
-/// in parallel with this step.
+/// Must be called before each step. Copies the shapes of some bodies, whose stable steps are then evaluated in parallel
+/// with this step. After a round of `round` steps, all bodies have been evaluated.
 void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
 
-/// Updates clusters between steps to elements that have stiffened, exactly as the next step would do it. Returns the
+/// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do it. Returns the
 /// energy that this update adds to the balance [J].
 Real follow_stiffening(Model& model);
 
@@ -89,12 +89,12 @@ LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& pla
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 
 // leave_out_step.cpp
-/// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and the stages
-/// have recorded this in an earlier step. Colliders and held nodes then have the motion of this step.
+/// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and an earlier
+/// step has left no contacts or speeds. Also sets the motion of colliders and held nodes for this step.
 bool nothing_moves(WorldState& world);
 /// Clears the contact and attachment forces of a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
-/// Calls check_balance, but only once as long as nothing moves.
+/// Calls check_balance, unless nothing has moved since the last call.
 void look_at_balance(WorldState& world);
 
 // drift_state.cpp

@@ -16,25 +16,25 @@ namespace {
 /// take longer than such a step (profiling/step measures it).
 constexpr std::size_t inline_work = 1024;
 
-/// Number of attempts with the same step length before a step is shortened. Each attempt has the crossings found by the
-/// earlier ones as contacts.
+/// Largest number of attempts with the same step length if surfaces cross. Crossings found in an attempt become
+/// contacts of the following attempts. After the last of these attempts the step is shortened.
 constexpr int tries_at_one_length = 4;
 
 /// A step in which surfaces cross is repeated with half its length, down to the stable step divided by this factor.
-/// Afterwards steps grow back. Limits predicted from the speed of deformation do not go below this length either. The
-/// bound applies to the length and not to the number of halvings: halvings of successive steps would add up until time
-/// stands still.
+/// Afterwards the step length grows again. Limits predicted from the speed of deformation have the same lower bound.
+/// The bound applies to the length and not to the number of halvings, because repeated halvings in successive steps
+/// would make steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
-/// Factor of shortening for a step that deforms something too fast, or that an implicit body cannot solve. Material
-/// squeezed between a rigid body and held nodes is ejected at some hundred times the speed of the rigid body. Steps
-/// this short must remain the exception.
+/// A step that deforms an element too fast, or for which Newton's method fails, is shortened down to the stable step
+/// divided by this factor. The factor is large because material squeezed between a rigid body and held nodes is ejected
+/// at some hundred times the speed of the rigid body. Steps this short must remain the exception.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// Factor of shortening for a step that turns elements inside out. In thrown meshes, half the step length saves a third
-/// of these elements from inversion. Where elements are squeezed and not thrown, shorter steps do not prevent
-/// inversion, but they conserve the energy of crushed bodies. With the factor 2 instead of 4, or with faster growth of
-/// the steps, a ball shot at a wall gains a third more energy.
+/// A step that turns elements inside out is shortened down to the stable step divided by this factor. In thrown meshes,
+/// half the step length saves a third of these elements from inversion. Where elements are squeezed and not thrown,
+/// shorter steps do not prevent inversion, but they conserve the energy of crushed bodies. With the factor 2 instead of
+/// 4, or with faster growth of the steps, a ball shot at a wall gains a third more energy.
 constexpr Real most_shortening_against_inversion = 4;
 
 /// Factor by which the step bound grows in each step after an inversion or a crossing.
@@ -43,9 +43,10 @@ constexpr Real step_growth = 1.2;
 /// Largest factor of growth between steps while the speed of deformation limits the steps.
 constexpr Real fast_growth = 1.5;
 
-/// Safety factor for faster deformation in the next step than in this one. It suffices most of the time.
+/// The next step is planned with this fraction of the allowed strain change, because it may deform elements faster than
+/// this step. The margin usually suffices.
 constexpr Real strain_margin = 0.9;
-/// The factor by which a too fast step is shortened lies between these two values.
+/// A step that deforms an element too fast is repeated with a length between these two fractions of its length.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -76,15 +77,16 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     return (before + plan.h) / 2;
 }
 
-/// Ratio of two kicks: 1 if they differ only by rounding, 0 if the last kick is not known.
+/// Ratio of the present kick to the last kick: exactly 1 if they differ only by rounding, 0 if the last kick is not
+/// known.
 Real kick_over_last(Real kick, Real last) {
     constexpr Real rounding = 1e-12;
     if (!(last > 0)) return 0;
     return std::abs(kick - last) <= rounding * last ? 1 : kick / last;
 }
 
-/// Runs the stages, unless nothing moves. Their results are in world.scratch. Returns false if a check before the
-/// stages refuses the step.
+/// Runs the stages of a step, unless nothing moves. The stages write their results to world.scratch. Returns false if a
+/// check before the stages refuses the step.
 bool run_stages(WorldState& world) {
     StepScratch& scratch = world.scratch;
     Model& model = world.model;
@@ -122,8 +124,8 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Stores the element rotations and viscous strains of this step for the next step. Unstrained bodies have equal old
-/// and new values.
+/// Makes the element rotations and viscous strains of this step the input of the next step. For unstrained bodies the
+/// swapped columns contain equal values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -132,12 +134,13 @@ void keep_frames(WorldState& world) {
         return;
     }
     ElementInputs awake = world.model.awake_elements();
-    // No stage has computed element rotations of a body that this step wakes.
+    // A body that this step has woken was asleep during the stages, so its element rotations were not computed.
     awake.body_asleep = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Marks all bodies as strained, because contacts have moved nodes further than their velocities would.
+/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, which can
+/// deform any body.
 void forget_unstrained(BodyTable& bodies) {
     std::ranges::fill(bodies.unstrained, std::uint16_t{0});
 }
@@ -160,7 +163,8 @@ void commit(WorldState& world) {
     world.clock.kick_before = parameters.kick;
 }
 
-/// A body counts as strained if its stable step is less than this fraction of its stable step at rest.
+/// The cause of a short step is strain, not the rest shape, if the stable step of the body is less than this fraction
+/// of its stable step at rest.
 constexpr Real as_at_rest = 0.9;
 
 struct Blamed {
@@ -172,7 +176,8 @@ Blamed blamed(const Model& model, Index body) {
     static const std::string nobody;
     if (body == no_index) return {{}, nobody};
     const auto b = static_cast<std::size_t>(body);
-    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;  // other bodies are meshes of colliders
+    const bool has_handle =
+        model.bodies.kind[b] == BodyKind::deformable;  // the remaining bodies are the meshes of mesh colliders
     return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
             model.body_records[b].name};
 }
@@ -230,7 +235,7 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
 }
 
 /// Limits of the first attempt at the next step, after a committed step. The fastest deformation limits the length.
-/// After a short step, the length grows by no more than the factor fast_growth.
+/// After a step that was shortened for this reason, the length grows by at most the factor fast_growth.
 Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& tries) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
     Tries next{.longest = tries.longest * step_growth,
@@ -239,7 +244,8 @@ Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& 
                .limit = tries.limit,
                .body = tries.body};
     if (fastest.body == no_index && scratch.parameters.longest < plan.stable && tries.slow_enough < tries.longest) {
-        next.slow_enough = fast_growth * plan.h;  // the check finds only deformation too fast for `longest`
+        next.slow_enough =
+            fast_growth * plan.h;  // the check reports only deformation that is too fast for a step of length `longest`
         next.fastest = tries.fastest;
     }
     return next;
@@ -301,7 +307,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
-    // One repetition would suffice if forces could not change the next attempt and the lists could cover every motion.
+    // Several repetitions may be needed, because contact forces change the motion in the next attempt, and the lists
+    // cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -316,7 +323,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // an inversion does not invalidate the crossings found in earlier attempts
+            // after an inversion, the crossings found in earlier attempts remain contacts of the shorter attempt
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
             tries = shorter_tries(world, plan, tries);
@@ -329,7 +336,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     }
     if (ran) {
         world.transaction.roll_back_try(world.model);
-        world.clock.kick_before = 0;  // elements have overwritten the strain of the previous step
+        world.clock.kick_before =
+            0;  // the attempt has overwritten the relaxed strain of the previous step in the elements
     }
     return outcome;
 }

@@ -1,5 +1,5 @@
-// A step is taken as a whole or not at all: how it is attempted, how an attempt ends, and how overwritten data are
-// restored.
+// A step is either committed as a whole or changes nothing. This file declares attempts at a step, their outcomes, and
+// the restoration of overwritten data.
 #pragma once
 
 #include <algorithm>
@@ -31,23 +31,25 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
-    again_with_longer_lists,  // same attempt again: features near enough to cross were not in the lists
+    again_with_longer_lists,  // repeated with longer contact lists, because features near enough to cross were not in
+                              // the lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
     again_shorter,            // the next attempt is half as long, or as long as the speed limit allows
     again_letting_through,    // the next attempt accepts crossings and inversions, and reports them
     refused,                  // the cause is in world.scratch.findings
 };
 
-/// Results of attempts at the present and earlier steps that matter for the next attempt.
+/// Limits of the next attempt at a step, found in attempts at the present and at earlier steps.
 struct Tries {
-    // Bound after crossings, inversions or unsolved steps. It grows back from step to step [s].
+    // Bound of the step length after crossings, inversions or unsolved steps [s]. It grows in each committed step.
     Real longest = std::numeric_limits<Real>::infinity();
-    Real slow_enough = std::numeric_limits<Real>::infinity();  // bound from the last rate of deformation [s]
-    Index fastest = no_index;                                  // row of BodyTable: the body that deforms fastest
-    int with_longer_lists = 0;                                 // attempts at this step with too short contact lists
-    int with_crossings = 0;                                    // attempts at this length in which features crossed
-    bool letting_through = false;                              // the next attempt is the last one
-    // Cause of the bound `longest`: the cause for which an attempt was last shortened, other than speed.
+    Real slow_enough =
+        std::numeric_limits<Real>::infinity();  // bound of the step length by the rate of deformation [s]
+    Index fastest = no_index;                   // row of BodyTable: the body that deforms fastest
+    int with_longer_lists = 0;                  // attempts at this step whose contact lists were incomplete
+    int with_crossings = 0;                     // attempts at this length in which features crossed
+    bool letting_through = false;               // the next attempt is the last: it accepts crossings and inversions
+    // Cause of the bound `longest`: the last cause, other than speed, for which an attempt was shortened.
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable: the body that caused `longest`
 
@@ -89,11 +91,12 @@ public:
     void roll_back_try(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. Such a body took no part in the
-    /// attempt or in its end.
+    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. Such a body did not take part
+    /// in the attempt, or does not take part in its completion.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
-    /// These two functions do nothing unless the integrator is leapfrog. Only leapfrog drifts before its first kick.
+    /// Store and restore the state at the start of a call, if the integrator is leapfrog. Only leapfrog moves positions
+    /// before the first step of a call. With symplectic Euler these functions do nothing.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
