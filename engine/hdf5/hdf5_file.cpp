@@ -105,8 +105,8 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     // integers are accepted where reals are expected
     if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER))
         complain(path, "values of another type", expected);
-    // Values longer than a long double are refused. libhdf5 would convert such values, and would allocate as much
-    // memory.
+    // Number types longer than a long double are refused. To convert such numbers, libhdf5 would allocate memory of the
+    // size that the file claims.
     constexpr std::size_t longest_number = 16;  // [bytes]
     if (H5Tget_size(type.id()) > longest_number)
         complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);

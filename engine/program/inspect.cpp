@@ -265,7 +265,7 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene as a run would start it, and the overlaps of the scene before a run resolves them.
+/// A scene in the state in which a run starts, and its overlaps before they are resolved.
 struct SceneStart {
     Scene scene;
     WorldReport as_written;  // report of the world in which overlaps are not resolved

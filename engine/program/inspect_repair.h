@@ -12,7 +12,8 @@ struct RepairTask {
     std::string what;  // name in messages: the mesh file, or the scene and the body
     StepCase of;
     std::string step_of;  // description of the material for which the stable step is computed
-    bool scaled = false;  // the nodes are already scaled: a scene must use the new file without `scale`
+    bool scaled = false;  // true: the scene scales the mesh, and the repaired file contains scaled nodes, so the scene
+                          // must drop `scale`
 };
 
 /// Checks the options before any computation: the output file is a writable .msh file, it does not replace the input

@@ -39,7 +39,7 @@ private:
     enum class State { open, stick, slide };
     struct Tracked {
         BodyHandle body;
-        std::vector<char> inside;  // flag for each node of the body: node of the probe
+        std::vector<char> inside;  // by node of the body: nonzero if it is a node of the probe
         State last_closed = State::open;
         std::size_t stressed = 0;                   // index of the probe's body in `stressed_`
         std::vector<std::size_t> stressed_nodes{};  // indices of the probe's nodes in Stressed::nodes

@@ -17,7 +17,7 @@ namespace skerry {
 
 namespace {
 
-// Smallest ratio of new to old step that justifies a new mesh.
+// Smallest ratio of the new to the old stable step for which the new mesh is written.
 constexpr Real least_gain = 1.05;
 // Triangles of the surface with an altitude below this fraction of its mean edge are knots (measured:
 // docs/decisions/0012).

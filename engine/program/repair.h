@@ -20,12 +20,13 @@ struct MeshFigures {
 struct RepairedMesh {
     Mesh mesh;
     MeshFigures before, after;
-    mesh::SurfaceDistance distance;          // distances between the old surface (first) and the new surface (second)
+    mesh::SurfaceDistance distance;          // first surface: old; second surface: new
     Real tolerance = 0;                      // largest allowed distance [m]
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     // Number of nodes that were split because some of their tetrahedra were not connected by faces.
     std::size_t parted = 0;
-    // If only nodes were split and the tetrahedra are the old ones: the reason why no new tetrahedra were accepted.
+    // Reason why no new tetrahedra were accepted. It is set if the mesh has the old tetrahedra and only nodes were
+    // split.
     std::string kept;
     std::string refusal;  // reason why the mesh must not be written; empty if it is better
 };

@@ -84,7 +84,8 @@ public:
                 if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
                 advance(duration);
             }
-            if (result_.status != "ok" && !(world_.time() > begin)) break;  // the frame has made no progress
+            if (result_.status != "ok" && !(world_.time() > begin))
+                break;  // the run stopped before the first step of this frame
             add_frame();
             const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());

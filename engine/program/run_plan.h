@@ -31,8 +31,7 @@ RunPlan plan_run(const Scene& scene, const RunOptions& options);
 /// the calls of advance are the same as without the interruption. Throws SceneError if nothing is left to simulate.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if a run of `planned` seconds would have ended within this frame, and the frame has a different length in
-/// `plan`.
+/// True if a run of `planned` seconds would end within this frame, and the frame has another length in `run_plan`.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

@@ -94,7 +94,7 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
 /// removal changes the nodal masses and therefore the order of the remaining tetrahedra. `order` lists all tetrahedra
 /// of the mesh, worst first.
 std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
-    constexpr std::size_t rounds = 3;  // number of rounds per share
+    constexpr std::size_t rounds = 3;  // number of rounds for each fraction in `shares`
     std::vector<StepWithout> without;
     Mesh rest = mesh;
     std::size_t gone = 0;

@@ -64,8 +64,7 @@ public:
     Json schema(SchemaBook& book) const;
 
 protected:
-    /// Functions that read the value of a key and describe its type in a schema; they are available for values of any
-    /// type.
+    /// Functions that read the value of a key from JSON and describe the type of the value in a schema.
     struct ValueFunctions {
         void (*read)(const Json&, const Place&, const KeyDoc&, void* value);
         Json (*describe)(SchemaBook&, const KeyDoc&);

@@ -168,7 +168,8 @@ struct Value<OneOrMore<T>> {
         return either_schema(Value<T>::schema(book, doc), Value<std::vector<T>>::schema(book, doc));
     }
 };
-/// Calls item(name, value, place) for each key of a JSON object. `has` returns true if a name already exists.
+/// Calls item(name, value, place) for each key of a JSON object. Throws SceneError if `has` returns true for a name,
+/// which means that an included scene has already used the name.
 void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
                 FunctionRef<void(const std::string&, const Json&, const Place&)> item);
 

@@ -161,7 +161,7 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
 }
 
 /// Hashes overlapping pairs in the order of their keys, which name bodies and colliders by slot. Other pairs are left
-/// out: a search finds them again, and whether they are stored depends only on the time of the last search.
+/// out: a search finds them again, and and the time of the last search determines which of them are stored.
 void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs.state[p] != PairState::overlapping) continue;

@@ -17,14 +17,14 @@ struct Tuning {
     // If above 0, a body counts as still when all its nodes are slower than this speed, whatever Settings::sleep is
     // [m/s].
     Real sleep_speed = 0;
-    // If true, a step searches no contacts for pairs that cannot have come close, and steps in which nothing moves are
+    // If true, pairs that moved too little to come close are not searched, and steps in which nothing moves are
     // skipped. If false, every step searches all pairs.
     bool contact_budgets = true;
     WarmStart warm_start = WarmStart::on;
     bool fixed_iterations = false;  // the solver always makes max_iterations sweeps
     Real relaxation = 1;            // relaxation factor of solver methods that sweep, > 0 and < 2
     // Shortcuts of the contact solver. Switching one off changes the impulses by no more than the tolerance.
-    bool certify_warm_start = true;  // skips a region that the impulses of the last step still solve
+    bool certify_warm_start = true;  // skips a region if the impulses of the last step solve it accurately enough
     bool skip_separating = true;     // sets the impulses of a region to zero if none of its contacts closes
     bool frictionless_rows = true;   // solves one row per contact instead of three in a region without friction
     // Solves eight regions of 2 to 12 contacts at a time (method ags, friction cone).

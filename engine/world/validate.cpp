@@ -78,7 +78,8 @@ private:
         for (Index corner : triangle)
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner), "the index of a node of the mesh");
-        const auto [a, b, c] = triangle;  // a triangle with two equal nodes would be the core of a round body
+        const auto [a, b, c] =
+            triangle;  // two equal nodes are refused: inside the engine such a triangle means the core of a round body
         if (a == b || b == c || c == a)
             refuse(object, "triangles",
                    "triangle " + std::to_string(number) + " of nodes " + std::to_string(a) + ", " + std::to_string(b) +
@@ -289,7 +290,7 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        constexpr Real most = 1e6;  // an angle of this size is known to about 1e-10 [rad]
+        constexpr Real most = 1e6;  // at this angle the rounding error is about 1e-10 rad
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a rotation of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,

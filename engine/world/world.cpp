@@ -86,7 +86,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // the rows of cluster nodes have moved
+        model.clusters.clear();  // clusters refer to node rows, which have moved
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -315,7 +315,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    state_->cache.forget_body(model, b);  // attaching has stopped the held nodes
+    state_->cache.forget_body(
+        model, b);  // the contact search assumed the old speeds, and attaching has stopped the held nodes
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
@@ -396,7 +397,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick = parameters.kick;  // kept, since contacts of the last step can still be queried
+    const Real kick = parameters.kick;  // still needed to report the contacts of the last step
     parameters = step_parameters(state_->model.settings, state_->model.tuning);
     parameters.kick = kick;
     state_->record.balance.close();

@@ -55,7 +55,7 @@ struct PairForces {
 /// bodies and colliders that were removed since the call are not included.
 ///
 /// Forces on sleeping bodies are mean values over the time in which the bodies were still before they fell asleep. For
-/// each body the sum of these forces equals its weight and loads, within the body's mass times its speed over
+/// each body these forces balance the weight and the loads. The error is at most (mass of the body) * (its speed) /
 /// sleep_time. If forces were not measured at that time, the forces of the last step before the sleep are used
 /// (World::contacts).
 ///

@@ -87,6 +87,7 @@ public:
     bool alive(AttachmentHandle attachment) const;
 
     // Running the simulation.
+
     /// Finds overlaps of bodies and colliders that were added or moved by the user since the last check, and treats
     /// them according to Settings::start_overlaps. Every call of advance() begins with this check. Call it earlier to
     /// get the result before the first step (WorldReport::start_overlaps). If overlaps are refused, throws SceneError
@@ -220,6 +221,7 @@ public:
 
     // Queries of the present surfaces. The first query after a step refits the bounding volume trees of the bodies that
     // the query tests.
+
     /// Finds the first surface hit by a ray from `origin` [m] along `direction` (any length but zero) within
     /// `max_distance` [m], from either side; empty if there is none. Among equally near surfaces, bodies come before
     /// colliders, each in the order added.
@@ -230,6 +232,7 @@ public:
     std::optional<SurfaceHit> nearest_point(const Vec3& point, Real max_distance, const QueryFilter& filter = {}) const;
 
     // Results.
+
     /// Contacts of the last step and contacts between sleeping bodies, in a fixed order. Contacts of objects that were
     /// removed since are omitted. Empty if the last step was refused.
     std::span<const Contact> contacts() const;

@@ -32,6 +32,7 @@ public:
 
     // Lines.
     // -----------------------------------------------------------------------------------------------------------------
+
     /// True if only white space is left.
     bool at_end() const;
     /// Returns the next line, without its line end and surrounding white space.
@@ -43,6 +44,7 @@ public:
 
     // Words and numbers of text.
     // ---------------------------------------------------------------------------------------------------
+
     /// Skips white space and line ends, then returns the next word. At the end of the file: throws SceneError that
     /// `expected` is missing.
     std::string_view word(const char* expected);
@@ -72,6 +74,7 @@ public:
 
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
+
     /// Checks a number of rows that was read from the file. It must not be negative, and that many rows of at least
     /// `bytes` bytes must fit into the rest of the file. A wrong count therefore cannot allocate more than a small
     /// multiple of the file size.

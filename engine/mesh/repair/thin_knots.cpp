@@ -18,13 +18,13 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Corners = std::array<Vec3, 3>;
 
-// Smallest ratio of altitudes (smallest altitude after a change, over smallest altitude before). Smaller gains are not
-// worth the distance moved.
+// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller gain does not
+// justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Largest distance of sample points from the other surface, as a fraction of the tolerance. The rest is a margin for
-// the surface between the points.
+// Fraction of the tolerance that the distance of a sample point from the other surface may reach. The rest is a margin
+// for the surface between the sample points.
 constexpr Real share_of_tolerance = 0.8;
-// Smallest cosine of the angle by which a change may rotate a triangle: at most 60 degrees.
+// Cosine of the largest angle by which a change may rotate the normal of a triangle (60 degrees).
 constexpr Real least_turn = 0.5;
 // Smallest cosine between the normal of a triangle that replaces a flat one, and the mean normal of the removed
 // triangles. The normal of a flat triangle itself is noise.
@@ -224,7 +224,7 @@ private:
                            [&](const Vec3& point) { return original_.distance_squared(point, 2 * limit) <= limit; });
     }
 
-    /// Returns the index of the new triangle nearest to the point, and the squared distance [m^2].
+    /// Returns the index of the new triangle that is nearest to the point, and the squared distance of the two [m^2].
     std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
         std::pair<std::size_t, Real> nearest{0, std::numeric_limits<Real>::infinity()};
         for (std::size_t i = 0; i < change.made.size(); ++i) {
@@ -251,7 +251,8 @@ private:
             add(change.made[i]);
             samples_.back() = std::move(samples[i]);
         }
-        // Changes that were rejected before may now be possible next to the new triangles.
+        // Flat triangles next to the new triangles are examined again, because changes that were rejected may now be
+        // possible.
         for (auto t = first; t < static_cast<Index>(triangles_.size()); ++t)
             for (const Index n : triangle(t))
                 for (const Index beside : around(n)) ask(beside);

@@ -12,13 +12,13 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-constexpr Real layer_height = 1.0;  // height of a layer over ring spacing; this ratio maximises the smallest altitude
-// Kinks of the outline by more than this angle get a layer boundary of their own [rad].
+constexpr Real layer_height = 1.0;  // height of a layer divided by ring spacing; maximises the smallest altitude
+// A layer boundary is placed at a kink of the outline if its angle is larger than this [rad].
 constexpr Real sharp_turn = 0.25;
-// Smallest distance between layer boundaries, over ring spacing. Kinks closer than this to another boundary are
-// rounded.
+// Smallest distance between layer boundaries, divided by ring spacing. A kink closer than this to another boundary gets
+// no boundary, so it is rounded.
 constexpr Real least_layer = 0.6;
-constexpr Real point_radius = 0.3;  // ends with a smaller radius than this, over ring spacing, close to a point
+constexpr Real point_radius = 0.3;  // largest radius of an end that closes to a point, divided by ring spacing
 
 void check_profile(std::span<const ProfilePoint> profile) {
     if (profile.size() < 2)

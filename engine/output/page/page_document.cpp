@@ -89,7 +89,8 @@ Json json_of_report(const PageSummary& summary) {
             {"stages", stages}};
 }
 
-/// Two upper ends for the legend of a field: the largest value, and the value below which 99 % of the values lie.
+/// Two possible upper ends of the legend of a field: the largest value, and the value below which 99 % of the values
+/// lie.
 Json json_of(const Quantile& quantile) {
     return {{"max", quantile.max()}, {"usual", quantile.at(0.99)}};
 }

@@ -196,7 +196,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    // Without a step since the last call, the forces of the last step have been added already.
+    // If no step was made since the last call of sample(), the forces have already been added.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });

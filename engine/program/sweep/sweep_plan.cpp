@@ -53,8 +53,8 @@ void require_a_readable_case(const SweepPlan& plan) {
         .refuse_inner("no case is a scene that can be read; " + first);
 }
 
-/// Sets all places of the sweep in the scene, and throws SceneError if a place does not exist. For a list every case is
-/// tested, otherwise only the first case.
+/// Tests the assignments of the sweep on the scene: throws SceneError if a place does not exist in the scene. For a
+/// list every case is tested, otherwise only the first case.
 void require_places(const SweepPlan& plan, const Json& scene) {
     const SweepFile& file = plan.file;
     Json fixed = scene;

@@ -10,6 +10,7 @@
 namespace skerry {
 
 // control_bodies.cpp
+
 /// Throws SceneError if the node positions turn a tetrahedron of the body inside out. Tetrahedra that are already
 /// inside out may remain so.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
@@ -19,6 +20,7 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 
 // control_collisions.cpp
+
 /// Enables all disabled pairs of a body or collider. Must be called before its slot is used again.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);

@@ -49,6 +49,7 @@ struct NewBody {
 };
 
 // edit_bodies.cpp
+
 /// Density of each tetrahedron [kg/m^3].
 std::vector<Real> densities(const Model& model, const NewBody& body);
 
@@ -61,11 +62,13 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
 Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
 
 // choose_dynamics.cpp
+
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
 /// `estimate`. The model does not change. `body` must be explicit.
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate);
 
 // body_steps.cpp
+
 /// Groups the tetrahedra by material. The groups are in the order in which their materials first occur in the mesh.
 std::vector<MaterialZone> zones_of(const Model& model, const NewBody& body);
 /// Masses of the parts of a round body: a ball, made of both ends, and the shaft between the ends [kg].
@@ -98,6 +101,7 @@ void take_steps(const KnownElements& known, Index row, Model& model);
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 
 // edit_colliders.cpp; `now` is the time at which the row is added [s]
+
 /// Properties that the settings leave out are set to -1.
 SurfaceProperties surface_properties(const SurfaceSettings& settings);
 Index append_attachment(Model& model, std::uint32_t slot, Index body, std::span<const Index> nodes,

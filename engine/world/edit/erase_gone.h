@@ -9,6 +9,7 @@
 namespace skerry {
 
 // erase_from_cache.cpp
+
 /// Removes pairs with an erased object and contacts of sleeping bodies with an erased object. Other pairs keep their
 /// data. Warm-start impulses stay, since their keys name bodies by slot. `body_of_node`: body row of each node before
 /// the removal.
@@ -17,6 +18,7 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
 std::vector<Range> erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, ContactTable& contacts);
 
 // erase_gone.cpp
+
 /// Removes the rows of erased bodies and colliders from the model. Element patches from the first erased body on are
 /// removed too; Model::extend_derived builds them again.
 void erase_gone(const RowMoves& moves, Model& model);

@@ -27,9 +27,11 @@ RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Ve
 /// Pose of the mesh frame of a body. For an explicit body it is the rigid pose nearest to the deformed shape.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// True if holding these nodes (local numbers) prevents all rigid motion of the body: they do not all lie on one line.
+/// True if a body cannot move rigidly while these nodes (local numbers) are held. This is so if the nodes do not all
+/// lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Finds the attachments that hold rigid bodies as a whole or frames of implicit bodies, and the held poses.
+/// Finds the attachments that hold whole rigid bodies or frames of implicit bodies, and the poses at which these are
+/// held.
 void find_holders(Model& model);
 /// Must be called after an implicit body was attached or released, or its held nodes were moved. The body then deforms
 /// in the frame of its attachment, or in its own frame if it is free. All nodes keep their positions and velocities.

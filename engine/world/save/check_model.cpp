@@ -237,7 +237,7 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// Checks the data of the stable step evaluation. Empty columns mean that no stable step has been evaluated yet.
+/// Checks the data for evaluating stable steps. Empty columns mean that no evaluation has started yet.
 void check_watch(const Hdf5File& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();

@@ -13,7 +13,7 @@ namespace skerry {
 struct SavedMeshes {
     Column<Index> of_body;
     Ragged<Vec3> nodes;                       // rest positions [m]
-    Ragged<std::array<Index, 4>> tetrahedra;  // node numbers within the mesh
+    Ragged<std::array<Index, 4>> tetrahedra;  // corners as node numbers within the mesh
     Ragged<std::array<Index, 3>> surface;
     // parts of BodyRecord::element_tetrahedra
     Ragged<Index> covered_offset, covered_item;
@@ -57,6 +57,7 @@ SavedRows rows_to_save(const WorldState& world);
 
 // The functions below throw SceneError with the name of `file` if saved data do not fit each other or the columns of
 // the world.
+
 /// Restores meshes and names of bodies and colliders. The ranges of the bodies must have been checked.
 void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
 /// Restores the contact candidates of pairs. Surfaces must have been built.

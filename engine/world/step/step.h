@@ -6,14 +6,17 @@
 namespace skerry {
 
 // step.cpp
+
 /// Lists the stages of the step. The task graph derives its edges from the data that the stages read and write.
 void build_step(WorldState& world);
 
 // count_step.cpp
+
 /// Adds a committed step to the counters of the run.
 void count_step(const StepScratch& scratch, RunCounters& counters);
 
 // note_forces.cpp
+
 /// After force elements, or bodies with any, were added, changed or removed: derives Model::forced and force_rate.
 void note_forces(Model& model);
 /// Before steps: derives Model::links if rows that join bodies have changed, and Model::forced if the last force
@@ -21,6 +24,7 @@ void note_forces(Model& model);
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp
+
 /// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of this body.
 Real stable_step(const Model& model, Index* body = nullptr);
 /// Stable step of one body: the bound of its elements, reduced for damping (docs/methods/stable_step.md 6.1) and for
@@ -52,6 +56,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
 Real follow_stiffening(Model& model);
 
 // choose_clusters.cpp
+
 /// Cost of an element in a step, including its share of nodes and contacts [ns]. It serves only to compare costs.
 inline constexpr Real element_cost = 70;
 /// True if elements of this world may be implicit.
@@ -67,6 +72,7 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
 Real added_energy(const Model& model);
 
 // advance.cpp
+
 /// Time by which velocities are older than positions between two steps: half a step with symplectic Euler, zero with
 /// leapfrog [s].
 Real lag_between_steps(const WorldState& world);
@@ -89,6 +95,7 @@ LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& pla
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 
 // leave_out_step.cpp
+
 /// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and an earlier
 /// step has left no contacts or speeds. Also sets the motion of colliders and held nodes for this step.
 bool nothing_moves(WorldState& world);
@@ -98,6 +105,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces);
 void look_at_balance(WorldState& world);
 
 // drift_state.cpp
+
 /// Moves positions, colliders and attachments by a drift, until they are `offset` seconds ahead of the velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
 /// Must be called after positions were restored. Measures the distance of each node from its displacement origin again.
@@ -107,6 +115,7 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp
+
 /// State of rigid bodies, and deformation of implicit bodies, before contacts are solved.
 struct KeptFrames {
     std::span<const Vec3> center, angular_momentum;     // RigidBodyTable

@@ -22,7 +22,8 @@ Lattice Lattice::around(std::span<const Vec3> points) {
 }
 
 Code3 Lattice::code(const Vec3& point, const Code3& code_prev) const {
-    // Largest number of steps from the origin. Doubles represent sums of a few numbers of this size exactly.
+    // Largest distance of a lattice point from the origin, in lattice steps. Doubles represent sums of a few numbers of
+    // this size exactly.
     constexpr Real far = static_cast<Real>(std::int64_t{1} << 45);
     Code3 code = code_prev;
     for (int axis = 0; axis < 3; ++axis) {
