@@ -324,7 +324,7 @@ TEST_CASE("the reaction of a sleeping held body contains its loads, also in a wo
     world.set_loads(body, std::vector<Vec3>(block.nodes.size(), Vec3(0.05, 0, 0)));
     while (!world.asleep(body) && world.time() < 10) REQUIRE(world.advance(0.1).ok());
     REQUIRE(world.asleep(body));
-    const TemporaryFolder folder("reaction");
+    const TemporaryFolder folder;
     world.save(folder.path() / "world");
     World from_file = World::load(folder.path() / "world");
     const Vec3 expected{-0.05 * static_cast<Real>(block.nodes.size()), 0, world.mass(body) * standard_gravity};
