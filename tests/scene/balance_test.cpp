@@ -130,8 +130,9 @@ TEST_CASE("a load that changes, or is taken away, on a moving body keeps the bal
         World copy = world.clone();
         CHECK(copy.report().energy_error_share == world.report().energy_error_share);
     }
-    // Leapfrog books the work of a constant load with an error of h F dv / 2.
-    CHECK(world.report().energy_error_share < (integrator == Integrator::leapfrog ? 5e-5 : 1e-10));
+    // Leapfrog books the work of a constant load with an error of h F dv / 2, at most 7e-5 of the energy here. Half a
+    // step of work that is missing or too much would be 3e-4.
+    CHECK(world.report().energy_error_share < (integrator == Integrator::leapfrog ? 1e-4 : 1e-10));
     CHECK(world.report().momentum_error_share < 1e-12);
 }
 
