@@ -37,17 +37,17 @@ std::string element_text(const std::string& body, Index element) {
 void warn_of_elements(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
     const std::string worst = element_text(r.worst_volume_body, r.worst_volume_element);
     if (r.inverted > 0)
-        warnings.push_back(grouped(static_cast<std::uint64_t>(r.inverted)) + " elements are turned inside out " +
+        warnings.push_back("elements turned inside out: " + grouped(static_cast<std::uint64_t>(r.inverted)) + " " +
                            worst + ": " + shorter + ", or refine the mesh there");
     else if (r.inversions > 0)
         warnings.push_back("elements were turned inside out for some steps, " + grouped(r.inversions) +
                            " times: " + shorter);
     else if (r.near_inversion > 0)
-        warnings.push_back(grouped(static_cast<std::uint64_t>(r.near_inversion)) +
-                           " elements are pressed to less than a tenth of their volume " + worst +
+        warnings.push_back("elements pressed to less than a tenth of their volume: " +
+                           grouped(static_cast<std::uint64_t>(r.near_inversion)) + " " + worst +
                            ": reduce the load, stiffen the material or refine the mesh there");
     if (r.folded > 0)
-        warnings.push_back(grouped(static_cast<std::uint64_t>(r.folded)) + " smoothed elements are folded " +
+        warnings.push_back("folded smoothed elements: " + grouped(static_cast<std::uint64_t>(r.folded)) + " " +
                            element_text(r.folded_body, r.folded_element) +
                            ": set \"element\" of this body to \"linear\", or refine its mesh");
 }
