@@ -13,7 +13,8 @@ set(SKERRY_INSTRUCTION_SETS "x86-64-v3;x86-64-v4" CACHE STRING
     "Without SKERRY_ARCH: sets that kernels are compiled for besides, the most demanding last; chosen at run time")
 set(SKERRY_BACKENDS "tbb;openmp;threads" CACHE STRING "Threading backends to build, the default first")
 option(SKERRY_PRECOMPILE "Read package headers once for the library; a missing include of theirs goes unseen" OFF)
-option(SKERRY_UNITY "Compile up to twelve sources of a folder as one: faster, and a missing include goes unseen" OFF)
+set(SKERRY_UNITY 1 CACHE STRING
+    "Number of sources of a folder that are compiled as one: faster, and a missing include goes unseen")
 option(SKERRY_FUZZERS "Build the fuzzers of the readers (clang only)" OFF)
 set(SKERRY_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 set(SKERRY_TEST_OBJECTS "" CACHE PATH "Build folder whose compiled tests are linked; empty: tests are compiled here")

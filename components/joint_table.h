@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "components/column.h"
 #include "components/column_role.h"
@@ -81,7 +80,7 @@ struct JointTable {
 struct AxisLaw {
     bool locked = true;  // the third row is locked like the other two rows
     Real coordinate = 0;
-    Real lower = -std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
+    Real lower = -infinity, upper = infinity;
     JointDrive drive = JointDrive::none;
     JointMotorRow motor{};
     Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "components/box_grid.h"
@@ -200,7 +199,7 @@ struct SearchMemory {
 /// for which the columns are too short, count as forgotten. Rows of removed bodies and colliders are erased from the
 /// columns.
 struct SearchState {
-    static constexpr Real forgotten = -std::numeric_limits<Real>::infinity();
+    static constexpr Real forgotten = -infinity;
 
     // The set of pairs is complete while body_travel_bound of every body is below this [m].
     Column<Real> body_valid_until;

@@ -5,10 +5,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace skerry {
 
 using Real = double;
+inline constexpr Real infinity = std::numeric_limits<Real>::infinity();
 using Vec3 = Eigen::Matrix<Real, 3, 1>;  // 24 bytes, no padding: a Column<Vec3> is a flat array of reals
 using Mat3 = Eigen::Matrix<Real, 3, 3>;
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -54,7 +53,7 @@ std::size_t count_components(const Mesh& mesh) {
 void measure_edges(const Mesh& mesh, MeshReport& report) {
     const std::vector<Edge> edges = unique_edges(mesh);
     if (edges.empty()) return;
-    report.min_edge = std::numeric_limits<Real>::infinity();
+    report.min_edge = infinity;
     Real sum = 0;
     for (const auto& [a, b] : edges) {
         const Real length = (mesh.nodes[static_cast<std::size_t>(b)] - mesh.nodes[static_cast<std::size_t>(a)]).norm();
@@ -77,7 +76,7 @@ Real quality(Real six_volumes, const std::array<Real, 6>& edges) {
 
 void measure_tetrahedra(const Mesh& mesh, MeshReport& report) {
     if (mesh.tetrahedra.empty()) return;
-    report.min_altitude = report.min_quality = std::numeric_limits<Real>::infinity();
+    report.min_altitude = report.min_quality = infinity;
     for (const std::array<Index, 4>& t : mesh.tetrahedra) {
         const Real volume = mesh::six_volumes(mesh, t);
         const Real face = std::sqrt(mesh::largest_face_squared(mesh, t));  // twice the area of the largest face

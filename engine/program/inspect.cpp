@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iostream>
-#include <limits>
 #include <map>
 #include <tuple>
 
@@ -224,14 +223,13 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
             row.try_emplace({body.mesh, body.material, body.materials, body.settings.element, dynamics}, kinds.size());
         if (is_new) {
             const MeshReport mesh = inspect(plan.meshes[body.mesh]);
-            kinds.push_back(
-                {body.settings.name,
-                 count_materials(plan, body, mesh),
-                 0,
-                 b,
-                 mesh,
-                 dynamics,
-                 {.step = std::numeric_limits<Real>::infinity(), .element = {}, .worst = {}, .without = {}}});
+            kinds.push_back({body.settings.name,
+                             count_materials(plan, body, mesh),
+                             0,
+                             b,
+                             mesh,
+                             dynamics,
+                             {.step = infinity, .element = {}, .worst = {}, .without = {}}});
             if (kinds.back().sets_step())
                 kinds.back().bound = step_bound(plan.meshes[body.mesh], step_case(plan, body), details);
         }
@@ -339,7 +337,7 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
         problems.push_back(start.outcome);
     else if (cost.overlap > 0)
         problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " in the first step");
-    Real shortest_edge = std::numeric_limits<Real>::infinity();
+    Real shortest_edge = infinity;
     for (const BodyKindReport& kind : kinds) shortest_edge = std::min(shortest_edge, kind.mesh.mean_edge);
     if (!cost.turning.empty()) problems.push_back(cost.turning);
     if (cost.into_shell > visible_share * shortest_edge) problems.push_back(into_shell_text(cost.into_shell));

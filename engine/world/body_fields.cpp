@@ -1,6 +1,5 @@
 // Stress, strain and stable steps of bodies, for each tetrahedron or node.
 #include <algorithm>
-#include <limits>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -154,7 +153,7 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
         // The step computed for each element with mass shares is too short, but the ratios between elements are right.
         // All these steps are multiplied by one factor, so that the shortest equals the stable step with mass forms.
-        Real shortest = std::numeric_limits<Real>::infinity();
+        Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =
             kernels()
@@ -165,8 +164,7 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
             for (Real& own : lanes.lane) own *= longer;
     }
     const RaggedView<Index> covered = model.body_records[row].element_tetrahedra.view();
-    std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]),
-                                    std::numeric_limits<Real>::infinity());
+    std::vector<Real> of_tetrahedra(static_cast<std::size_t>(model.bodies.tetrahedron_count[row]), infinity);
     for (std::size_t place = 0; place < covered.size(); ++place)
         for (const Index t : covered[place]) {
             Real& shortest = of_tetrahedra[static_cast<std::size_t>(t)];

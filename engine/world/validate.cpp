@@ -25,11 +25,6 @@ std::string shown(const Vec3& value) {
     return "(" + shown(value.x()) + ", " + shown(value.y()) + ", " + shown(value.z()) + ")";
 }
 
-[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
-                         const std::string& expected) {
-    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-}
-
 void require(bool good, const std::string& object, const char* field, Real found, const char* expected) {
     if (!good || !std::isfinite(found)) refuse(object, field, shown(found), expected);
 }
@@ -113,6 +108,10 @@ void require_surface(const std::optional<Real>& friction, const std::optional<Re
 }
 
 }  // namespace
+
+void refuse(const std::string& object, const char* field, const std::string& found, const std::string& expected) {
+    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
 
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count) {
     for (const Index node : nodes)

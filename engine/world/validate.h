@@ -26,6 +26,9 @@ void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
+/// Throws a SceneError with these parts of its message.
+[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
+                         const std::string& expected);
 /// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
 /// Checks that local node numbers exist in `object`, a body with `count` nodes.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
@@ -108,7 +107,7 @@ private:
 
     const ColliderGeometry& geometry_ = inputs.collider.geometry[second];
     const RigidMotion& motion_ = inputs.collider.motion[second];
-    Real least_ = std::numeric_limits<Real>::infinity();
+    Real least_ = infinity;
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "systems/collision/colliders/edge_contact.h"
 #include "systems/collision/cylinders/cylinder_touches.h"
@@ -233,7 +232,7 @@ private:
 
     const RigidCylinder cylinder_ = cylinder_at_start(inputs, first);
     CylinderTouches touches_;
-    Real least_ = std::numeric_limits<Real>::infinity();
+    Real least_ = infinity;
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "systems/collision/cylinders/cylinder_touches.h"
 #include "systems/collision/cylinders/rigid_cylinder.h"
@@ -266,9 +265,7 @@ private:
 
     /// Distance that a feature has to keep from the cylinder. A feature that a contact stops at the contact distance
     /// has not crossed, however far it moved.
-    KeptApart kept(Real radius) const {
-        return {radius, scale.shell > 0 ? contact_slack * scale.shell : std::numeric_limits<Real>::infinity()};
-    }
+    KeptApart kept(Real radius) const { return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity}; }
     bool any_moves(const std::array<Index, 3>& node) const {
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }

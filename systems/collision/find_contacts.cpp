@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "components/ask_for_lines.h"
@@ -24,7 +23,7 @@ constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
 
-constexpr std::size_t rows_per_block = 256;
+constexpr std::size_t contacts_per_block = 256;
 // The candidate list of the pair this many pairs ahead is prefetched.
 constexpr Index pairs_ahead = 3;
 constexpr std::size_t counted_pairs_per_block = 512;  // number of pairs whose work is counted by one task
@@ -106,7 +105,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
     Column<NearCandidate>& near = pairs.near[b];
     found.clear();
     near.clear();
-    Real nearest = std::numeric_limits<Real>::infinity();
+    Real nearest = infinity;
     SurfaceContacts surfaces(inputs, settings, h, pairs, found, near);
     for (Index p = begin.pair; p < static_cast<Index>(pairs.size()) && p <= end.pair; ++p) {
         const Index from = p == begin.pair ? begin.candidate : 0;
@@ -193,7 +192,7 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
         for (std::size_t b = begin; b < end; ++b) write_rows(pairs.found[b].span(), pairs.block_first[b], contacts);
     };
     parallel_for(executor, static_cast<std::size_t>(blocks),
-                 count > rows_per_block ? 1 : static_cast<std::size_t>(blocks), write);
+                 count > contacts_per_block ? 1 : static_cast<std::size_t>(blocks), write);
     return true;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/contact_rows.h"
@@ -24,7 +23,7 @@ namespace {
 constexpr std::size_t checked_pairs_per_block = 512;  // number of pairs whose motion is checked by one task
 
 /// Nearest points of two features at some time of the step.
-struct Nearest {
+struct NearestPoints {
     Stencil stencil;
     Vec3 offset;  // from the point on the second feature to that on the first [m]
     Vec3 point;   // nearest point of the second feature [m]
@@ -87,7 +86,7 @@ private:
                    : !was_far_at_rest(inputs, scale, node[0], std::array{node[1], node[2], node[3]});
     }
 
-    static Nearest nearest(FeaturePair features, const CandidateNodes& node, const FourPoints& x) {
+    static NearestPoints nearest(FeaturePair features, const CandidateNodes& node, const FourPoints& x) {
         if (features == FeaturePair::edge_edge) {
             const SegmentSegment c = closest_points_of_segments(x[0], x[1], x[2], x[3]);
             return {stencil_of_edges(node, c), c.on_first - c.on_second, c.on_second};
@@ -96,7 +95,7 @@ private:
         return {stencil_of_point(node, c.weight), x[0] - c.nearest, c.nearest};
     }
 
-    void add(const Candidate& candidate, FeaturePair features, const Nearest& met) {
+    void add(const Candidate& candidate, FeaturePair features, const NearestPoints& met) {
         const Real length = met.offset.norm();
         if (!(length > 0)) return;  // the features touched before the step
         const Vec3 normal = met.offset / length;
@@ -233,7 +232,7 @@ Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTabl
             continue;
         }
         pairs.longer_motion[p] = motion;
-        pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();
+        pairs.valid_until[p] = -infinity;
         ++count;
     }
     return count;
@@ -247,7 +246,7 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
             // Distances to colliders are signed, so their pairs have no state.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
-            pairs.valid_until[p] = -std::numeric_limits<Real>::infinity();  // an overlapping pair needs a longer list
+            pairs.valid_until[p] = -infinity;  // an overlapping pair needs a longer list
         }
 }
 

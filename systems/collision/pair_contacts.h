@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "components/range.h"
@@ -44,7 +43,7 @@ inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Rea
 /// called for all candidates.
 void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, Index p, Range range, auto&& test) {
     const std::span<const Real> asleep_until = pairs.asleep_until[p].span();
-    const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : std::numeric_limits<Real>::infinity();
+    const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : infinity;
     Index c = range.begin;
     for (; c + candidates_at_once <= range.end; c += candidates_at_once)
         for_each_lane(awake_lanes(asleep_until, c, travel_bound),

@@ -181,7 +181,7 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Real travel_base = pair_travel_base(inputs_, pairs_, p), close_until = travel_base - scale.edge_depth,
                near = near_distance(scale, pairs_.closing[p]),
                can_meet =
-                   settings_.use_budgets ? (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction : infinite;
+                   settings_.use_budgets ? (pairs_.travel_bound[p] - pairs_.travel[p]) / slow_fraction : infinity;
     Real* const asleep_until = pairs_.asleep_until[p].data();
     ByPlace<std::uint16_t> close, meeting;
     std::size_t close_count = 0, meeting_count = 0;

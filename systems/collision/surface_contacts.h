@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "components/contact_table.h"
 #include "components/pair_table.h"
@@ -58,7 +57,7 @@ private:
     PairTable& pairs_;
     Column<ContactRow>& found_;
     Column<NearCandidate>& near_;
-    Real least_distance_ = std::numeric_limits<Real>::infinity();
+    Real least_distance_ = infinity;
 
     std::size_t count_ = 0, pair_count_ = 0;
     ByPlace<AwakePair> pair_;       // each pair has at least one collected candidate

@@ -22,7 +22,7 @@ Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real kept) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;
-    Real least = std::numeric_limits<Real>::infinity();
+    Real least = infinity;
     for (std::size_t i = 0; i < own; ++i)
         for (std::size_t j = own; j < 4; ++j) {
             const Real approach = -normal.dot(displacement[i] - displacement[j]);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "components/types.h"
@@ -25,7 +24,7 @@ Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 struct KeptApart {
     Real distance = 0;  // sum of the radii of the round bodies [m]
     // Largest gap beyond `distance` at which the features count as in contact [m].
-    Real near = std::numeric_limits<Real>::infinity();
+    Real near = infinity;
 };
 
 /// Time in [0, 1] at which two features come near contact, or nothing if they do not. Their points move in straight

@@ -1,7 +1,6 @@
 // Joints of rigid bodies with limits and motors (docs/methods/joints.md).
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct JointMotor {
     std::optional<Real> position{};  // target coordinate of the joint, reached within one step if possible [rad or m]
     Real strength = 0;               // largest moment (hinge) or force (slider) of the motor, >= 0 [N m or N]
     // Largest speed at which the motor approaches `position`, > 0 [rad/s or m/s].
-    Real fastest = std::numeric_limits<Real>::infinity();
+    Real fastest = infinity;
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a

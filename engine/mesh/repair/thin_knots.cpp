@@ -189,9 +189,9 @@ private:
 
     /// Returns the change with its altitude, or nothing if the altitude grows too little.
     std::optional<Change> finished(Change change) const {
-        Real before = std::numeric_limits<Real>::infinity();
+        Real before = infinity;
         for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
-        change.altitude = std::numeric_limits<Real>::infinity();
+        change.altitude = infinity;
         for (const Triangle& t : change.made)
             change.altitude = std::min(change.altitude, altitude_of(corners(t, change)));
         if (!(change.altitude > least_gain * before)) return std::nullopt;
@@ -226,7 +226,7 @@ private:
 
     /// Returns the index of the new triangle that is nearest to the point, and the squared distance of the two [m^2].
     std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
-        std::pair<std::size_t, Real> nearest{0, std::numeric_limits<Real>::infinity()};
+        std::pair<std::size_t, Real> nearest{0, infinity};
         for (std::size_t i = 0; i < change.made.size(); ++i) {
             const Corners x = corners(change.made[i], change);
             const Real distance = closest_point_on_triangle(point, x[0], x[1], x[2]).distance_squared;

@@ -1,8 +1,6 @@
 // Distances of points from a surface.
 #pragma once
 
-#include <limits>
-
 #include "components/bvh_table.h"
 #include "skerry/mesh.h"
 
@@ -15,7 +13,7 @@ public:
     explicit TriangleTree(SurfaceMesh surface);
 
     /// Exact squared distance from the point to the nearest triangle [m^2]. Returns `limit` if no triangle is nearer.
-    Real distance_squared(const Vec3& point, Real limit = std::numeric_limits<Real>::infinity()) const;
+    Real distance_squared(const Vec3& point, Real limit = infinity) const;
 
 private:
     void search(Index row, const Vec3& point, Real& nearest) const;

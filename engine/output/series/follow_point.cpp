@@ -1,13 +1,12 @@
 #include "engine/output/series/follow_point.h"
 
 #include <Eigen/LU>
-#include <limits>
 #include <utility>
 
 namespace skerry {
 
 std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& place) {
-    std::pair<Index, Real> nearest{no_index, std::numeric_limits<Real>::infinity()};
+    std::pair<Index, Real> nearest{no_index, infinity};
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         const Real distance = (nodes[n] - place).norm();
         if (distance < nearest.second) nearest = {static_cast<Index>(n), distance};

@@ -19,11 +19,6 @@ std::string title_of_body(const Model& model, std::size_t body) {
     return "body '" + model.body_records[body].name + "'";
 }
 
-[[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
-                         const std::string& expected) {
-    Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
-}
-
 void require_values(const Model& model, std::size_t body, const char* call, const char* field,
                     std::span<const Vec3> values) {
     const auto count = static_cast<std::size_t>(model.bodies.nodes[body].size());

@@ -17,8 +17,8 @@ namespace skerry {
 
 namespace {
 
-[[noreturn]] void refuse(const Model& model, std::size_t body, const char* field, const std::string& found,
-                         const std::string& expected) {
+[[noreturn]] void refuse_change(const Model& model, std::size_t body, const char* field, const std::string& found,
+                                const std::string& expected) {
     Complaint{.file = {},
               .object = "body '" + model.body_records[body].name + "'",
               .field = field,
@@ -31,18 +31,19 @@ namespace {
 void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
     const auto row = static_cast<Index>(body);
     if (next == BodyDynamics::automatic)
-        refuse(model, body, "dynamics", "automatic",
-               "explicit, implicit or rigid (automatic is possible only when a body is added)");
+        refuse_change(model, body, "dynamics", "automatic",
+                      "explicit, implicit or rigid (automatic is possible only when a body is added)");
     if (next != BodyDynamics::explicit_elastic && model.bodies.self_contact[body])
-        refuse(model, body, "self_contact", "true", "false, as required by the dynamics " + std::string(name_of(next)));
+        refuse_change(model, body, "self_contact", "true",
+                      "false, as required by the dynamics " + std::string(name_of(next)));
     if (model.bodies.core_nodes[body] > 0)
-        refuse(model, body, "dynamics", std::string(name_of(next)),
-               "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
+        refuse_change(model, body, "dynamics", std::string(name_of(next)),
+                      "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
-        refuse(model, body, "dynamics", "a change for an attached body", "a body without attachments");
+        refuse_change(model, body, "dynamics", "a change for an attached body", "a body without attachments");
     if (has_rows_joining(body, model))
-        refuse(model, body, "dynamics", "a change for a body with joints", "a body without joints");
+        refuse_change(model, body, "dynamics", "a change for a body with joints", "a body without joints");
 }
 
 /// Centre of mass and momenta of a free body.

@@ -16,10 +16,8 @@ namespace skerry {
 
 namespace {
 
-constexpr Real unbounded = std::numeric_limits<Real>::infinity();
-
 [[noreturn]] void refuse_joint(const char* field, const std::string& found, const std::string& expected) {
-    Complaint{.file = {}, .object = "joint", .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+    refuse("joint", field, found, expected);
 }
 
 bool has_axis(JointKind kind) {
@@ -48,7 +46,7 @@ void validate_motor(const JointMotor& motor) {
 void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
     if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or no limit");
     if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or no limit");
-    if (lower.value_or(-unbounded) > upper.value_or(unbounded))
+    if (lower.value_or(-infinity) > upper.value_or(infinity))
         refuse_joint("lower", std::to_string(*lower), "at most upper, " + std::to_string(*upper));
 }
 
@@ -144,8 +142,8 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.second[row] = second;
     table.first_frame[row] = frame_on(model, first, joint.point, axes);
     table.second_frame[row] = frame_on(model, second, joint.point, axes);
-    table.lower[row] = joint.lower.value_or(-unbounded);
-    table.upper[row] = joint.upper.value_or(unbounded);
+    table.lower[row] = joint.lower.value_or(-infinity);
+    table.upper[row] = joint.upper.value_or(infinity);
     table.motor[row] = row_of(joint.motor);
     table.coordinate[row] = table.step[row] = 0;
     table.impulse[row] = table.moment[row] = Vec3::Zero();
@@ -235,7 +233,7 @@ void Joints::set_limits(JointHandle joint, std::optional<Real> lower, std::optio
         refuse_joint("lower, upper", "limits on a " + std::string(name_of(model.joints.kind[row])) + " joint",
                      "limits on a hinge or slider");
     validate_limits(lower, upper);
-    const Real least = lower.value_or(-unbounded), most = upper.value_or(unbounded);
+    const Real least = lower.value_or(-infinity), most = upper.value_or(infinity);
     if (model.joints.lower[row] == least && model.joints.upper[row] == most) return;
     model.joints.lower[row] = least;
     model.joints.upper[row] = most;

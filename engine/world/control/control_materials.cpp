@@ -91,14 +91,9 @@ void weigh(Model& model, std::size_t body) {
         model.body_mass[body] += model.nodes.mass[static_cast<std::size_t>(n)];
 }
 
-[[noreturn]] void refuse(const char* field, const std::string& found, const std::string& expected) {
-    Complaint{.file = {}, .object = "material", .field = field, .found = found, .expected = expected, .hint = {}}
-        .raise();
-}
-
 void require_changeable(const MaterialRow& now, const MaterialRow& next) {
     if (now.constants.model != next.constants.model)
-        refuse("model", std::string(name_of(next.constants.model)),
+        refuse("material", "model", std::string(name_of(next.constants.model)),
                std::string(name_of(now.constants.model)) +
                    ", because the law of a material is fixed; for another law, add a new material");
 }

@@ -2,7 +2,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -21,7 +20,7 @@ namespace skerry {
 namespace {
 
 // Initial value of uninverted_until [m]: tetrahedra that find_inversions has not checked yet.
-constexpr Real not_looked_at = -std::numeric_limits<Real>::infinity();
+constexpr Real not_looked_at = -infinity;
 
 constexpr Real default_contact_distance = 0.02;  // fraction of the mean surface edge, small against the mesh resolution
 
@@ -108,7 +107,7 @@ Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span
 
 /// Smallest altitude of all tetrahedra of a body; 0 without tetrahedra [m].
 Real smallest_altitude(const NewBody& body) {
-    Real smallest = std::numeric_limits<Real>::infinity();
+    Real smallest = infinity;
     for (const auto& tetrahedron : body.tetrahedra)
         smallest = std::min(smallest, skerry::smallest_altitude(tetrahedron, body.nodes));
     return body.tetrahedra.empty() ? 0 : smallest;

@@ -1,6 +1,5 @@
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,8 +9,6 @@
 namespace skerry {
 
 namespace {
-
-constexpr Real unbounded = std::numeric_limits<Real>::infinity();
 
 void check_sizes(const Hdf5File& file, Model& model) {
     const std::size_t nodes = model.nodes.position.size();
@@ -87,11 +84,11 @@ void check_bodies(const Hdf5File& file, const Model& model) {
     expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
     expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
     expect_partition(file, "/bodies/implicit", bodies.implicit, model.implicit_nodes.size());
-    expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, unbounded);
-    expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, unbounded);
-    expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, unbounded);
+    expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, infinity);
+    expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, infinity);
+    expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, infinity);
     expect_between(file, "/bodies/core_nodes", bodies.core_nodes, 0, cylinder_core_nodes);
-    expect_between(file, "/bodies/round_radius", bodies.round_radius, 0.0, unbounded);
+    expect_between(file, "/bodies/round_radius", bodies.round_radius, 0.0, infinity);
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         const auto complain = [&](const char* field, const std::string& found, const std::string& expected) {
             file.complain(std::string("/bodies/") + field, found + " at row " + std::to_string(b), expected);
@@ -320,7 +317,7 @@ void check_joined_bodies(const Hdf5File& file, const Model& model, const char* n
 
 void check_joints(const Hdf5File& file, const Model& model) {
     const JointTable& table = model.joints;
-    expect_between(file, "/joints/step", table.step, 0.0, unbounded);
+    expect_between(file, "/joints/step", table.step, 0.0, infinity);
     for (std::size_t j = 0; j < table.size(); ++j) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
             if (!good)
@@ -358,8 +355,8 @@ void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) 
 
 void check_model(const Hdf5File& file, Model& model) {
     check_sizes(file, model);
-    expect_between(file, "/nodes/mass", model.nodes.mass, 0.0, unbounded);
-    expect_between(file, "/nodes/inverse_mass", model.nodes.inverse_mass, 0.0, unbounded);
+    expect_between(file, "/nodes/mass", model.nodes.mass, 0.0, infinity);
+    expect_between(file, "/nodes/inverse_mass", model.nodes.inverse_mass, 0.0, infinity);
     check_bodies(file, model);
     check_rows_of_bodies(file, model);
     check_moved(file, model);

@@ -1,13 +1,12 @@
 #include "engine/world/state/contact_cache.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace skerry {
 
 void ContactCache::forget_body(Model& model, std::size_t body) {
     search.forget_body(body);
-    constexpr Real long_ago = -std::numeric_limits<Real>::infinity();
+    constexpr Real long_ago = -infinity;
     model.bodies.uninverted_until[body] = long_ago;
     model.bodies.unstrained[body] = 0;
     std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, model.bodies.tetrahedron_blocks[body]), long_ago);

@@ -2,7 +2,6 @@
 // (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -246,11 +245,11 @@ void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
 /// Longest step at which clusters planned for the length `step` are not too heavy [s]. `moment`: moment of inertia that
 /// the clusters add at the length `step`, divided by its limit.
 Real longest_by_moment(Real step, Real moment) {
-    return moment > 0 ? step / std::sqrt(moment) : std::numeric_limits<Real>::infinity();
+    return moment > 0 ? step / std::sqrt(moment) : infinity;
 }
 
 Real longest_step(const Model& model) {
-    return model.settings.step_size.value_or(std::numeric_limits<Real>::infinity()) / model.tuning.step_safety;
+    return model.settings.step_size.value_or(infinity) / model.tuning.step_safety;
 }
 
 /// Makes the planned elements of all bodies implicit. The stable steps with mass forms then limit the step length.
@@ -281,7 +280,7 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
 
 /// Shortest stable step at rest of all bodies with elements [s].
 Real shortest_step(const Model& model) {
-    Real shortest = std::numeric_limits<Real>::infinity();
+    Real shortest = infinity;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (has_elements(model, b)) shortest = std::min(shortest, model.bodies.rest_step[b]);
     return shortest;

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "engine/world/kernels.h"
@@ -39,7 +38,7 @@ Real step_of_body(const Model& model, std::size_t body) {
 }
 
 Real stable_step(const Model& model, Index* body) {
-    Real smallest = std::numeric_limits<Real>::infinity();
+    Real smallest = infinity;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         const Real step = step_of_body(model, b);
         if (!(step < smallest)) continue;
@@ -157,8 +156,8 @@ public:
 private:
     Model& model_;
     Column<Real>& stiffness_sum_;
-    Real goal_ = std::numeric_limits<Real>::infinity();  // shortest stable step of all bodies at rest [s]
-    Real energy_before_ = 0;                             // J
+    Real goal_ = infinity;               // shortest stable step of all bodies at rest [s]
+    Real energy_before_ = 0;             // J
     std::vector<std::uint8_t> changed_;  // by body, nonzero if its implicit elements have changed; empty: no changes
 };
 

@@ -283,8 +283,7 @@ StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan&
 }  // namespace
 
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable) {
-    const Real longest =
-        fastest.rate > 0 ? strain_margin * max_strain_step / fastest.rate : std::numeric_limits<Real>::infinity();
+    const Real longest = fastest.rate > 0 ? strain_margin * max_strain_step / fastest.rate : infinity;
     return std::max(longest, stable / most_shortening);
 }
 

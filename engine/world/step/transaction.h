@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "components/column.h"
@@ -42,13 +41,12 @@ enum class StepOutcome {
 /// Limits of the next attempt at a step, found in attempts at the present and at earlier steps.
 struct Tries {
     // Bound of the step length after crossings, inversions or unsolved steps [s]. It grows in each committed step.
-    Real longest = std::numeric_limits<Real>::infinity();
-    Real slow_enough =
-        std::numeric_limits<Real>::infinity();  // bound of the step length by the rate of deformation [s]
-    Index fastest = no_index;                   // row of BodyTable: the body that deforms fastest
-    int with_longer_lists = 0;                  // attempts at this step whose contact lists were incomplete
-    int with_crossings = 0;                     // attempts at this length in which features crossed
-    bool letting_through = false;               // the next attempt is the last: it accepts crossings and inversions
+    Real longest = infinity;
+    Real slow_enough = infinity;   // bound of the step length by the rate of deformation [s]
+    Index fastest = no_index;      // row of BodyTable: the body that deforms fastest
+    int with_longer_lists = 0;     // attempts at this step whose contact lists were incomplete
+    int with_crossings = 0;        // attempts at this length in which features crossed
+    bool letting_through = false;  // the next attempt is the last: it accepts crossings and inversions
     // Cause of the bound `longest`: the last cause, other than speed, for which an attempt was shortened.
     StepLimit limit = StepLimit::inversion;
     Index body = no_index;  // row of BodyTable: the body that caused `longest`

@@ -107,11 +107,11 @@ Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& p) {
     const Vec3& size = geometry.size;
     switch (geometry.shape) {
         case ColliderShape::plane:
-            return infinite;
+            return infinity;
         case ColliderShape::box: {
             const int axis = static_cast<int>(place) / 2;
             const Real above = (place % 2 == 0 ? p[axis] : -p[axis]) - size[axis];
-            Real least = infinite;
+            Real least = infinity;
             for (int i = 0; i < 3; ++i)
                 if (i != axis) least = std::min(least, within_side(size[i] - std::abs(p[i]), above, 2 * size[axis]));
             return least;
@@ -131,12 +131,12 @@ Real flat_reach(const ColliderGeometry& geometry, Index place, const Vec3& p) {
         case ColliderShape::mesh:
             break;
     }
-    return -infinite;
+    return -infinity;
 }
 
 Index flat_place(const ColliderGeometry& geometry, const Vec3& point) {
     Index best = no_index;
-    Real furthest = -infinite;
+    Real furthest = -infinity;
     for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
         const Real reach = flat_reach(geometry, place, point);
         if (!(reach > furthest)) continue;
@@ -147,9 +147,9 @@ Index flat_place(const ColliderGeometry& geometry, const Vec3& point) {
 }
 
 Real flat_reach(const ColliderGeometry& geometry, std::span<const Vec3> points) {
-    Real best = -infinite;
+    Real best = -infinity;
     for (Index place = 0; place < flat_place_count(geometry.shape); ++place) {
-        Real least = infinite;
+        Real least = infinity;
         for (const Vec3& p : points) least = std::min(least, flat_reach(geometry, place, p));
         best = std::max(best, least);
     }
@@ -165,7 +165,7 @@ Real hull_distance(const ColliderGeometry& geometry, std::span<const Vec3> point
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : points) middle += p / static_cast<Real>(points.size());
     const HullTangent tangent = hull_tangent(geometry, middle);
-    Real least = infinite;
+    Real least = infinity;
     for (const Vec3& p : points) least = std::min(least, tangent.bound(p));
     return least;
 }

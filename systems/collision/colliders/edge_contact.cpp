@@ -228,7 +228,7 @@ private:
 /// -flat_slope, flat_slope or steep_slope. Returns a lower bound of the distance of the edge (edge_distance).
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
-    Real nearest = std::numeric_limits<Real>::infinity(), low = 0;
+    Real nearest = infinity, low = 0;
     SurfacePoint before = along.at(0);
     for (int i = 1; i <= intervals; ++i) {
         const Real high = static_cast<Real>(i) / intervals;

@@ -142,7 +142,7 @@ Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& cor
     const Vec3& furthest = front.point.at;
     const Vec3 centre(0, 0, furthest.z());
     const ColliderGeometry disc{ColliderShape::cylinder, {furthest.head<2>().norm(), 0, 0}};
-    Touch nearest{infinite, {}, furthest, Vec3::Zero(), false};
+    Touch nearest{infinity, {}, furthest, Vec3::Zero(), false};
     for (std::size_t i = 0; i < 3; ++i) {
         const Nodes end{corner[i] - centre, corner[(i + 1) % 3] - centre, Vec3::Zero()};
         nearest.distance = std::min(nearest.distance, nearest_on_convex(disc, 0, end).distance);
@@ -191,7 +191,7 @@ public:
     /// fraction of the step.
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
-        Real least = infinite;
+        Real least = infinity;
         for (std::size_t i = 0; i < feature_.nodes(); ++i) {
             const Real above = touch.normal.dot(nodes[i] - touch.point) - feature_.kept.distance,
                        approach = greatest_turn(i) * (1 - time) / 2 - normal.dot(velocity(i, time));

@@ -20,7 +20,7 @@ Real ball_radius(const ColliderGeometry& cylinder) {
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face) {
     const PointTriangle nearest = closest_point_on_triangle(Vec3::Zero(), face[0], face[1], face[2]);
     const SurfacePoint on = local_distance(cylinder, nearest.nearest, 0);
-    Real least = infinite;
+    Real least = infinity;
     for (const Vec3& p : face) least = std::min(least, on.distance + on.normal.dot(p - nearest.nearest));
     return std::max(least, std::sqrt(nearest.distance_squared) - ball_radius(cylinder));
 }

@@ -60,7 +60,7 @@ struct FlatDistance {
 /// equally near sides, the end faces are preferred.
 FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
-    const bool outer = r0 == -infinite || p.r >= 0.5 * (r0 + r1);
+    const bool outer = r0 == -infinity || p.r >= 0.5 * (r0 + r1);
     const Real beyond_z = top ? p.z - z1 : z0 - p.z;
     const Real beyond_r = outer ? p.r - r1 : r0 - p.r;
     const bool through_end = beyond_z >= beyond_r;
@@ -90,7 +90,7 @@ struct AxialFrame {
 };
 
 FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p) {
-    if (part == 0) return distance_to_rectangle(p, -infinite, size[0] + size[2], -size[2], 0);
+    if (part == 0) return distance_to_rectangle(p, -infinity, size[0] + size[2], -size[2], 0);
     return distance_to_rectangle(p, size[0], size[0] + size[2], -size[2], size[1]);
 }
 
@@ -109,7 +109,7 @@ FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
                                      {{inner, height}, {outer, height}, {0, 1}},
                                      {{outer, bottom}, {outer, height}, {1, 0}},
                                      {{0, bottom}, {outer, bottom}, {0, -1}}}};
-    FlatDistance best{-infinite, {0, 1}, p};
+    FlatDistance best{-infinity, {0, 1}, p};
     for (const Side& side : sides) {
         const Flat nearest{std::clamp(p.r, std::min(side.from.r, side.to.r), std::max(side.from.r, side.to.r)),
                            std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
@@ -136,7 +136,7 @@ SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& p, Ind
             return distance_to_ball(p, Vec3(0, 0, std::clamp(p[2], -size[1], size[1])), size[0]);
         case ColliderShape::cylinder: {
             const AxialFrame frame(p);
-            return frame.lift(distance_to_rectangle(frame.p, -infinite, size[0], -size[1], size[1]));
+            return frame.lift(distance_to_rectangle(frame.p, -infinity, size[0], -size[1], size[1]));
         }
         case ColliderShape::bucket: {
             const AxialFrame frame(p);
@@ -182,7 +182,7 @@ Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& dire
         case ColliderShape::mesh:
             break;
     }
-    return infinite;
+    return infinity;
 }
 
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion) {

@@ -1,7 +1,6 @@
 #include "systems/collision/overlap/collider_overlap.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/colliders/edge_contact.h"
@@ -24,7 +23,7 @@ Vec3 inner_point(const ColliderGeometry& geometry) {
 
 /// Vector from a point to the nearest point of a surface [m].
 Vec3 to_surface(const Solid& solid, const Vec3& point) {
-    Real least = std::numeric_limits<Real>::infinity();
+    Real least = infinity;
     Vec3 way = Vec3::Zero();
     for (const SolidTriangle& t : solid.surface) {
         const auto at = [&](std::size_t k) -> const Vec3& { return solid.point[static_cast<std::size_t>(t.node[k])]; };
@@ -167,7 +166,7 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
 std::optional<Overlap> overlap_of_round(const RoundSolid& body, const ColliderGeometry& geometry,
                                         const RigidMotion& motion, Real tolerance) {
     const std::array<Vec3, 3> core{to_local(motion, body.end[0]), to_local(motion, body.end[1]), Vec3::Zero()};
-    Touch nearest{.distance = std::numeric_limits<Real>::infinity(), .weight = {}, .point = {}, .normal = {}};
+    Touch nearest{.distance = infinity, .weight = {}, .point = {}, .normal = {}};
     for (Index part = 0; part < collider_part_count(geometry.shape); ++part) {
         TouchingFeature feature{.kind = body.is_segment ? TouchingFeature::Kind::edge : TouchingFeature::Kind::node,
                                 .of_shape = part,

@@ -27,7 +27,7 @@ Vec3 face_normal(const Simplex& s, std::size_t f) {
 }
 
 std::pair<Real, Real> interval(const Simplex& s, const Vec3& origin, const Vec3& axis) {
-    Real lower = infinite, upper = -infinite;
+    Real lower = infinity, upper = -infinity;
     for (std::size_t k = 0; k < s.count; ++k) {
         const Real at = axis.dot(s.point[k] - origin);
         lower = std::min(lower, at);
@@ -76,7 +76,7 @@ bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, cons
 }
 
 Real SimplexOverlap::way_out(const Vec3& direction) const {
-    Real least = infinite;
+    Real least = infinity;
     for (std::size_t k = 0; k < count_; ++k) {
         const Real along = axis_[k].dot(direction);
         if (along != 0) least = std::min(least, along > 0 ? forward_[k] / along : backward_[k] / -along);

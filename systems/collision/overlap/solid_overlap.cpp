@@ -91,7 +91,7 @@ OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real to
 /// Distance that the first solid has to move along a unit direction until all its points are beyond the second solid
 /// [m].
 Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
-    Real lowest = infinite, highest = -infinite;
+    Real lowest = infinity, highest = -infinity;
     for (const Index n : first.solid.surface_point)
         lowest = std::min(lowest, direction.dot(first.solid.point[static_cast<std::size_t>(n)] + first.shift));
     for (const Index n : second.solid.surface_point)
@@ -149,7 +149,7 @@ Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second
 
 /// Extent of the overlap positions along a direction [m].
 Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
-    Real lowest = infinite, highest = -infinite;
+    Real lowest = infinity, highest = -infinity;
     for (const Meeting& m : meetings) {
         lowest = std::min(lowest, direction.dot(m.place));
         highest = std::max(highest, direction.dot(m.place));
@@ -165,7 +165,7 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
     constexpr Real shorter = 1 - 1e-6;  // shorter by more than rounding, so that the first of equal ways is used
     Vec3 best = Vec3::UnitZ();
-    Real least = infinite;
+    Real least = infinity;
     for (std::size_t d = 0; d < way.size(); ++d)
         if (const Real length = way[d] + extent(meetings, directions.span()[d]); length < shorter * least) {
             least = length;
@@ -194,7 +194,7 @@ void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overl
     directions.add(middle_of_points(first) - middle_of_points(second));
     for (Index axis : {2, 0, 1})
         for (Real sign : {1.0, -1.0}) directions.add(sign * Vec3::Unit(axis));
-    overlap.depth = infinite;
+    overlap.depth = infinity;
     for (const Vec3& direction : directions.span())
         if (const Real way = way_out_of_points(first, second, direction); way < overlap.depth) {
             overlap.depth = way;

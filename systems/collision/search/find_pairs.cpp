@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "jobs/parallel_for.h"
 #include "systems/collision/inputs/contact_key.h"
@@ -196,8 +195,7 @@ private:
         const Vec3 apart = kind == PairKind::collider
                                ? Vec3(Vec3::Zero())
                                : Vec3(inputs_.body.frame[first].position - inputs_.body.frame[second].position);
-        found.push_back(
-            {key, kind, first, second, -std::numeric_limits<Real>::infinity(), PairState::unknown, apart, 0});
+        found.push_back({key, kind, first, second, -infinity, PairState::unknown, apart, 0});
     }
 
     /// Groups the pairs by kind and first body, then sorts each group.

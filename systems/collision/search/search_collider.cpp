@@ -44,7 +44,7 @@ private:
     /// Adds the nodes near the collider as candidates. Returns the least signed distance of a node [m].
     Real add_points() {
         const Real radius = pair_.scale.zone + pair_.margin;
-        Real nearest = infinite;
+        Real nearest = infinity;
         for (Index v = vertices().begin; v < vertices().end; ++v) {
             const Index node = inputs_.surface.vertices.node[v];
             for (Index part = 0; part < parts_; ++part) {
@@ -64,11 +64,11 @@ private:
     /// Lower bound of the distance that the body has to move before an edge or face can touch between its nodes [m].
     Real distance_between_nodes() const {
         const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
-        if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinite;
+        if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinity;
         const Vec3 middle = local(nearest_node_);
         // Two bounds for the whole body: `hull` uses the tangent plane of the collider at the nearest node. `flat` is
         // the motion during which all nodes stay over one flat region.
-        Real hull = infinite, flat = infinite;
+        Real hull = infinity, flat = infinity;
         const Index place = flat_place(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);
         for (Index v = vertices().begin; v < vertices().end; ++v) {

@@ -245,7 +245,7 @@ private:
 Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
                    Column<FoundCandidate>& found) {
     const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
-    if (first.size() == 0 || second.size() == 0) return infinite;
+    if (first.size() == 0 || second.size() == 0) return infinity;
     const Real apart =
         std::max(pair.apart, std::sqrt(distance_squared(box[first.begin], box[second.begin]))) - pair.scale.zone;
     if (apart >= pair.margin) return pair.travel_base + apart;

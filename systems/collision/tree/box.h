@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "components/bvh_table.h"
 #include "components/pair_table.h"
 
 namespace skerry {
 
-inline constexpr Real infinite = std::numeric_limits<Real>::infinity();
-
 inline Aabb empty_box() {
-    return {Vec3::Constant(infinite), Vec3::Constant(-infinite)};
+    return {Vec3::Constant(infinity), Vec3::Constant(-infinity)};
 }
 
 inline void grow(Aabb& box, const Vec3& point) {
@@ -60,7 +57,7 @@ BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& 
 /// Lower bound of the distance between the contents of two spheres [m]; 0 if the spheres overlap or are not finite.
 inline Real gap_between(const BoundingSphere& a, const BoundingSphere& b) {
     const Real gap = (a.centre - b.centre).norm() - a.radius - b.radius;
-    return gap > 0 && gap < std::numeric_limits<Real>::infinity() ? gap : 0;
+    return gap > 0 && gap < infinity ? gap : 0;
 }
 
 }  // namespace skerry

@@ -347,8 +347,7 @@ StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, 
     StrainRate fastest;
     for (std::size_t body = 0; body < state.body_node_blocks.size(); ++body) {
         if (!(state.body_min_altitude[body] > 0) || state.body_node_blocks[body].size() == 0) continue;
-        const Real of_body =
-            deformation_rate(executor, state, body, rate, std::numeric_limits<Real>::infinity(), beside_fast);
+        const Real of_body = deformation_rate(executor, state, body, rate, infinity, beside_fast);
         if (of_body > fastest.rate) fastest = {of_body, static_cast<Index>(body)};
     }
     return fastest;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "components/ask_for_lines.h"
 #include "components/check.h"
@@ -48,7 +47,7 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
 /// Inverted tetrahedra count, because they may turn back and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
-    const Real8 left_over = Real8{} + std::numeric_limits<Real>::infinity();
+    const Real8 left_over = Real8{} + infinity;
     const Real8 squared_width = span > 0.0 ? volume * volume / span : Real8{};
     const Real8 of_elements = load(rest_volume) > 0.0 ? squared_width : left_over;  // m^2
     Real least = of_elements[0];
@@ -117,7 +116,7 @@ private:
     }
 
     static Real least(std::span<const Real> of, std::size_t begin, std::size_t end) {
-        Real least = std::numeric_limits<Real>::infinity();
+        Real least = infinity;
         const Real* const value = of.data();
 #pragma omp simd reduction(min : least)
         for (std::size_t i = begin; i < end; ++i) least = value[i] < least ? value[i] : least;
@@ -171,7 +170,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
                 open = 0;
             }
             open += some.size();
-            memory.part.push_back({b, some, std::numeric_limits<Real>::infinity()});
+            memory.part.push_back({b, some, infinity});
         }
     }
     memory.job.push_back(static_cast<Index>(memory.part.size()));
@@ -182,7 +181,7 @@ void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPa
               Inversions& found) {
     const Index body = parts.front().body;
     bool judged = false;
-    uninverted_until = std::numeric_limits<Real>::infinity();
+    uninverted_until = infinity;
     for (const InversionPart& part : parts) {
         uninverted_until = std::min(uninverted_until, part.uninverted_until);
         if (part.count == 0) continue;

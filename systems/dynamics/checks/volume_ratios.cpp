@@ -1,7 +1,6 @@
 #include "systems/dynamics/checks/volume_ratios.h"
 
 #include <cmath>
-#include <limits>
 
 #include "systems/dynamics/elements/element_block.h"
 
@@ -11,7 +10,7 @@ namespace {
 
 template <class Ratio>
 VolumeRatios worst_of(std::span<const ElementLane> volume, Range blocks, Real near, Ratio&& ratio_of) {
-    VolumeRatios worst{std::numeric_limits<Real>::infinity(), no_index};
+    VolumeRatios worst{infinity, no_index};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
         const Real8 ratio = ratio_of(b);
         for (std::size_t l = 0; l < element_lanes; ++l) {

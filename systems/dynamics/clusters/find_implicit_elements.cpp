@@ -230,7 +230,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
             measure();
         else
             estimate();
-        Real shortest = std::numeric_limits<Real>::infinity();  // s
+        Real shortest = infinity;  // s
         for_each_element(elements_, blocks_,
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         found_enough = !(shortest < goal.stands);

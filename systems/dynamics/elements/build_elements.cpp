@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "components/any_table.h"
@@ -109,7 +108,7 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
         for (NodeLane& corner : node)
             for (Index& n : corner.lane) n = first_node;
         ElementLane volume{}, altitude;
-        for (Real& left_over : altitude.lane) left_over = std::numeric_limits<Real>::infinity();
+        for (Real& left_over : altitude.lane) left_over = infinity;
         unsigned sliver = 0;
         for (std::size_t l = 0; l < element_lanes && first + l < tetrahedra.size(); ++l) {
             for (std::size_t a = 0; a < 4; ++a) node[a][l] = first_node + tetrahedra[first + l][a];
@@ -122,7 +121,7 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
         table.altitude.push_back(altitude);
         table.leeway.push_back({{1, 1, 1, 1, 1, 1, 1, 1}});
         table.sliver.push_back(static_cast<std::uint8_t>(sliver));
-        table.uninverted_until.push_back(-std::numeric_limits<Real>::infinity());
+        table.uninverted_until.push_back(-infinity);
     }
     return {first_block, static_cast<Index>(table.node.size())};
 }

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "systems/geometry/rotation.h"
@@ -127,7 +126,7 @@ StiffBody::StiffBody(const ElementList& elements, std::span<const MaterialConsta
     inverse_solid_inertia_ = rest.inertia().inverse();
     // A bar of length l that spins at the angular velocity omega has the energy density rho (omega l)^2 / 24. Its
     // strain is greatest in the middle: three times this energy density over Young's modulus.
-    Real volume = 0, least = std::numeric_limits<Real>::infinity();
+    Real volume = 0, least = infinity;
     for (const std::array<Index, 4>& corners : tetrahedra) volume += six_volumes(corners, rest_position) / 6;
     for (const Index m : elements.material) {
         const Real lambda = constants[static_cast<std::size_t>(m)].lame_lambda,

@@ -6,7 +6,6 @@
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
-#include <limits>
 
 #include "systems/material/with_law.h"
 
@@ -270,7 +269,7 @@ BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real 
     constexpr int steps = 25;
     BlockReals bounds;
     for (std::size_t part = 0; part < kernel_parts; ++part) {
-        const KernelReal unknown = KernelReal{} + std::numeric_limits<Real>::infinity();
+        const KernelReal unknown = KernelReal{} + infinity;
         KernelReal& bound = bounds[part] = unknown;
         Real limit = enough;
         for (int i = 0; i < steps && !all(bound < unknown); ++i, limit *= growth) {
@@ -306,7 +305,7 @@ Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<
     for (std::size_t part = 0; below && part < kernel_parts; ++part)
         below = all(is_below(A[part], lanes_in(volume, part), KernelReal{} + enough));
     if (below) return Real8{} + enough;
-    if (sharpness == Sharpness::compared) return Real8{} + std::numeric_limits<Real>::infinity();
+    if (sharpness == Sharpness::compared) return Real8{} + infinity;
     BlockReals volumes, bounds;
     for (std::size_t part = 0; part < kernel_parts; ++part) volumes[part] = lanes_in(volume, part);
     if (sharpness == Sharpness::bisected)

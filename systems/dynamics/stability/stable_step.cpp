@@ -222,7 +222,7 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
 
 StableStep result_of(const StepLook& look) {
     if (look.broken != no_index) return {0, look.broken};
-    StableStep found{std::numeric_limits<Real>::infinity(), no_index};
+    StableStep found{infinity, no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
     // If the body was bounded in both ways, both bounds are valid and the longer step is taken.
@@ -251,7 +251,7 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     const Pieces pieces{by_shares, position, mass, stiffness_sum};
     const Range of_body = without_guards(elements, blocks);
     for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
-        std::ranges::fill(lanes.lane, std::numeric_limits<Real>::infinity());
+        std::ranges::fill(lanes.lane, infinity);
     const std::uint64_t count = pieces_of_look(by_shares, of_body);
     StepLook look;
     for (std::uint64_t piece = 0; piece < count;) {
@@ -263,8 +263,7 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
         }
         pieces.bound(run.blocks, 0, [&](std::size_t b, const Real8& bound) {
             for (std::size_t l = 0; l < element_lanes; ++l)
-                step[b - static_cast<std::size_t>(blocks.begin)][l] =
-                    bound[l] > 0 ? step_of(bound[l]) : std::numeric_limits<Real>::infinity();
+                step[b - static_cast<std::size_t>(blocks.begin)][l] = bound[l] > 0 ? step_of(bound[l]) : infinity;
         });
     }
 }
@@ -276,10 +275,10 @@ void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<con
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
-        Real shortest = std::numeric_limits<Real>::infinity();
+        Real shortest = infinity;
         for (const ElementLane& lanes : step)
             for (const Real own : lanes.lane) shortest = std::min(shortest, own);
-        if (!(shortest > 0) || shortest == std::numeric_limits<Real>::infinity()) return;
+        if (!(shortest > 0) || shortest == infinity) return;
         for (std::size_t b = 0; b < step.size(); ++b)
             for (std::size_t l = 0; l < element_lanes; ++l) mass_share[b][l] *= std::max(least, shortest / step[b][l]);
     }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "components/check.h"
 #include "systems/dynamics/elements/element_block.h"
@@ -95,7 +94,7 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
-    Real least = std::numeric_limits<Real>::infinity();  // least of the upper bounds on E relative to the mass [1/s^2]
+    Real least = infinity;  // least of the upper bounds on E relative to the mass [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(of.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {

@@ -1,7 +1,6 @@
 #include "systems/solver/equations/block_factor.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 namespace skerry {
@@ -31,7 +30,7 @@ void BlockFactor::couple(Index g, Index h) {
 /// Returns the remaining part with the cheapest elimination. If several are equally cheap, returns the first of them.
 Index BlockFactor::next_to_eliminate() const {
     Index next = no_index;
-    Real least = std::numeric_limits<Real>::infinity();
+    Real least = infinity;
     for (Index g = 0; g < part_count(); ++g) {
         if (rank_[static_cast<std::size_t>(g)] != no_index) continue;
         const Real own = size(g), all = own + beside_[static_cast<std::size_t>(g)];

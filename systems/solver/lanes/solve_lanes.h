@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "systems/solver/lanes/lane_problem.h"
 #include "systems/solver/methods/ags.h"
@@ -160,9 +159,8 @@ public:
         outcome_.solved = outcome_.solved | solved;
         outcome_.error = solved ? error : outcome_.error;
         outcome_.iterations = solved ? zero + static_cast<Real>(iteration) : outcome_.iterations;
-        constexpr Real infinite = std::numeric_limits<Real>::infinity();
         // A lane continues if no measurement is due, or if the measured error is finite and above the tolerance.
-        op_.keep_sweeping(op_.swept() & !(due & !((error > tolerance_) & (error < zero + infinite))));
+        op_.keep_sweeping(op_.swept() & !(due & !((error > tolerance_) & (error < zero + infinity))));
         if (!any_lane(op_.swept())) return true;
         if (all_due) check_ = next_check(iteration);
         return false;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "components/types.h"
 
@@ -12,7 +11,7 @@ namespace skerry {
 /// Velocity limits `low`, `high` and motor velocity `target` of the axis [m/s or rad/s], and the greatest impulse
 /// `most` of the motor [N s or N m s]
 struct AxisBounds {
-    Real low = -std::numeric_limits<Real>::infinity(), high = std::numeric_limits<Real>::infinity();
+    Real low = -infinity, high = infinity;
     Real target = 0, most = 0;
 };
 

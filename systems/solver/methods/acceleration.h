@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "systems/material/lane_math.h"
 #include "systems/solver/operators/contact_operator.h"
@@ -37,7 +36,7 @@ public:
     }
 
 private:
-    T momentum_ = T{} + 1, smallest_change_ = T{} + std::numeric_limits<Real>::infinity();
+    T momentum_ = T{} + 1, smallest_change_ = T{} + infinity;
 };
 
 /// The watchdog switches to plain sweeps after at least this many sweeps without progress. After its first action it
@@ -90,11 +89,11 @@ private:
             last_phase_ = best_at_ = iteration;
             plain_left_ = std::min(plain_sweeps << std::min(phase_, most_doublings), most_plain);
             relaxation_ = phase_ % 2 == 0 ? damped : 1;
-            best_ = std::numeric_limits<Real>::infinity();
+            best_ = infinity;
         }
     }
 
-    Real best_ = std::numeric_limits<Real>::infinity();
+    Real best_ = infinity;
     Index best_at_ = 0, last_phase_ = 0, phase_ = 0, plain_left_ = 0;
     Real relaxation_ = 1;
 };

@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    static SweepChangeOf<Number> unknown() { return {Number{} + std::numeric_limits<Real>::infinity(), Number{}}; }
+    static SweepChangeOf<Number> unknown() { return {Number{} + infinity, Number{}}; }
 
     void extrapolate() {
         // Number of sweeps between refreshes. Extrapolation accumulates rounding errors; a refresh costs half a sweep.

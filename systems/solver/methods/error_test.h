@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "systems/solver/operators/contact_operator.h"
 
@@ -128,7 +127,7 @@ private:
     Op& op_;
     const SolveLimits& limits_;
     BestIterate<Op> best_;
-    Real error_ = std::numeric_limits<Real>::infinity();
+    Real error_ = infinity;
     Index iteration_ = 0, check_ = 1;
 };
 

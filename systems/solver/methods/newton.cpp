@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "systems/solver/methods/pgs.h"
 
@@ -154,7 +153,7 @@ private:
         constexpr Real enough = 0.9;  // the merit must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
-        Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
+        Real least = infinity, best_length = 1;
         for (int k = 0; k < halvings; ++k) {
             const Real length = std::ldexp(Real(1), -k);
             go(length);

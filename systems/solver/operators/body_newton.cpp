@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -148,7 +147,7 @@ BodyEquations& BodyOperator::newton_memory() {
 }
 
 BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
-    equations.set_cost(std::numeric_limits<Real>::infinity());
+    equations.set_cost(infinity);
     if (touches_clusters()) return equations;  // K is known only for nodes with their own mass and for bodies
     list_unknowns(equations);
     list_parts(equations);
@@ -353,7 +352,7 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
         for (std::size_t k = 0; k < equations.present.size(); ++k)
             equations.present[k] = equations.before[k] + length * equations.step[k];
     };
-    Real least = std::numeric_limits<Real>::infinity(), best_length = 1;
+    Real least = infinity, best_length = 1;
     for (int k = 0; k < halvings; ++k) {
         const Real length = std::ldexp(Real(1), -k);
         go(length);
