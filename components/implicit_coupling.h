@@ -13,9 +13,9 @@ namespace skerry {
 /// Written by couple_implicit_bodies.
 struct ImplicitCoupling {
     Ragged<Index> nodes;  // by row of RigidBodyTable: the nodes with contacts, as ascending rows of NodeTable
-    // By row of RigidBodyTable: matrix that maps impulses on the nodes with contacts to velocities of these nodes, in
-    // the frame of the mesh [1/kg]. The matrix is symmetric, stored column by column, and has three rows per node. The
-    // implicit bodies own the memory.
+    // For each row of RigidBodyTable: matrix that maps impulses on the nodes with contacts to velocities of these
+    // nodes, in the frame of the mesh [1/kg]. The matrix is symmetric, stored column by column, and has three rows per
+    // node. The implicit bodies own the memory.
     Column<std::span<const Real>> response;
     // Matrices by row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world frame.
     // `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
