@@ -25,7 +25,7 @@ Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettin
 Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
-// Number of candidates that are checked together for sleep, without a branch for each.
+// Number of candidates whose asleep_until is compared at once, without a branch for each candidate.
 inline constexpr Index candidates_at_once = 16;
 
 // Another triangle counts as nearer to a point only if the relative difference of the distances exceeds this value,
