@@ -58,7 +58,6 @@ struct ColumnInfo {
 template <class Table>
 std::span<const ColumnInfo> columns_of();
 
-/// Reference to a table of any type.
 class AnyTable {
 public:
     template <class Table>

@@ -8,8 +8,8 @@ namespace skerry {
 /// Role of a column. Columns with the roles `state`, `link` and `body` are hashed and saved. Columns with the role
 /// `memory` are saved but not hashed. `derived` and `scratch` columns are neither hashed nor saved.
 enum class ColumnRole : std::uint8_t {
-    state,  // the next step depends on the column, and it cannot be derived
-    // state that refers to rows of other tables; the hash includes the object referred to instead of the row index
+    state,  // the next step depends on the column, and the column cannot be derived from other columns
+    // state whose meaning is hashed instead of its value, for example a row index of another table
     link,
     body,     // link to a row of BodyTable, or no_index; only in tables of Model::for_each_joining
     memory,   // bounds and their reference values; they decide when a check is repeated, but do not change any result

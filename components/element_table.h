@@ -153,7 +153,7 @@ struct ElementPatches {
     Column<Range> blocks;  // by patch: rows of ElementBlockTable
     // by patch: its slots (rows of the columns below that are listed by slot), one for each node of the patch
     Column<Range> slots;
-    Column<Index> node;           // by slot: row of NodeTable
+    Column<Index> node;           // by slot: its node, a row of NodeTable
     Ragged<Index> slots_of_node;  // by node: its slots, ascending
     Column<PaddedVec3> position;  // by slot: position of the node [m]; scratch
     Column<PaddedVec3> force;     // by slot: sum of the forces of the patch on the node [N]; scratch

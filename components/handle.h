@@ -74,7 +74,7 @@ public:
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
-    /// The live handle of a slot number, which table rows store.
+    /// The live handle with this slot number. Table rows store slot numbers.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {

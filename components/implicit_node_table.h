@@ -35,7 +35,7 @@ struct ImplicitNodeTable {
     void for_each_column(auto&& visit) {
         visit("displacement", displacement, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
-        visit("left", left, ColumnRole::link);  // hashed only if it is not zero
+        visit("left", left, ColumnRole::link);  // hashed only if the vector is not zero
         visit("elastic_force", elastic_force, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
         visit("velocity_next", velocity_next, ColumnRole::scratch);

@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// Material constants that the kernels use, computed once from the parameters of the user.
+/// Material constants that the kernels use. They are computed once from the parameters that the user sets.
 struct MaterialConstants {
     MaterialModel model;
     Real shear_modulus;  // Lame constant mu at small strain [Pa]
@@ -69,7 +69,7 @@ struct MaterialTable {
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // decay rate of deformation velocities; rigid motion is not damped [1/s]
+    Column<Real> damping;        // decay rate of velocities by deformation; rigid motion is not damped [1/s]
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {

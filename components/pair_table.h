@@ -20,7 +20,7 @@ namespace skerry {
 struct Candidate {
     std::uint64_t feature;  // ContactKey::feature
     Index first;            // row of the vertex; for two edges the row of the edge of the first body
-    Index second;           // row of the triangle, edge or collider
+    Index second;           // row of the triangle, the second edge or the collider
 };
 template <>
 struct MembersOf<Candidate> {
@@ -31,7 +31,7 @@ enum class PairKind : std::uint8_t { bodies, collider, self };
 template <>
 inline constexpr std::uint64_t value_count<PairKind> = 3;
 
-/// Whether the surfaces of a pair intersect; unknown until a search tests them.
+/// Whether the surfaces of a pair intersect. `unknown`: no search has tested them yet.
 enum class PairState : std::uint8_t { unknown, apart, overlapping };
 template <>
 inline constexpr std::uint64_t value_count<PairState> = 3;

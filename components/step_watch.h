@@ -1,5 +1,5 @@
-// Progress of the periodic checks of the stable steps of all bodies. The checks are done in small pieces, a few in each
-// step, so that no step takes longer than others because of a check.
+// Progress of the periodic checks of the stable steps of all bodies. The checks are done in small pieces, spread over
+// many steps, so that no step takes longer than others because of a check.
 #pragma once
 
 #include <array>

@@ -65,8 +65,8 @@ struct UnionFind {
 
     void join(Index a, Index b) { join_roots(root(a), root(b)); }
 
-    /// The number of the set that contains `index`. Sets are numbered in the order in which number() first asks for
-    /// them. Call it only after all joins.
+    /// The number of the set that contains `index`. Sets are numbered in the order in which number() is first called
+    /// for them. Call it only after all joins.
     Index number(Index index) {
         Node& top = node[root(index)];
         if (top.number == no_index) top.number = number_count++;

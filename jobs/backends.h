@@ -124,7 +124,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// The work of one run_graph call.
+/// The stages of one run_graph call, and a count of the unfinished predecessors of each stage.
 class GraphJob {
 public:
     GraphJob(const GraphEdges& edges, FunctionRef<void(Index)> run_stage, PredecessorCounts& left)

@@ -29,7 +29,7 @@ bool breaks_value(const AccessList& written, const AccessList& taken) {
 
 TaskGraph::TaskGraph() : inline_executor_(make_executor(Backend::serial, 1)) {}
 
-/// Throws CheckFailed for accesses that the running stage has not declared.
+/// AccessWatch that throws CheckFailed if the running stage accesses a column without having declared the access.
 class TaskGraph::StageWatch final : public AccessWatch {
 public:
     StageWatch(const StageDeclaration& stage, const Tracked& tracked) : stage_(stage), tracked_(tracked) {}

@@ -66,7 +66,7 @@ struct StageStats {
     std::uint64_t skipped = 0;  // how often the guard of the stage was false or the stage returned false
 };
 
-/// Declaration of a stage.
+/// Name, accesses and phase of a stage.
 struct StageDeclaration {
     const char* name;
     AccessList accesses;

@@ -12,7 +12,6 @@
 
 namespace skerry {
 
-/// A face of a tetrahedron.
 struct TetrahedronFace {
     std::array<Index, 3> node;  // ascending
     Index tetrahedron;

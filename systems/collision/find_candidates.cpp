@@ -187,7 +187,7 @@ void list_refits(const CollisionInputs& inputs, const CollisionSettings& setting
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
     memory.near.clear();
     memory.far.clear();
-    memory.near.reserve(pairs.size());  // any pair may expire in a later step
+    memory.near.reserve(pairs.size());  // room for all pairs, because any pair may expire in a later step
     memory.far.reserve(pairs.size());
     for (Index p : memory.expired) {
         const bool surfaces = pairs.kind[p] != PairKind::collider;

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Six times the signed volume of the tetrahedron abcd. The sign tells on which side of the triangle abc the point d
-/// lies.
+/// Six times the signed volume of the tetrahedron abcd. It is positive if d lies on the side of the triangle abc to
+/// which the normal (b - a) x (c - a) points.
 inline Real orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a);
 }

@@ -45,7 +45,7 @@ private:
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
-        Index number;  // less than 2 * most_of_rim
+        Index number;  // number of the point, below 2 * most_of_rim
         Vec3 at;       // [m]
     };
     std::array<Point, 2 * most_of_rim> point;

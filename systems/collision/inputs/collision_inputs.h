@@ -52,7 +52,6 @@ struct CollisionInputs {
     }
 };
 
-/// Settings of the collision stages.
 struct CollisionSettings {
     // Magnitude of the gravitational acceleration, which bounds the increase of speeds in a step [m/s^2].
     Real gravity = 0;
