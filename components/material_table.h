@@ -69,7 +69,7 @@ struct MaterialTable {
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // decay rate of velocities by deformation; rigid motion is not damped [1/s]
+    Column<Real> damping;        // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {

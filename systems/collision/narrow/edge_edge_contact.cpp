@@ -9,9 +9,9 @@ namespace skerry {
 
 namespace {
 
-// An edge counts as flat if the angle between its two faces is below this value [rad]. Contacts are not tested at flat
-// edges, so two flat edges can come nearer to each other than the nodes around them. The difference is at most a
-// quarter of this fraction of the width of the faces, which is an eighth of the default contact distance.
+// An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Contacts are not
+// tested at flat edges, so two flat edges can come nearer to each other than the nodes around them. The difference is
+// at most a quarter of this fraction of the width of the faces, which is an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad].

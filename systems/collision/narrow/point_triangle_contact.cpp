@@ -124,7 +124,7 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
     contact.sleep = distance - scale.edge_depth;  // this limit is at least the contact distance
     if (height < 0 && surfaces == Surfaces::may_overlap) {
-        // Behind the face, the point can become a contact at a depth of at most face_depth.
+        // The point can become a contact behind the face, at a depth of at most face_depth.
         const Real below = std::max(Real(0), -height - scale.face_depth);
         contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));
     }
