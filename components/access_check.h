@@ -1,5 +1,6 @@
-// Run-time check of column accesses. If SKERRY_CHECK_ACCESS is defined (debug and sanitizer builds), every access to a
-// column is compared with the accesses that the running stage has declared. Otherwise the check compiles to nothing.
+// Run-time check of accesses to columns. If SKERRY_CHECK_ACCESS is defined (debug and sanitizer builds), every access
+// to a column is compared with the accesses that the running stage has declared. Otherwise the check compiles to
+// nothing.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@ inline constexpr bool access_is_checked = true;
 inline constexpr bool access_is_checked = false;
 #endif
 
-/// Observer of column accesses. touched() is called for every access by a thread on which an AccessScope has set the
-/// observer. It throws if the access is not allowed.
+/// Observer of column accesses. While an AccessScope exists on a thread, every access of the thread to a column calls
+/// touched() of the scope's AccessWatch. touched() throws if the access is not allowed.
 class AccessWatch {
 public:
     virtual void touched(const void* column, std::size_t bytes, bool writes) const = 0;
@@ -36,8 +37,9 @@ inline void check_access(const void* column, std::size_t bytes, bool writes) {
     if (const AccessWatch* watch = access_detail::watch_of_thread) watch->touched(column, bytes, writes);
 }
 
-/// Sets the watch of this thread to `watch` until the end of the scope, then restores the previous watch. A null watch
-/// allows every access. Scopes nest, because a thread that waits inside one stage may meanwhile run another stage.
+/// Sets the AccessWatch of this thread to `watch` until the end of the scope, then restores the previous one. If
+/// `watch` is null, every access is allowed. Scopes can be nested, because a thread that waits inside one stage may
+/// meanwhile run another stage.
 class AccessScope {
 public:
     explicit AccessScope(const AccessWatch* watch) : before_(access_detail::watch_of_thread) {
@@ -51,8 +53,8 @@ private:
     const AccessWatch* before_;
 };
 
-/// Member of a class whose copies and moves count as accesses: it reports them to the watch. A forbidden move
-/// terminates the program with a message, because a move must not throw.
+/// Member that makes copies and moves of the enclosing class count as accesses: each copy or move is reported to the
+/// AccessWatch of the thread. A forbidden move terminates the program with a message, because a move must not throw.
 class CopyCheck {
 public:
     CopyCheck() = default;

@@ -1,5 +1,5 @@
-// Type-erased tables and columns for rarely run code. Such code is then compiled once, not once for every column of
-// every table.
+// Type-erased tables and columns for code that runs rarely. The compiler then translates such code once instead of once
+// for every column of every table.
 #pragma once
 
 #include <cstddef>
@@ -47,17 +47,17 @@ private:
 struct ColumnInfo {
     const char* name;
     ColumnRole role;
-    bool has_row_each;   // false: the column is a list, and each row of the table has a range in it
+    // true: the column has one row per row of the table; false: each row of the table has a range of rows in the column
+    bool has_row_each;
     std::size_t offset;  // offset of the column from the start of the table [bytes]
     const RowType* type;
 };
 
-/// Returns descriptions of the columns of a table, in the order in which the table lists them. any_table.cpp
-/// instantiates it for each table.
+/// Returns descriptions of the columns of a table, in the order in which Table::for_each_column visits them.
+/// any_table.cpp instantiates this function for each table.
 template <class Table>
 std::span<const ColumnInfo> columns_of();
 
-/// Reference to a table of any type.
 class AnyTable {
 public:
     template <class Table>

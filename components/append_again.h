@@ -10,13 +10,13 @@
 
 namespace skerry {
 
-/// Offsets from the rows of a body to the rows of a later body with the same mesh.
+/// Offsets from the rows of a body to the rows of a copy of the body with the same mesh.
 struct RowsBehind {
-    Index nodes, elements;  // offsets in rows of NodeTable and in tetrahedra
+    Index nodes, elements;  // `nodes`: offset in rows of NodeTable; `elements`: offset in tetrahedra
     Index triangles = 0, edges = 0, vertices = 0;
 };
 
-/// Adds `by` to a row index; no_index stays no_index.
+/// Adds `by` to a row index; the value no_index is not changed.
 inline void move_on(Index& row, Index by) {
     if (row != no_index) row += by;
 }
@@ -25,7 +25,8 @@ void move_on(std::array<Index, count>& rows, Index by) {
     for (Index& row : rows) move_on(row, by);
 }
 
-/// Appends copies of `rows` to the column. change(row) is applied to each copy before it is stored.
+/// Appends copies of the rows in the range `rows` to the column. change(row) is applied to each copy before the copy is
+/// stored.
 template <class T>
 void append_again(Column<T>& column, Range rows, auto&& change) {
     const std::size_t first = column.size(), count = static_cast<std::size_t>(rows.size());

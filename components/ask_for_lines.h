@@ -5,8 +5,8 @@
 
 namespace skerry {
 
-/// Prefetches the cache lines of `count` items without waiting for them. The loop is unrolled completely if `count` is
-/// a small compile-time constant.
+/// Prefetches the cache lines of `count` items and does not wait for the data. The compiler unrolls the loop completely
+/// if `count` is a small constant.
 template <class T>
 [[gnu::always_inline]] inline void ask_for_lines(const T* first, std::size_t count) {
     constexpr std::size_t line = 64;

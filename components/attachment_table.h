@@ -13,14 +13,15 @@ namespace skerry {
 
 struct AttachmentTable {
     Column<std::uint32_t> slot;
-    Column<Index> body;           // row of BodyTable
-    Column<Range> nodes;          // range of the attachment in the columns `node` and `anchor`
-    Column<RigidMotion> motion;   // pose and motion in this step; a held node is at position + rotation * anchor
-    Column<RigidMotion> initial;  // pose and motion at the start of the script
+    Column<Index> body;   // row of BodyTable
+    Column<Range> nodes;  // range of rows in the columns `node` and `anchor`
+    // pose and motion of the attachment in this step; a held node is at position + rotation * anchor
+    Column<RigidMotion> motion;
+    Column<RigidMotion> initial;  // pose and motion of the attachment at the start of the script
     Column<MotionScript> script;
     Column<Index> node;         // held nodes of all attachments: rows of NodeTable
     Column<Vec3> anchor;        // position of `node` in the frame of the attachment [m]
-    Column<Keyframe> keyframe;  // keyframes of all attachments; each script has a range of them
+    Column<Keyframe> keyframe;  // keyframes of all attachments; each script refers to a range of these rows
 
     void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);

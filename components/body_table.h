@@ -1,4 +1,4 @@
-// One row per body: ranges of rows in the other tables, and the state of the body as a whole.
+// One row per body: the ranges of its rows in the other tables, and the state of the body.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,8 @@ enum class BodyKind : std::uint8_t {
 template <>
 inline constexpr std::uint64_t value_count<BodyKind> = 2;
 
-/// A frame that translates with a body but does not rotate. Distances within a body change only by the motion of its
-/// nodes in the frame. The distance of two bodies changes also by the relative motion of their frames, but not by the
-/// motion that both frames share.
+/// A frame that translates with a body but does not rotate. Distances inside a body change only if nodes move relative
+/// to the frame. The distance between two bodies also changes by the relative motion of their two frames.
 struct MovingFrame {
     Vec3 velocity = Vec3::Zero();  // mean velocity of the nodes when BodyTable::displacement was last zero [m/s]
     Vec3 offset = Vec3::Zero();    // displacement of the frame since BodyTable::displacement was last zero [m]
@@ -34,13 +33,15 @@ template <>
 struct NumbersOf<MovingFrame> : Reals<10> {};
 
 struct BodyTable {
-    Column<std::uint32_t> slot;  // handle slot of the body; for a kinematic body the slot of its collider
+    Column<std::uint32_t> slot;  // handle slot of the body; for a kinematic body: handle slot of its collider
     Column<BodyKind> kind;
     Column<std::uint8_t> self_contact;
-    Column<Index> material;             // row of MaterialTable; no_index for a kinematic body
-    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the material are used
-    Column<CollisionFilter> filter;     // collision filter; for a kinematic body the filter of its collider is used
-    Column<Index> collider;             // row of ColliderTable for a kinematic body, else no_index
+    Column<Index> material;  // row of MaterialTable; no_index for a kinematic body
+    // surface properties of the body; a negative property is replaced by the property of the material
+    Column<SurfaceProperties> surface;
+    // collision filter of the body; a kinematic body uses the filter of its collider instead
+    Column<CollisionFilter> filter;
+    Column<Index> collider;  // row of ColliderTable for a kinematic body, else no_index
     Column<Range> nodes;
     Column<Range> node_blocks;
     Column<Range> blocks;         // rows of ElementBlockTable
@@ -54,48 +55,52 @@ struct BodyTable {
     Column<Range> bvh_nodes;
     Column<Range> bvh_leaves;
     Column<Index> tetrahedron_count;
-    Column<Index> pinned_count;     // number of nodes without degrees of freedom
-    Column<Real> contact_distance;  // thickness of the contact shell; a pair of bodies uses the mean of both [m]
-    // Number of core nodes of a round rigid body: its first nodes. 0: the body is not round and has triangles. A sphere
-    // has 1 core node, its centre. A capsule has 2, the ends of its axis. The surface of a sphere or capsule has the
-    // distance round_radius from the core. A cylinder has 3, which define its surface: its centre, the centre of one
-    // end, and a point on the rim of that end. For a cylinder round_radius is the radius of the bounding ball [m].
+    Column<Index> pinned_count;  // number of nodes without degrees of freedom
+    // thickness of the contact shell of the body; two bodies in contact use the mean of their thicknesses [m]
+    Column<Real> contact_distance;
+    // Number of core nodes of a round rigid body. The core nodes are the first nodes of the body. A body with 0 core
+    // nodes is not round and has triangles. A sphere has 1 core node, its centre. A capsule has 2 core nodes, the ends
+    // of its axis. The surface of a sphere or capsule is at the distance round_radius [m] from the core. A cylinder has
+    // 3 core nodes, which define its surface: its centre, the centre of one end, and a point on the rim of that end.
+    // For a cylinder round_radius is the radius of the bounding ball [m].
     Column<Index> core_nodes;
     Column<Real> round_radius;
     Column<Real> mean_edge;     // mean edge length of the surface in the rest shape [m]
     Column<Real> min_altitude;  // smallest altitude of the elements in the rest shape [m]
-    Column<Real> rest_step;     // stable step of the rest shape [s]
-    Column<Real> stable_step;   // stable step found by the last check [s]
-    // Longest step at which the implicit elements are stable; 0 without implicit elements [s].
+    Column<Real> rest_step;     // longest stable step of the body in its rest shape [s]
+    Column<Real> stable_step;   // longest stable step of the body according to the last check [s]
+    // Longest step at which the implicit elements of the body are stable; 0: the body has no implicit elements [s].
     Column<Real> cluster_step;
-    // 1: the body is asleep; steps leave it out until something touches it.
+    // 1: the body is asleep. Steps do not compute a sleeping body until another object touches it.
     Column<std::uint8_t> asleep;
-    // Number of steps until find_unstrained.h checks the body again. Until then the body counts as undeformed and
-    // unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
+    // Number of steps until find_unstrained.h tests again whether the body is strained. Until then the body counts as
+    // undeformed and unrotated, so its elements exert no force and are not computed. 0: the elements are computed.
     Column<std::uint16_t> unstrained;
-    // Time for which the body has been still (update_sleep.h) [s].
+    // Time since which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
-    // With the engine's own limits, the sleep time is divided into two halves. `drift`: largest distance of a node from
-    // its still_position in the current half [m]. Its sign is negative if a later measurement found a smaller distance.
-    // `drift_before`: largest such distance in the previous half [m].
+    // These columns are used with the engine's own limits of stillness, for which the sleep time is divided into two
+    // halves. |drift| is the largest distance of a node from its still_position in the current half [m]. `drift` is
+    // negative if a later measurement in the half found a smaller distance. `drift_before` is the largest distance in
+    // the previous half [m].
     Column<Real> drift, drift_before;
-    // `shape_drift`: largest distance of the shape in the current half from the shape at the start of the half,
-    // still_position [m] (stillness.h: shape_distance). `creep_before`: largest distance in the previous half if it
-    // occurred at the end of the half, else 0 [m].
+    // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
+    // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: largest distance in the
+    // previous half if that distance was reached at the end of the half, else 0 [m].
     Column<Real> shape_drift, creep_before;
     Column<Real> max_speed;  // greatest speed of a node in this step [m/s]
     Column<MovingFrame> frame;
-    // Quantities measured in the moving frame of the body:
-    Column<Real> frame_speed;  // greatest speed of a node in this step, relative to the frame [m/s]
-    // Greatest distance of a node from its displacement_origin, which moves with the frame [m].
+    // The next columns are measured in the moving frame of the body.
+    Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
+    // Greatest distance of a node from its displacement_origin, a point that moves with the frame [m].
     Column<Real> displacement;
-    // Bound on the motion of nodes relative to the frame [m]. Since any earlier time, no node has moved further than
-    // the growth of `travel` since that time plus twice the `displacement` at that time.
+    // Bound on the motion of the nodes relative to the frame [m]. Let t be any earlier time. Since t no node has moved
+    // further than the growth of `travel` since t plus twice the value of `displacement` at t.
     Column<Real> travel;
-    Column<Real> uninverted_until;  // no tetrahedron changes the sign of its volume while `travel` is below this [m]
+    // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
+    Column<Real> uninverted_until;
 
-    /// Visits all columns; the only list of them. Model::rebuild_outlines derives the columns `triangles` to
-    /// `bvh_leaves`.
+    /// Visits all columns. This is the only list of the columns. Model::rebuild_outlines derives the columns
+    /// `triangles` to `bvh_leaves`.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -142,7 +147,8 @@ struct BodyTable {
     }
 };
 
-/// Pairs of bodies that rows of other tables join, such as joints. Joined bodies are put to rest and wake together.
+/// Pairs of bodies that are connected by a row of another table, for example by a joint. Connected bodies fall asleep
+/// together and wake together.
 struct BodyLinks {
     Column<Index> first, second;  // rows of BodyTable
 };

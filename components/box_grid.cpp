@@ -6,20 +6,20 @@
 
 namespace skerry {
 
-/// Exponent of the smallest power of two above the longest edge of the box. Rounding of the edge length never makes the
-/// exponent too small.
+/// Exponent of the smallest power of two above the longest edge of the box. The rounding error of the edge length never
+/// makes the exponent too small.
 BoxGrid::Level BoxGrid::level_of(const Aabb& box) {
-    // Limits of the edge length [m], so that cells have a finite edge.
+    // Limits of the edge length [m]. They ensure that the cells have a finite edge.
     constexpr Real least = std::numeric_limits<Real>::min(), most = 0x1p1000;
     int level = 0;
     std::frexp(std::clamp((box.upper - box.lower).maxCoeff(), least, most), &level);
     return level;
 }
 
-/// Cell that contains the point. Despite rounding, cell numbers are monotonic: the greater of two coordinates never
-/// gets the smaller number.
+/// Cell that contains the point. Despite rounding errors, cell numbers increase monotonically with the coordinate: the
+/// greater of two coordinates never gets the smaller number.
 BoxGrid::Cell BoxGrid::cell_at(Level level, const Vec3& point, Real edge) {
-    constexpr Real most = 0x1p62;  // greatest cell number; all points further away get this number
+    constexpr Real most = 0x1p62;  // greatest cell number; points further from the origin also get this number
     const auto number = [&](Real coordinate) {
         return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / edge), -most, most));
     };
@@ -42,8 +42,8 @@ void BoxGrid::build(std::span<const Aabb> box, std::span<const Index> rows) {
     }
     std::sort(levels_.begin(), levels_.end());
     for (std::size_t b = 1; b < bucket_begin_.size(); ++b) bucket_begin_[b] += bucket_begin_[b - 1];
-    // Filling a bucket advances its begin to the begin of the next bucket. Shifting all begins by one bucket then
-    // restores them.
+    // Filling a bucket increments its begin until it equals the begin of the next bucket. Shifting all begins by one
+    // bucket then restores their original values.
     for (const Entry& entry : listed_) entries_[bucket_begin_[bucket_of(entry.cell)]++] = entry;
     std::copy_backward(bucket_begin_.begin(), bucket_begin_.end() - 1, bucket_begin_.end());
     bucket_begin_[0] = 0;

@@ -1,5 +1,5 @@
-// A hashed grid of boxes of any size. It finds overlapping boxes in a time that grows linearly with the number of boxes
-// if few boxes overlap.
+// A hashed grid of boxes of any size. Finding all overlapping pairs takes a time proportional to the number of boxes if
+// few boxes overlap.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@
 
 namespace skerry {
 
-/// Grids whose cell edges are powers of two. A box is stored in the grid whose cells are just wider than its longest
-/// edge, in the cell of its lower corner. Any box that overlaps the stored box reaches into this cell or comes closer
-/// to it than one cell width. Cells are found by hashing their numbers (Teschner, Heidelberger, Müller, Pomeranets,
-/// Gross 2003; grids of several sizes: Mirtich 1996). The next `build` reuses the memory.
+/// Hashed grids, one for each cell width that occurs; all cell widths are powers of two. A box is stored in the grid
+/// whose cells are just wider than the longest edge of the box, in the cell that contains its lower corner. Any box
+/// that overlaps the stored box reaches into this cell or comes closer to the cell than one cell width. Cells are found
+/// by hashing their integer coordinates (Teschner, Heidelberger, Müller, Pomeranets, Gross 2003; grids of several
+/// sizes: Mirtich 1996). The next call of `build` reuses the memory.
 class BoxGrid {
 public:
-    /// Builds the grid. `rows`: the rows of `box` to insert; all of these boxes must be finite. `box` must stay
-    /// unchanged while the grid is queried.
+    /// Builds the grid from the boxes box[r] for all r in `rows`. These boxes must be finite. `box` must stay unchanged
+    /// while the grid is queried.
     void build(std::span<const Aabb> box, std::span<const Index> rows);
 
-    /// Calls visit(other) once for each row whose box may overlap the box of `row`. If two boxes share a point, exactly
-    /// one of them is visited from the other.
+    /// Calls visit(other) once for each inserted row whose box may overlap the box of `row`. If for_each_near is called
+    /// for all rows, every pair of boxes that share a point is visited exactly once.
     template <class Visit>
     void for_each_near(Index row, Visit&& visit) const {
         const Aabb& box = box_[static_cast<std::size_t>(row)];
@@ -44,7 +45,7 @@ public:
     }
 
 private:
-    using Level = int;  // exponent: the cells of a level have edges of 2^level [m]
+    using Level = int;  // binary exponent: the cells of level n have edges of length 2^n [m]
 
     struct Cell {
         Level level;
@@ -76,11 +77,11 @@ private:
     }
 
     std::span<const Aabb> box_;
-    Column<Level> levels_;  // levels that hold a box, ascending
+    Column<Level> levels_;  // levels with at least one box, ascending
     std::size_t bucket_mask_ = 0;
     Column<std::size_t> bucket_begin_;
-    Column<Entry> entries_;  // sorted by bucket
-    Column<Entry> listed_;   // entries in the order of `rows`
+    Column<Entry> entries_;  // entries of all buckets, bucket after bucket
+    Column<Entry> listed_;   // entries in the order of the argument `rows` of build
 };
 
 }  // namespace skerry

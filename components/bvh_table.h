@@ -16,38 +16,39 @@ struct Aabb {
     Vec3 upper;  // [m]
 };
 
-/// A node of a tree that is stored in depth-first order. The left child of row i is row i + 1. `skip` is the row behind
-/// the last descendant.
+/// A node of a tree whose nodes are stored in depth-first order. The left child of row i is row i + 1. `skip` is the
+/// row after the last descendant of the node.
 struct BvhNode {
     Index skip;
-    Index right;  // row of the right child; no_index in a leaf
-    Index leaf;   // row of BvhLeafTable; no_index in an inner node
-    Index count;  // number of triangles in a leaf, which are the first lanes of its row; 0 in an inner node
+    Index right;  // row of the right child; no_index for a leaf
+    Index leaf;   // row of BvhLeafTable; no_index for an inner node
+    Index count;  // number of triangles of a leaf, which use the first lanes of its row; 0 for an inner node
 };
 
 inline constexpr int leaf_lanes = 8;
 
-/// Triangles of a leaf: rows of TriangleTable, no_index in unused lanes.
+/// Triangles of a leaf: rows of TriangleTable; unused lanes are no_index.
 using LeafTriangles = std::array<Index, leaf_lanes>;
 
-/// Nodes of the triangles of a leaf, stored together, so that fitting or gathering a leaf does not read TriangleTable.
+/// Mesh nodes of the triangles of a leaf. This copy lets the code that computes the box of a leaf or gathers its
+/// triangles avoid reading TriangleTable.
 struct LeafNodes {
     static constexpr std::size_t most = 3 * leaf_lanes;
-    // Nodes of corners, by lane; lanes without a triangle repeat the first triangle.
+    // Mesh nodes of the three corners of each triangle, by lane; lanes without a triangle repeat the first triangle.
     std::array<std::array<Index, leaf_lanes>, 3> corner;
     Index count = 0;
-    std::array<Index, most> node{};  // without duplicates, ascending
+    std::array<Index, most> node{};  // the mesh nodes of all triangles of the leaf, ascending, each listed once
 };
 
-/// Edges and vertices that the triangles of a leaf own, stored together, so that a search does not read TriangleTable.
+/// Edges and vertices that the triangles of a leaf own. This copy lets a search avoid reading TriangleTable.
 struct LeafFeatures {
     static constexpr std::size_t most = 3 * leaf_lanes;
     struct Edge {
-        Index row;  // of EdgeTable
+        Index row;  // row of EdgeTable
         std::array<Index, 2> node;
     };
     struct Point {
-        Index row;  // of VertexTable
+        Index row;  // row of VertexTable
         Index node;
     };
     Index edge_count = 0, point_count = 0;
@@ -55,10 +56,10 @@ struct LeafFeatures {
     std::array<Point, most> point{};
 };
 
-/// Box and topology of each tree node. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
+/// Boxes and topology of the tree nodes. Model::rebuild_outlines derives BvhTable and BvhLeafTable.
 struct BvhTable {
-    Column<Aabb> box;      // box of the tree node; refitted when a pair of its body is searched again [m]
-    Column<BvhNode> node;  // topology of the tree, built once from the rest shape
+    Column<Aabb> box;      // box of the tree node, recomputed when a pair of its body is searched again [m]
+    Column<BvhNode> node;  // topology of the tree, which is built once from the rest shape
 
     void for_each_column(auto&& visit) {
         visit("box", box, ColumnRole::scratch);

@@ -1,5 +1,5 @@
-// SKERRY_CHECK: a cheap check of a precondition that the caller must meet. Enabled unless SKERRY_NO_CHECKS is set (the
-// release preset sets it).
+// SKERRY_CHECK: a cheap check of a precondition that the caller must meet. The check is enabled unless SKERRY_NO_CHECKS
+// is defined (the release preset defines it).
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,8 @@
 
 namespace skerry {
 
-/// Thrown when one part of the engine breaks the contract of another: a bug, never bad input.
+/// Thrown when one part of the engine violates a precondition of another part. This is always a bug in the engine,
+/// never an error in the input.
 class CheckFailed : public std::logic_error {
 public:
     using std::logic_error::logic_error;

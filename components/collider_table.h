@@ -1,4 +1,5 @@
-// One row per collider: a rigid shape that stands still or moves by a script. Scripts may be changed between steps.
+// One row per collider: a rigid shape that stands still or moves by a script. The user may change scripts between
+// steps.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,13 @@ enum class ColliderShape : std::uint8_t { plane, sphere, box, capsule, cylinder,
 template <>
 inline constexpr std::uint64_t value_count<ColliderShape> = 7;
 
-/// A collider shape in its own frame: centred at the origin, with its axis along z.
+/// A collider shape in its own frame. The shape is centred at the origin, and its axis is the z axis.
 struct ColliderGeometry {
     ColliderShape shape;
-    // Dimensions [m]. plane: unused (normal +z). sphere: (radius, -, -). box: half extents. capsule: (radius, half
-    // length of the segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height, wall): floor
-    // at z = 0, open above, material of thickness `wall` below and around. mesh: unused, see BodyTable::collider.
+    // Dimensions of the shape [m]. plane: unused, the normal is +z. sphere: (radius, -, -). box: half extents. capsule:
+    // (radius, half length of the segment, -). cylinder: (radius, half height, -). bucket: (inner radius, inner height,
+    // wall thickness); the floor is at z = 0, the top is open, and the wall thickness also applies to the floor. mesh:
+    // unused, see BodyTable::collider.
     Vec3 size;
 };
 template <>
@@ -33,16 +35,16 @@ struct MembersOf<ColliderGeometry> {
 struct RigidMotion {
     Vec3 position;          // [m]
     Mat3 rotation;          // maps the shape frame to the world
-    Vec3 velocity;          // velocity of the origin, mean over the step [m/s]
-    Vec3 angular_velocity;  // angular velocity, mean over the step [rad/s]
+    Vec3 velocity;          // mean velocity of the origin over the step [m/s]
+    Vec3 angular_velocity;  // mean angular velocity over the step [rad/s]
 
     bool stands_still() const { return velocity.isZero(0) && angular_velocity.isZero(0); }
 };
 template <>
 struct NumbersOf<RigidMotion> : Reals<18> {};
 
-/// Keyframe of a script. Between keyframes the position is interpolated linearly, and the rotation turns about a fixed
-/// axis.
+/// Keyframe of a script. Between two keyframes the position is interpolated linearly, and the shape rotates about a
+/// fixed axis.
 struct Keyframe {
     Real time;      // [s]
     Vec3 position;  // [m]
@@ -55,9 +57,10 @@ struct NumbersOf<Keyframe> : Reals<7> {};
 struct MotionScript {
     Vec3 velocity;          // constant velocity if the script has no keyframes [m/s]
     Vec3 angular_velocity;  // constant angular velocity if the script has no keyframes [rad/s]
-    Index key_begin;        // range of keyframes in ColliderTable::keyframe or AttachmentTable::keyframe
+    // the keyframes are rows key_begin .. key_end - 1 of ColliderTable::keyframe or AttachmentTable::keyframe
+    Index key_begin;
     Index key_end;
-    Real start = 0;  // time at which the initial pose holds; used without keyframes [s]
+    Real start = 0;  // time at which the shape has its initial pose; only used without keyframes [s]
 };
 template <>
 struct MembersOf<MotionScript> {
@@ -67,17 +70,18 @@ struct MembersOf<MotionScript> {
 struct ColliderTable {
     Column<std::uint32_t> slot;
     Column<ColliderGeometry> geometry;
-    Column<RigidMotion> motion;   // pose and motion in this step, written by move_colliders
-    Column<RigidMotion> initial;  // pose and motion at the start of the script
+    Column<RigidMotion> motion;   // pose and motion of the collider in this step, written by move_colliders
+    Column<RigidMotion> initial;  // pose and motion of the collider at the start of the script
     Column<MotionScript> script;
-    Column<Keyframe> keyframe;          // keyframes of all colliders; each script has a range of them
-    Column<SurfaceProperties> surface;  // surface properties; where negative, those of the touching body are used
-    Column<CollisionFilter> filter;     // groups that the collider belongs to and collides with
-    Column<Index> body;                 // row of BodyTable: kinematic body of a mesh collider, else no_index
-    // Bound on the motion of the collider's points near a body, similar to BodyTable::travel [m].
+    Column<Keyframe> keyframe;  // keyframes of all colliders; each script refers to a range of these rows
+    // surface properties of the collider; a negative property is replaced by the property of the touching body
+    Column<SurfaceProperties> surface;
+    Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
+    Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
+    // Bound on the motion of those points of the collider that are near a body, similar to BodyTable::travel [m].
     Column<Real> travel;
 
-    /// Visits the columns with one row per collider. `keyframe` is not one of them; only for_each_column visits it.
+    /// Visits the columns with one row per collider. The column `keyframe` is visited by for_each_column only.
     void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("geometry", geometry, ColumnRole::state);

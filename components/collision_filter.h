@@ -1,4 +1,4 @@
-// Collision filters: groups of bodies and colliders, and pairs with collisions switched off.
+// Collision filters: groups of bodies and colliders, and pairs whose collisions are switched off.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ inline bool may_touch(const CollisionFilter& a, const CollisionFilter& b) {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
 }
 
-/// One row per pair of objects that never collide, whatever their groups. Rows ascend by key.
+/// One row per pair of objects that never collide, whatever their groups. Rows are sorted by ascending key.
 struct DisabledPairTable {
     Column<std::uint64_t> key;  // ContactKey::pair
 

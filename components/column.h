@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// A field of a table: rows of plain data. Grows like a vector and never shrinks its memory, so that a steady state
-/// allocates nothing. Rows made by resize are value-initialised.
+/// A field of a table: rows of plain data. A column grows like a vector and never shrinks its memory, so that a steady
+/// state allocates nothing. New rows made by resize are value-initialised.
 template <class T>
 class Column {
 public:
@@ -89,7 +89,7 @@ private:
 
     static T* rows(const RowMemory& memory) { return static_cast<T*>(memory.rows()); }
 
-    // All accesses to the rows go through these two functions, which check the access if checks are enabled. They are
+    // All accesses to the rows call one of these two functions, which check the access if checks are enabled. Both are
     // always inlined, so that without checks they cost nothing, even in a build without optimisation.
     [[gnu::always_inline]] const RowMemory& seen() const {
         if constexpr (access_is_checked) check_access(this, sizeof *this, false);

@@ -5,15 +5,16 @@
 
 namespace skerry {
 
-/// Role of a column. Columns with the roles `state`, `link` and `body` are hashed and saved, `memory` is only saved;
-/// `derived` and `scratch` are neither hashed nor saved.
+/// Role of a column. Columns with the roles `state`, `link` and `body` are hashed and saved. Columns with the role
+/// `memory` are saved but not hashed. `derived` and `scratch` columns are neither hashed nor saved.
 enum class ColumnRole : std::uint8_t {
-    state,    // the next step depends on the column, and it cannot be derived
-    link,     // state that refers to other tables, such as a row index; its meaning is hashed, not its value
+    state,  // the next step depends on the column, and the column cannot be derived from other columns
+    // state whose meaning is hashed instead of its value, for example a row index of another table
+    link,
     body,     // link to a row of BodyTable, or no_index; only in tables of Model::for_each_joining
-    memory,   // bounds and their reference values: they decide when a check is repeated, but change no result
+    memory,   // bounds and their reference values; they decide when a check is repeated, but do not change any result
     derived,  // computed from the state by the function that the comment of the table names
-    scratch,  // written by each step before it is read, or irrelevant to all results
+    scratch,  // values that each step writes before reading them, or that affect no result
 };
 
 inline constexpr bool is_state(ColumnRole role) {

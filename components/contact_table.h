@@ -1,4 +1,4 @@
-// Contacts of this step, and the impulses stored for the next step.
+// Contacts of this step, and the impulses stored as warm start of the next step.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace skerry {
 
-/// Kinds of contacts. In the last three a node, an edge or a face of a body touches an analytic collider.
+/// Kinds of contacts. In a point_collider, edge_collider or face_collider contact a node, an edge or a face of a body
+/// touches an analytic collider.
 enum class ContactKind : std::uint8_t { point_triangle, edge_edge, point_collider, edge_collider, face_collider };
 template <>
 inline constexpr std::uint64_t value_count<ContactKind> = 5;
@@ -19,11 +20,11 @@ enum class ContactState : std::uint8_t { open, stick, slide };
 template <>
 inline constexpr std::uint64_t value_count<ContactState> = 3;
 
-/// Identifies the two touching features across steps. `pair`: bits 63..62 hold the kind of pair (0 two bodies, 1 body
-/// and collider), followed by the two handle slots (31 bits each). `feature`: bit 63 is set for edge-edge, bit 62 says
-/// which of the two bodies the point or first edge belongs to, followed by the two local feature numbers (31 bits
-/// each). With an analytic collider bit 63 marks an edge and bit 62 a face of the body (contact_key.h). Keys are unique
-/// in a world and stay valid when other bodies are removed.
+/// Identifies the two touching features across steps. Bits 63..62 of `pair` are the kind of the pair (0: two bodies, 1:
+/// body and collider); then follow the two handle slots (31 bits each). Bit 63 of `feature` is set for an edge-edge
+/// contact. Bit 62 tells which of the two bodies owns the point or first edge. Then follow the feature numbers local to
+/// the two bodies (31 bits each). For a contact with an analytic collider, bit 63 marks an edge and bit 62 a face of
+/// the body (contact_key.h). Keys are unique in a world and stay valid when other bodies are removed.
 struct ContactKey {
     std::uint64_t pair;
     std::uint64_t feature;
@@ -33,8 +34,8 @@ struct ContactKey {
 template <>
 struct NumbersOf<ContactKey> : SameNumbers<NumberType::uint64, 2> {};
 
-/// A weighted stencil: the relative velocity at a contact is v = sum_a weight[a] u[node[a]], with the node velocities
-/// u. Unused entries repeat node[0] with weight 0.
+/// Nodes of a contact and their weights. The relative velocity at the contact is v = sum_a weight[a] u[node[a]] with
+/// the node velocities u. Unused entries repeat node[0] with weight 0.
 struct Stencil {
     std::array<Index, 4> node;  // rows of NodeTable
     std::array<Real, 4> weight;
@@ -44,16 +45,17 @@ struct MembersOf<Stencil> {
     static std::span<const Member> list();
 };
 
-/// One contact with all its fields, as find_contacts writes it.
+/// One contact with all its fields. find_contacts writes it.
 struct ContactRow {
     ContactKey key;
     ContactKind kind;
     Stencil stencil;
     Vec3 point;     // contact point on the second partner [m]
-    Vec3 normal;    // unit vector from the second partner to the first, which owns the point or first edge
-    Real gap;       // distance of the surfaces minus contact distance; positive if they are apart [m]
-    Real distance;  // signed distance of the surfaces; negative if they overlap [m]
-    // Velocity of the collider at the point; 0 between bodies, whose nodes have velocities [m/s].
+    Vec3 normal;    // unit vector from the second to the first partner; the first partner owns the point or first edge
+    Real gap;       // distance of the two surfaces minus the contact distance; positive if they are apart [m]
+    Real distance;  // signed distance of the two surfaces; negative if they overlap [m]
+    // Velocity of an analytic collider at the contact point; 0 for two bodies, whose motion is in the node velocities
+    // [m/s].
     Vec3 surface_velocity;
     Real static_friction;
     Real dynamic_friction;
@@ -79,7 +81,7 @@ struct ContactTable {
     Column<Index> first_body;
     Column<Index> second_body;
     Column<Index> collider;
-    Column<Vec3> impulse;  // impulse on the first partner, in the world frame; before the solve: the warm start [N s]
+    Column<Vec3> impulse;  // impulse on the first partner in the world frame; before the solve: the warm start [N s]
     Column<Index> region;  // row of RegionTable; no_index if no node of the contact can move
     Column<Vec3> slip;     // tangential relative velocity after the solve [m/s]
     Column<ContactState> state;
@@ -116,7 +118,8 @@ struct WarmStartTable {
     Column<Vec3> impulse;  // [N s]
     Column<Vec3> normal;
     Column<Vec3> point;  // contact point [m]; empty if no body is rigid or implicit
-    Column<Real> step;   // time for which forces acted in that step: one row, or none if it had no contacts [s]
+    // time for which forces acted in the step of these impulses; no row if that step had no contacts [s]
+    Column<Real> step;
 
     void for_each_column(auto&& visit) {
         visit("key", key, ColumnRole::state);

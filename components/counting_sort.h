@@ -1,4 +1,4 @@
-// Counting sort: one pass counts the keys, one pass moves the rows.
+// Counting sort: the first pass counts how often each key occurs, the second pass moves the rows.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace skerry {
 
-/// Stable sort of rows by the integer key number_of(row), from 0 to `end` - 1. To sort by several keys, sort by the
-/// least significant key first. `spare`: working memory that several sorts may share, because touching fresh pages
-/// costs as much as a sort.
+/// Stable sort of rows by the integer key number_of(row), which lies between 0 and `end` - 1. To sort by several keys,
+/// sort by the least significant key first. `spare` is working memory. Several sorts should share it, because accessing
+/// newly allocated pages costs as much as a sort.
 template <class Row>
 void counting_sort(std::vector<Row>& rows, std::vector<Row>& spare, Index end, auto&& number_of) {
     std::vector<std::size_t> place(static_cast<std::size_t>(end) + 1, 0);

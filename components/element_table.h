@@ -1,5 +1,5 @@
-// Tetrahedra of the meshes, and the elements that exert forces. Both are stored in blocks of element_lanes lanes; each
-// block belongs to one body.
+// Tetrahedra of the meshes, and the elements that exert forces. Tetrahedra and elements are stored in blocks of
+// element_lanes lanes. Each block belongs to one body.
 #pragma once
 
 #include <array>
@@ -21,24 +21,25 @@ using TetrahedronNodes = std::array<NodeLane, 4>;    // corner a of lane l is no
 using ElementGradient = std::array<ElementLane, 3>;  // component i of lane l is gradient[i][l] [1/m]
 using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y, z
 using ElementForm = std::array<ElementLane, 6>;      // symmetric matrix: xx, yy, zz, xy, yz, zx
-using FrameMass = std::array<ElementLane, 2>;        // coefficients q [1/(kg m^2)] and b [kg m^2] of frame_masses.h
-// Symmetric strain xx, yy, zz, xy, yz, zx, followed by a separate volume strain.
+// coefficients q [1/(kg m^2)] and b [kg m^2] of the masses of frame_masses.h
+using FrameMass = std::array<ElementLane, 2>;
+// Components xx, yy, zz, xy, yz, zx of a symmetric strain, followed by a volume strain, which is independent of them.
 using ElementStrain = std::array<ElementLane, 7>;
 
-/// The tetrahedra of the meshes, in mesh order. Unused lanes repeat the first node of the body and have volume zero.
+/// The tetrahedra of the meshes, in mesh order. Unused lanes repeat the first node of the body and have zero volume.
 /// Tetrahedron t of the table is lane t % element_lanes of block t / element_lanes.
 struct TetrahedronBlockTable {
     Column<TetrahedronNodes> node;
     Column<ElementLane> volume;    // volume at rest; 0 in an unused lane [m^3]
     Column<ElementLane> altitude;  // smallest altitude at rest; infinite in an unused lane [m]
-    // Factor on max_strain_step, the change of the deformation gradient F allowed in a step. It is above 1 if an
-    // implicit element covers the tetrahedron.
+    // Factor on the limit max_strain_step of the change of the deformation gradient F in a step. The factor is above 1
+    // if an implicit element covers the tetrahedron.
     Column<ElementLane> leeway;
     Column<std::uint8_t> sliver;  // bit l: the tetrahedron of lane l is a sliver (element_list.h)
-    // No tetrahedron of the block changes the sign of its volume while BodyTable::travel is below this [m].
+    // No tetrahedron of the block changes the sign of its volume while BodyTable::travel is below this value [m].
     Column<Real> uninverted_until;
 
-    /// Visits all columns. This is the only list of them: resize, erase, hash and save use it.
+    /// Visits all columns. This is the only list of the columns; resizing, erasing, hashing and saving use it.
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("volume", volume, ColumnRole::state);
@@ -49,46 +50,52 @@ struct TetrahedronBlockTable {
     }
 };
 
-/// An element has four nodes or more, one stress, and one deformation gradient F = sum_k x_k (x) g_k with node
-/// positions x_k and gradients g_k (docs/methods/elasticity.md 1, 7). A block has as many rows of ElementNodeTable as
-/// its element with the most nodes. Elements with fewer nodes repeat their first node with gradient zero. Unused lanes
-/// add nothing: their volume and gradients are zero, and they repeat the first node of the block. Element e of the
-/// table is lane e % element_lanes of block e / element_lanes.
+/// Elements that exert forces. An element has at least four nodes, one stress, and one deformation gradient F = sum_k
+/// x_k (x) g_k, where x_k is the position and g_k the shape function gradient of node k (docs/methods/elasticity.md 1,
+/// 7). A block has as many rows of ElementNodeTable as its element with the most nodes. Elements with fewer nodes
+/// repeat their first node with zero gradient. Unused lanes have no effect: their volume and gradients are zero, and
+/// they repeat the first node of the block. Element e of the table is lane e % element_lanes of block e /
+/// element_lanes.
 struct ElementBlockTable {
-    Column<Index> first;             // row of ElementNodeTable
-    Column<Index> count;             // number of rows
-    Column<ElementLane> volume;      // volume at rest; 0 in an unused lane and for an inactive inversion barrier [m^3]
-    Column<ElementLane> mass_share;  // weight of the element where elements share the mass of a node (stable_step.h)
-    // Matrix Q that defines the mass G Q^-1 G^T assigned to the element, part of the mass of its nodes, with its
-    // gradients G (mass_forms.h) [1/(kg m^2)]. 0: mass_share is used instead.
+    Column<Index> first;         // first row of the block in ElementNodeTable
+    Column<Index> count;         // number of rows of the block in ElementNodeTable
+    Column<ElementLane> volume;  // volume at rest [m^3]; 0 for an unused lane and for an inactive inversion barrier
+    // weight of the element in the division of a node's mass among its elements (stable_step.h)
+    Column<ElementLane> mass_share;
+    // Symmetric matrix Q [1/(kg m^2)]. The element gets the part G Q^-1 G^T of the mass of its nodes, where the rows of
+    // G are the gradients of the nodes (mass_forms.h). Q = 0: mass_share is used instead.
     Column<ElementForm> mass_form;
-    // Coefficients of the mass assigned to the element in a body that rotates as a whole (frame_masses.h). The masses
-    // give the bound `frame_bound` of the squared highest frequency omega^2 at rest [1/s^2]. 0: the body has no such
-    // masses.
+    // `frame_mass`: coefficients of the mass assigned to the element, computed with one rotation for the whole body
+    // (frame_masses.h). `frame_bound`: upper bound of the squared highest frequency omega^2 at rest that follows from
+    // these masses [1/s^2]; 0: the body has no such masses.
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound;
-    // Assumed stiffness of an implicit element, which belongs to a cluster; 0: explicit element [Pa].
+    // Stiffness that the implicit integration assumes for an element of a cluster; 0: the element is explicit [Pa].
     Column<ElementLane> implicit_modulus;
-    Column<ElementRotation> rotation;  // corotational frame; initial guess when the next rotation is extracted
-    // Corotational frame of this step; swapped with `rotation` when the step is committed.
+    // corotational frame at the last step; initial guess when the rotation is extracted again
+    Column<ElementRotation> rotation;
+    // Corotational frame in this step. The columns `rotation` and `rotation_next` are swapped when the step is
+    // committed.
     Column<ElementRotation> rotation_next;
-    // Strain of the dashpots (systems/material/relaxation.h): twice the Green strain of the relaxing part of the
-    // stress, and twice the volume strain of the bulk viscosity. 0 without viscosity.
+    // Strain of the dashpots (systems/material/relaxation.h). Entries 0 to 5: twice the Green strain of the dashpot
+    // that relaxes part of the stress. Entry 6: twice the volume strain of the dashpot of the bulk viscosity. 0 without
+    // viscosity.
     Column<ElementStrain> viscous_strain;
-    // Strain of the dashpots at the end of this step. It is swapped with viscous_strain when the step is committed, so
-    // that between steps it is the strain before the last step.
+    // Strain of the dashpots at the end of this step. The columns viscous_strain and viscous_strain_next are swapped
+    // when the step is committed. Between steps viscous_strain_next is therefore the strain before the last step.
     Column<ElementStrain> viscous_strain_next;
-    Column<ElementLane> relaxation_rate;  // relaxation rate of the relaxing part of the stress [1/s]
+    Column<ElementLane> relaxation_rate;  // relaxation rate of the part of the stress that relaxes [1/s]
     Column<ElementLane> own_frequency;    // upper bound of the highest frequency of the element at rest [1/s]
-    Column<Real> relaxing_share;          // ratio of the stiffness of the relaxing part to the stiffness of the law
-    Column<Index> body;                   // row of BodyTable
-    Column<Index> material;               // row of MaterialTable
+    // ratio of the stiffness of the relaxing stress to the stiffness of the material law
+    Column<Real> relaxing_share;
+    Column<Index> body;      // row of BodyTable
+    Column<Index> material;  // row of MaterialTable
     Column<ElementPart> part;
-    Column<std::uint8_t> opens_patch;  // 1: the block is the first of a patch
-    // Ratio of viscosity to modulus of the implicit elements of the block [s]; 0 without implicit elements.
+    Column<std::uint8_t> opens_patch;  // 1: the block is the first block of a patch
+    // Ratio of viscosity to modulus of the implicit elements in the block; 0 without implicit elements [s].
     Column<Real> viscous_time;
 
-    /// Visits all columns. This is the only list of them: resize, erase, hash and save use it.
+    /// Visits all columns. This is the only list of the columns; resizing, erasing, hashing and saving use it.
     void for_each_column(auto&& visit) {
         visit("first", first, ColumnRole::link);
         visit("count", count, ColumnRole::state);
@@ -116,18 +123,18 @@ struct ElementBlockTable {
 /// Vector x, y, z padded with a zero, so that it fills a register.
 using PaddedVec3 = Lanes<Real, 4>;
 
-/// Number of reals per row of a patch.
+/// Number of reals per slot of a patch: the size of a PaddedVec3.
 inline constexpr Index slot_width = sizeof(PaddedVec3) / sizeof(Real);
 
-/// Nodes of the elements of a block. Row k of a block, counted from 0, holds the k-th node of each element. The
-/// gradient of node 0 is minus the sum of all other gradients.
+/// Nodes of the elements of a block. Row k of a block holds the k-th node of each element, counted from 0. The gradient
+/// of node 0 is minus the sum of the gradients of all other nodes.
 struct ElementNodeTable {
     Column<NodeLane> node;
-    Column<NodeLane> slot;             // offset of the node's row in its patch: slot_width times its slot [reals]
-    Column<ElementGradient> gradient;  // at rest
+    Column<NodeLane> slot;             // slot of the node in its patch, times slot_width [reals]
+    Column<ElementGradient> gradient;  // shape function gradient of the node at rest [1/m]
 
-    /// Visits all columns. This is the only list of them: resize, erase, hash and save use it. build_patches derives
-    /// `slot`.
+    /// Visits all columns. This is the only list of the columns; resizing, erasing, hashing and saving use it.
+    /// build_patches derives `slot`.
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::link);
         visit("gradient", gradient, ColumnRole::state);
@@ -135,28 +142,33 @@ struct ElementNodeTable {
     }
 };
 
-/// Viscous impulse of an element in a step: volume times viscous stress times duration, column by column [J s].
+/// Viscous impulse of an element in a step: element volume times viscous stress times step length [J s]. The nine
+/// components of the stress are stored column by column.
 using ElementViscousImpulse = std::array<ElementLane, 9>;
 
-/// Patches: groups of neighbouring blocks of one body. Forces are summed within a patch, in cache, before each node
-/// adds up the results of its few patches. build_patches makes the patches from the blocks, body after body, and
-/// appends them to the lists. No other table refers to rows of the lists.
+/// Patches: groups of neighbouring blocks of one body. Element forces are first summed within each patch, in cache;
+/// then each node adds the sums of its few patches. build_patches makes the patches from the element blocks, body after
+/// body, and appends them to these columns. No other table refers to their rows.
 struct ElementPatches {
-    Column<Range> blocks;         // by patch: rows of ElementBlockTable
-    Column<Range> slots;          // by patch: its slots, which are rows of the columns below
-    Column<Index> node;           // by slot: row of NodeTable
+    Column<Range> blocks;  // by patch: rows of ElementBlockTable
+    // by patch: its slots (rows of the columns below that are listed by slot), one for each node of the patch
+    Column<Range> slots;
+    Column<Index> node;           // by slot: its node, a row of NodeTable
     Ragged<Index> slots_of_node;  // by node: its slots, ascending
     Column<PaddedVec3> position;  // by slot: position of the node [m]; scratch
-    Column<PaddedVec3> force;     // by slot: force of the patch on the node [N]; scratch
-    Column<Real> relaxed;         // by patch: energy that its elements lost by relaxation in this step [J]; scratch
-    // Viscous impulse by block, set if the block is viscous in this step. No rows if no block can be viscous. Scratch.
+    Column<PaddedVec3> force;     // by slot: sum of the forces of the patch on the node [N]; scratch
+    // by patch: energy that the elements of the patch lost by relaxation in this step [J]; scratch
+    Column<Real> relaxed;
+    // Viscous impulse of the elements, by block; only set for blocks that are viscous in this step. The column is empty
+    // if no block can be viscous. Scratch.
     Column<ElementViscousImpulse> viscous_impulse;
-    Column<std::uint8_t> viscous;  // by block: 1 if it is viscous in this step; same rows as viscous_impulse; scratch
-    // Flag by block: 1 if the stiffness of an implicit element comes near its implicit_modulus. Rows as in
-    // viscous_impulse. Scratch.
+    // by block: 1 if the block is viscous in this step; empty if no block can be viscous; scratch
+    Column<std::uint8_t> viscous;
+    // Flag by block: 1 if the stiffness of an implicit element has nearly reached its implicit_modulus. The column is
+    // empty if no block can be viscous. Scratch.
     Column<std::uint8_t> stiffening;
 
-    /// Resizes the columns of viscous quantities to `count` blocks.
+    /// Resizes viscous_impulse, viscous and stiffening to `count` blocks.
     void resize_viscous(std::size_t count) {
         viscous_impulse.resize(count);
         viscous.resize(count);
@@ -164,8 +176,8 @@ struct ElementPatches {
     }
 };
 
-/// Rows of ElementNodeTable of one block of elements. `node`: index of each node in the array of positions that is used
-/// with the rows.
+/// Rows of ElementNodeTable that belong to one block of elements. `node`: index of each node in an array of positions,
+/// which is passed beside this struct.
 struct BlockNodes {
     const NodeLane* node;
     const ElementGradient* gradient;

@@ -1,4 +1,4 @@
-// Handles with generations. A user refers to a body, a collider, a material or an attachment by its handle.
+// Handles with generations. The user refers to a body, a collider, a material or an attachment by its handle.
 #pragma once
 
 #include <compare>
@@ -11,12 +11,12 @@
 namespace skerry {
 
 /// Refers to one row of a table as long as the row exists. A handle to a removed row is recognised as stale, even if
-/// its slot has been reused. A handle to a row of another world is recognised, too.
+/// its slot has been reused. A handle to a row of another world is recognised as foreign.
 template <class Tag>
 struct Handle {
     std::uint32_t slot = 0xffffffffu;
     std::uint32_t generation = 0;
-    std::uint32_t world = 0;  // number of the world; copies of a world share it
+    std::uint32_t world = 0;  // number of the world; a copy of a world has the number of the original
 
     auto operator<=>(const Handle&) const = default;
 };
@@ -30,13 +30,13 @@ using AttachmentHandle = Handle<struct AttachmentTag>;
 template <class HandleType>
 class HandleMap {
 public:
-    /// Number of the world that owns the rows. The number stays the same if a world is copied, or saved and loaded, so
-    /// that earlier handles stay valid. No step depends on it.
+    /// Number of the world that owns the rows. A copy of a world, and a world that was saved and loaded, has the number
+    /// of the original, so that earlier handles stay valid. No step depends on the number.
     std::uint32_t world() const { return world_; }
     void set_world(std::uint32_t number) { world_ = number; }
 
-    /// Returns a handle for the new last row, `row`. Freed slots are reused, the lowest first, so that the same calls
-    /// give the same handles.
+    /// Returns a handle for `row`, the new last row. The lowest free slot is used, so that the same sequence of calls
+    /// returns the same handles.
     HandleType insert(Index row) {
         std::uint32_t slot = lowest_free_;
         while (slot < row_.size() && row_[slot] != no_index) ++slot;
@@ -49,17 +49,17 @@ public:
         return handle_of_slot(slot);
     }
 
-    /// The row of a live handle; no_index for a stale handle or one of another world.
+    /// The row of a live handle; no_index for a stale handle and for a handle of another world.
     Index row(HandleType handle) const {
         if (handle.world != world_ || handle.slot >= row_.size() || generation_[handle.slot] != handle.generation)
             return no_index;
         return row_[handle.slot];
     }
 
-    /// Makes a live handle refer to another row.
+    /// Makes a live handle refer to the row `row`.
     void rename(HandleType handle, Index row) { row_[handle.slot] = row; }
 
-    /// Releases a live handle. The row of the handle stays in the table, without a handle.
+    /// Releases a live handle. The row stays in the table, but no handle refers to it.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;
         ++generation_[handle.slot];
@@ -74,7 +74,7 @@ public:
     }
 
     bool has_slot(std::uint32_t slot) const { return slot < row_.size() && row_[slot] != no_index; }
-    /// The live handle of a slot number, which table rows store.
+    /// The live handle with this slot number. Table rows store slot numbers.
     HandleType handle_of_slot(std::uint32_t slot) const { return {slot, generation_[slot], world_}; }
 
     void for_each_column(auto&& visit) {
@@ -83,7 +83,7 @@ public:
     }
 
 private:
-    Column<Index> row_;  // by slot: row of the handle; no_index: the slot is free
+    Column<Index> row_;  // by slot: row of the handle; no_index for a free slot
     Column<std::uint32_t> generation_;
     std::uint32_t world_ = 0;
     std::uint32_t lowest_free_ = 0;  // all slots below this one are in use

@@ -9,9 +9,9 @@
 
 namespace skerry {
 
-/// XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md). It is not a cryptographic hash, but a change of the
-/// data almost surely changes the value. The same bytes give the same value on every machine. The value does not depend
-/// on how the bytes are split into calls of add.
+/// Hash function XXH3 with 64 bits (Y. Collet; docs/decisions/0010-xxhash.md). XXH3 is not a cryptographic hash, but a
+/// change of the data almost surely changes the hash. The same bytes give the same hash on every machine. The hash does
+/// not depend on how the bytes are divided among calls of add.
 class Hash {
 public:
     Hash();

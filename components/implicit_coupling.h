@@ -1,5 +1,5 @@
-// Coupling between the contacts of an implicit body through the deformation of the body
-// (docs/methods/implicit_bodies.md 4).
+// Coupling between the contacts of an implicit body: an impulse at one contact deforms the body and so changes the
+// velocity at the other contacts (docs/methods/implicit_bodies.md 4).
 #pragma once
 
 #include <span>
@@ -12,24 +12,23 @@ namespace skerry {
 
 /// Written by couple_implicit_bodies.
 struct ImplicitCoupling {
-    Ragged<Index> nodes;  // by row of RigidBodyTable: the nodes that contacts touch, as ascending rows of NodeTable
-    // Velocities of the touched nodes per unit impulse on them, in the frame of the mesh [1/kg], by row of
-    // RigidBodyTable. This is a symmetric matrix, stored column by column, with three numbers per node. The implicit
-    // bodies own the memory.
+    Ragged<Index> nodes;  // by row of RigidBodyTable: the nodes with contacts, as ascending rows of NodeTable
+    // For each row of RigidBodyTable: matrix that maps impulses on the nodes with contacts to velocities of these
+    // nodes, in the frame of the mesh [1/kg]. The matrix is symmetric, stored column by column, and has three rows per
+    // node. The implicit bodies own the memory.
     Column<std::span<const Real>> response;
-    // Rotations by row of RigidBodyTable. `turn` maps velocities from the frame of the mesh to the world.
-    // `impulse_turn` maps impulses from the world to the frame of the mesh, and scales them by theta and the weight of
-    // a long step.
+    // Matrices by row of RigidBodyTable. `turn` rotates velocities from the frame of the mesh to the world frame.
+    // `impulse_turn` rotates impulses from the world frame to the frame of the mesh, and multiplies them by the
+    // parameter theta of the time integration and by the weight of a long step (if the body is in one).
     Column<Mat3> turn, impulse_turn;
-    Column<Index> place;  // by row of ImplicitNodeTable: index among the touched nodes of the body, or no_index
+    Column<Index> place;  // by row of ImplicitNodeTable: index of the node in `nodes` of its body, or no_index
 
     std::size_t numbers(std::size_t body) const { return 3 * nodes[body].size(); }
-    /// The three columns of `response` for the touched node `at`, one after the other.
+    /// The three columns of `response` for an impulse on node number `at` of `nodes`, one column after the other.
     std::span<const Real> columns(std::size_t body, Index at) const {
         return response[body].subspan(3 * static_cast<std::size_t>(at) * numbers(body), 3 * numbers(body));
     }
-    /// Velocity response of the touched node `to` to an impulse on the touched node `from`, in the frame of the mesh
-    /// [1/kg].
+    /// Velocity of node number `to` of `nodes` per unit impulse on node number `from`, in the frame of the mesh [1/kg].
     Mat3 block_in_frame(std::size_t body, Index to, Index from) const {
         const std::span<const Real> of = columns(body, from);
         Mat3 block;

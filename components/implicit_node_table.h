@@ -1,5 +1,6 @@
-// One row per node of the implicit bodies, body after body, in node order. A row holds the deformation in the frame of
-// the mesh, which moves like a rigid body (docs/methods/implicit_bodies.md 1).
+// One row per node of the implicit bodies, body after body, in node order. A row describes the deformation of the body
+// at the node. The deformation is measured in the frame of the mesh, which moves like a rigid body
+// (docs/methods/implicit_bodies.md 1).
 #pragma once
 
 #include "components/column.h"
@@ -9,29 +10,32 @@
 namespace skerry {
 
 struct ImplicitNodeTable {
-    Column<Vec3> displacement;  // u [m]
-    Column<Vec3> velocity;      // deformation velocity w; for a held body the whole velocity [m/s]
-    // Velocity that contacts added to w in the last long step, times the length of that step [m]. It is zero outside a
-    // long step. Written by carry_long_steps.
+    Column<Vec3> displacement;  // displacement u by the deformation, in the frame of the mesh [m]
+    Column<Vec3> velocity;      // deformation velocity w; for a held body the complete velocity of the node [m/s]
+    // Change of the velocity w by contacts in the last long step, times the length of that step [m]. The column is zero
+    // outside a long step. carry_long_steps writes it.
     Column<Vec3> left;
-    // kick_implicit_bodies writes the next columns in this step:
-    Column<Vec3> elastic_force;  // elastic force K u, in the order of the factorised matrix [N]
-    Column<Vec3> impulse;        // impulse in the same order; the solution overwrites it [N s]
-    // Velocity w at the end of the step: first without contacts, until strain_implicit_bodies adds their effect.
+    // kick_implicit_bodies writes the next three columns in this step.
+    Column<Vec3> elastic_force;
+    // impulse on the nodes in the order of the factorised matrix, later overwritten by the solution [N s]
+    Column<Vec3> impulse;
+    // Velocity w at the end of the step, at first without the effect of contacts. strain_implicit_bodies adds this
+    // effect.
     Column<Vec3> velocity_next;
-    // solve_regions adds to this column, starting from zero:
-    Column<Vec3> contact_impulse;  // impulse of contacts, in the world frame [N s]
-    // Written by strain_implicit_bodies:
+    // solve_regions adds the impulses of contacts to the next column, which is zero at the start.
+    Column<Vec3> contact_impulse;  // sum of the contact impulses on the node, in the world frame [N s]
+    // strain_implicit_bodies writes the next two columns.
     Column<Vec3> displacement_next;
-    Column<Vec3> force_rate;  // rate of the elastic force K w, in the order of the factorised matrix [N/s]
+    // rate of change K w of the elastic force; nodes in the order of the factorised matrix [N/s]
+    Column<Vec3> force_rate;
 
     std::size_t size() const { return displacement.size(); }
 
-    /// Visits all columns. This is the only list of them.
+    /// Visits all columns. This is the only list of the columns.
     void for_each_column(auto&& visit) {
         visit("displacement", displacement, ColumnRole::state);
         visit("velocity", velocity, ColumnRole::state);
-        visit("left", left, ColumnRole::link);  // hashed only if it is not zero
+        visit("left", left, ColumnRole::link);  // hashed only if the vector is not zero
         visit("elastic_force", elastic_force, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
         visit("velocity_next", velocity_next, ColumnRole::scratch);

@@ -10,8 +10,8 @@ namespace skerry {
 
 using JointHandle = Handle<struct JointTag>;
 
-/// Relative motion that a joint leaves free. ball: rotation about a common point. hinge: rotation about one axis.
-/// slider: translation along one axis, without rotation. fixed: none.
+/// Relative motion of two bodies that a joint permits. ball: rotation about a common point. hinge: rotation about one
+/// axis. slider: translation along one axis, without rotation. fixed: no relative motion.
 enum class JointKind : std::uint8_t { ball, hinge, slider, fixed };
 template <>
 struct EnumNames<JointKind> {

@@ -1,5 +1,5 @@
-// Joints of rigid bodies: one row per joint, and the blocks of three constraint equations that each step computes
-// (docs/methods/joints.md).
+// Joints of rigid bodies: one row per joint, and the blocks of constraint equations that each step computes. A block
+// has three equations (docs/methods/joints.md).
 #pragma once
 
 #include <array>
@@ -13,31 +13,32 @@
 
 namespace skerry {
 
-/// Drive of the axis of a hinge or a slider: no drive, towards a speed, or towards a position.
+/// Drive of the motion of a hinge or slider along its axis: no drive, drive to a target speed, or drive to a target
+/// position.
 enum class JointDrive : std::uint8_t { none, speed, position };
 template <>
 inline constexpr std::uint64_t value_count<JointDrive> = 3;
 
 struct JointMotorRow {
     Real target = 0;      // target speed [rad/s or m/s] or target position [rad or m]
-    Real most = 0;        // largest torque or force [N m or N]
-    Real most_speed = 0;  // largest speed on the way to a position [rad/s or m/s]
+    Real most = 0;        // greatest torque or force of the motor [N m or N]
+    Real most_speed = 0;  // greatest speed of the motion to a target position [rad/s or m/s]
 
     bool operator==(const JointMotorRow&) const = default;
 };
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
 
-/// Frame of a joint on a body or in the world. The third axis of the frame is the axis of the joint.
+/// Frame of a joint, fixed to a body or to the world. The third axis of the frame is the axis of the joint.
 struct JointFrame {
-    Vec3 point = Vec3::Zero();  // origin, in the frame of the mesh or of the world [m]
+    Vec3 point = Vec3::Zero();  // origin of the joint frame, in the frame of the mesh or of the world [m]
     Mat3 axes = Mat3::Identity();
 };
 template <>
 struct NumbersOf<JointFrame> : Reals<12> {};
 
-/// One row per joint. The coordinate of a joint is the angle of a hinge [rad] or the displacement of a slider [m]. It
-/// is zero when the joint is made.
+/// One row per joint. The joint coordinate is the angle of a hinge [rad] or the displacement of a slider [m]. The
+/// coordinate is zero when the joint is created.
 struct JointTable {
     Column<std::uint32_t> slot;
     Column<JointKind> kind;
@@ -48,15 +49,16 @@ struct JointTable {
     Column<JointFrame> first_frame, second_frame;
     Column<Real> lower, upper;  // limits of the joint coordinate; infinite: no limit
     Column<JointMotorRow> motor;
-    // Values of the last step: the joint coordinate at its start, which counts whole revolutions, and the impulses.
+    // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
-    // Impulse and moment on the first body, in the joint frame of the second [N s, N m s].
+    // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
+    // body [N s, N m s].
     Column<Vec3> impulse, moment;
-    Column<Real> step;  // time for which the impulses acted; 0 before the first step [s]
+    Column<Real> step;  // time for which the impulses acted in the last step; 0 before the first step [s]
 
     std::size_t size() const { return slot.size(); }
 
-    /// Visits all columns. This is the only list of them.
+    /// Visits all columns. This is the only list of the columns.
     void for_each_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
@@ -76,9 +78,10 @@ struct JointTable {
     }
 };
 
-/// Constraint law of the third row of a block: locked, or free along the joint coordinate, with limits and a drive.
+/// Constraint law of the third equation of a block. The motion along the joint coordinate is either locked, or free
+/// with limits and a drive.
 struct AxisLaw {
-    bool locked = true;  // the third row is locked like the other two rows
+    bool locked = true;  // true: the third equation locks the motion, as the first two equations do
     Real coordinate = 0;
     Real lower = -infinity, upper = infinity;
     JointDrive drive = JointDrive::none;
@@ -86,26 +89,27 @@ struct AxisLaw {
     Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
 };
 
-/// Three constraint equations of one joint in this step: for the relative velocity at the joint point, or for the
-/// relative angular velocity. Impulses are those on the first body.
+/// Three constraint equations of one joint in this step. They constrain either the relative velocity at the joint point
+/// or the relative angular velocity of the two bodies. Impulses in the equations act on the first body.
 struct JointBlock {
     Index joint;                    // row of JointTable
     bool turning;                   // true: the equations constrain angular velocities
     Index first, second;            // rows of RigidBodyTable; no_index for the world
-    Index first_node, second_node;  // first node of each body if impulses can move the body, else no_index
-    Vec3 point;                     // [m]
+    Index first_node, second_node;  // first node of each body; no_index if impulses cannot move the body
+    Vec3 point;                     // joint point in the world frame [m]
     Mat3 frame;                     // columns: directions of the three equations
-    Vec3 error;                     // position error along the locked directions [m or rad]
+    Vec3 error;                     // position error of the joint along the locked directions [m or rad]
     AxisLaw axis;
 };
 
-/// Blocks of all joints, in joint order. Blocks of one joint are adjacent.
+/// Blocks of all joints, in joint order. The blocks of one joint are adjacent.
 struct JointBlockTable {
     Column<JointBlock> block;
-    // Impulses of the three equations of a block; before the solve: the warm start [N s or N m s].
+    // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
-    Column<Real> coordinate;       // by row of JointTable: coordinate at the start of the step
-    Column<std::uint8_t> resting;  // by joint: 1 if its bodies are asleep; such a joint keeps its last impulse
+    Column<Real> coordinate;  // by row of JointTable: joint coordinate at the start of the step
+    // by row of JointTable: 1 if the bodies are asleep; the joint then stores its last impulse unchanged
+    Column<std::uint8_t> resting;
 
     std::size_t size() const { return block.size(); }
     void for_each_column(auto&& visit) {

@@ -1,5 +1,5 @@
-// Lanes<T, W>: W values side by side, so that a kernel loads W values of one field at once. Real8: the register that
-// holds the loaded values.
+// Lanes<T, W>: W values side by side in memory, so that a kernel loads W values of one field at once. Real8: the vector
+// type of the loaded values.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +19,21 @@ struct alignas(sizeof(T) * W <= 64 ? sizeof(T) * W : 64) Lanes {
     const T& operator[](std::size_t i) const { return lane[i]; }
 };
 
-/// element_lanes reals in one register, or in two or four on older machines. A vector type of the compiler is used
-/// instead of a loop over Lanes: it does not depend on auto-vectorisation, and every lane gets the bits that the same
-/// source gives for one Real.
+/// A vector of element_lanes reals. The vector fills one register, or two or four registers on older machines. A vector
+/// type of the compiler is used instead of a loop over Lanes. Such a type does not depend on auto-vectorisation, and
+/// every lane gets the same bits as the same source code with a single Real.
 typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 
-/// Half of a Real8.
+/// Half of the lanes of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
-// Types for loads from the address of any Real: unaligned, and may alias other reals. memcpy is avoided: without
-// 512-bit registers it becomes copies of 16 bytes, and a load of 32 bytes right after the copies has to wait for them.
+// Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy is
+// not used: without 512-bit registers the compiler turns memcpy into copies of 16 bytes, and a load of 32 bytes right
+// after such copies has to wait for them.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
 
-/// Vector type of the element force kernel: as many reals as a register holds.
+/// Vector type of the element force kernel: a vector that fits into one register.
 #ifdef __AVX512VL__  // tested instead of __AVX512F__, which cmake/flags.cmake hides from Eigen
 using KernelReal = Real8;
 #else
@@ -40,7 +41,8 @@ using KernelReal = Real4;
 #endif
 template <class T>
 inline constexpr std::size_t lanes_of = sizeof(T) / sizeof(Real);
-inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;  // of a block
+// number of KernelReal vectors per block
+inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;
 
 [[gnu::always_inline]] inline Real4 half_at(const Real* from) {
     return *reinterpret_cast<const Real4InMemory*>(from);
@@ -57,7 +59,7 @@ inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>
     *reinterpret_cast<Real8InMemory*>(to.lane) = from;
 }
 
-/// Loads part `part` of the lanes of a block; for T = Real8 all lanes.
+/// Loads vector number `part` of the lanes of a block. A Real8 contains all lanes.
 template <class T>
 [[gnu::always_inline]] inline T load_part(const Lanes<Real, element_lanes>& from, std::size_t part) {
     if constexpr (lanes_of<T> == element_lanes)

@@ -11,14 +11,15 @@
 
 namespace skerry {
 
-/// Material constants that the kernels use, computed once from the parameters of the user.
+/// Material constants that the kernels use. They are computed once from the parameters that the user sets.
 struct MaterialConstants {
     MaterialModel model;
-    Real shear_modulus;       // Lame constant mu at small strain [Pa]
-    Real lame_lambda;         // Lame constant lambda at small strain [Pa]
-    Real density;             // [kg/m^3]
-    Real loss_factor = 0;     // systems/material/relaxation.h
-    Real bulk_viscosity = 0;  // damping ratio at the highest frequency of an element, for changes of its volume
+    Real shear_modulus;  // Lame constant mu at small strain [Pa]
+    Real lame_lambda;    // Lame constant lambda at small strain [Pa]
+    Real density;        // [kg/m^3]
+    // loss factor of the material, nearly independent of the frequency (systems/material/relaxation.h)
+    Real loss_factor = 0;
+    Real bulk_viscosity = 0;  // damping ratio of volume changes, at the highest frequency of an element
 
     bool relaxes() const { return loss_factor > 0 || bulk_viscosity > 0; }
 };
@@ -27,8 +28,9 @@ struct MembersOf<MaterialConstants> {
     static std::span<const Member> list();
 };
 
-/// Part of the stress that an element exerts: the whole stress, the part of one Lame constant alone, or the inversion
-/// barrier, which keeps a tetrahedron from inverting. Only tetrahedra have an inversion barrier.
+/// Part of the stress that an element exerts. whole: the complete stress. shear, volume: the part of the stress due to
+/// one Lame constant. guard: the inversion barrier, which keeps a tetrahedron from inverting. Only tetrahedra have an
+/// inversion barrier.
 enum class ElementPart : std::uint8_t { whole, shear, volume, guard };
 template <>
 inline constexpr std::uint64_t value_count<ElementPart> = 4;
@@ -36,8 +38,9 @@ inline constexpr std::uint64_t value_count<ElementPart> = 4;
 /// Ratio of the modulus of the inversion barrier to the modulus lambda + 2 mu of the material.
 inline constexpr Real guard_modulus = 5;
 
-/// Material constants for one part of the stress. For the part of one Lame constant, the other constant is zero. An
-/// inversion barrier dissipates nothing, except by its viscosity if it belongs to a cluster.
+/// Material constants for one part of the stress. For the part due to one Lame constant, the other constant is zero.
+/// The constants of an inversion barrier include no damping; only inversion barriers that belong to a cluster are
+/// viscous.
 inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     if (part == ElementPart::guard)
         return {.model = MaterialModel::guard,
@@ -49,8 +52,8 @@ inline MaterialConstants part_of(MaterialConstants material, ElementPart part) {
     return material;
 }
 
-/// Surface properties of a material, body or collider. If a property of a body is negative, the property of its
-/// material is used. If a property of a collider is negative, the property of the touching body is used.
+/// Surface properties of a material, body or collider. A negative property of a body is replaced by the property of its
+/// material. A negative property of a collider is replaced by the property of the touching body.
 struct SurfaceProperties {
     Real static_friction = -1;
     Real dynamic_friction = -1;
@@ -66,7 +69,7 @@ struct MaterialTable {
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // decay rate of deformation velocities; rigid motion is not damped [1/s]
+    Column<Real> damping;        // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
     Column<std::uint32_t> slot;  // handle slot
 
     void for_each_column(auto&& visit) {

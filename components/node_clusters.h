@@ -1,4 +1,4 @@
-// Clusters: groups of nodes coupled by one matrix of inertia (docs/methods/clusters.md).
+// Clusters: groups of nodes whose accelerations are coupled by one inertia matrix (docs/methods/clusters.md).
 #pragma once
 
 #include <span>
@@ -9,14 +9,16 @@
 
 namespace skerry {
 
-/// Clusters of all bodies. An impulse on one node moves every node of its cluster; a row of `inverse` gives the
-/// velocities. build_clusters makes the clusters from the implicit elements, and stiffen_clusters updates them.
+/// Clusters of all bodies. An impulse on one node changes the velocity of every node of its cluster. A row of the
+/// inverse inertia matrix gives these velocities. build_clusters makes the clusters from the implicit elements, and
+/// stiffen_clusters updates them.
 struct NodeClusters {
-    Ragged<Index> nodes;              // by cluster: its moving nodes, as ascending rows of NodeTable
+    Ragged<Index> nodes;              // by cluster: its nodes that can move, as ascending rows of NodeTable
     Column<Index> body;               // by cluster: row of BodyTable
-    Column<std::size_t> first_entry;  // by cluster: start of its matrix in `inverse`
-    Column<Real> inverse;             // inverse A^-1 of the matrix of inertia of each cluster, row by row [1/kg]
-    // Cluster of each node or no_index, and its index in the cluster; empty without clusters.
+    Column<std::size_t> first_entry;  // by cluster: index in `inverse` of the first entry of its matrix
+    Column<Real> inverse;             // inverse A^-1 of the inertia matrix A of each cluster, row by row [1/kg]
+    // `cluster_of`: cluster of each node, or no_index. `place`: index of the node in its cluster. Both columns are
+    // empty if there are no clusters.
     Column<Index> cluster_of, place;
 
     std::size_t size() const { return body.size(); }
@@ -29,14 +31,14 @@ struct NodeClusters {
         cluster_of.clear();
         place.clear();
     }
-    /// Cluster of a node, or no_index.
+    /// The cluster of a node, or no_index.
     Index cluster(Index node) const { return cluster_of.empty() ? no_index : cluster_of[node]; }
-    /// The first node of the cluster of `node`; `node` itself if it belongs to no cluster.
+    /// The first node of the cluster of `node`, or `node` itself if it belongs to no cluster.
     Index leader(Index node) const {
         const Index of = cluster(node);
         return of == no_index ? node : nodes.item[nodes.offset[of]];
     }
-    /// Velocities of the nodes of a cluster per unit impulse on node number `at` of the cluster [1/kg].
+    /// Velocities of all nodes of a cluster per unit impulse on node number `at` of the cluster [1/kg].
     std::span<const Real> row(Index cluster, Index at) const {
         const auto c = static_cast<std::size_t>(cluster);
         const std::size_t count = nodes[c].size();

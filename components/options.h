@@ -1,5 +1,5 @@
-// Options that a user selects by name. EnumNames lists the names of each enum once, for the scene reader, the help of
-// the program and the reports.
+// Options that a user selects by name. EnumNames is the only list of the names of each enum. The scene reader, the help
+// of the program and the reports use it.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 namespace skerry {
 
 /// Material laws. guard: the inversion barrier, which acts on tetrahedra that are about to invert
-/// (docs/methods/elasticity.md 7.7). No material can select it.
+/// (docs/methods/elasticity.md 7.7). A user cannot select guard as the law of a material.
 enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
-/// Elements that carry the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
+/// Elements that compute the stress of a body. linear: tetrahedra with constant strain, which lock in bending and in
 /// nearly incompressible materials. edge_smoothed: one element per edge, with the mean strain of the tetrahedra around
-/// the edge. edge_node_smoothed: elements at edges for the shear part, elements at nodes for the volumetric part.
+/// the edge. edge_node_smoothed: elements at edges for the shear stress, elements at nodes for the volumetric stress.
 /// smoothed: edge_smoothed up to a Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
 /// Friction laws. cone: Coulomb's friction cone. pyramid: the four-sided approximation of the cone used in the paper
@@ -24,17 +24,19 @@ enum class ContactRegions { separate, global };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };
 enum class Backend { tbb, openmp, threads, serial, automatic };  // automatic: the first backend of this build
 enum class WarmStart { off, on };
-/// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: move the bodies apart
-/// without adding energy if a short displacement suffices, otherwise refuse them. refuse: refuse the bodies. ignore:
-/// report the overlaps and start with them (docs/decisions/0017-start-overlaps.md).
+/// Treatment of new bodies that overlap other bodies or colliders, before the next step. resolve: the bodies are moved
+/// apart without adding energy if a short displacement suffices; otherwise they are refused. refuse: the bodies are
+/// refused. ignore: the overlaps are reported, and the simulation starts with them
+/// (docs/decisions/0017-start-overlaps.md).
 enum class StartOverlaps { resolve, refuse, ignore };
-/// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first is inside the second. around:
-/// the second is inside the first. coincident: each is inside the other.
+/// Kind of overlap of two objects. crossing: their surfaces intersect. inside: the first object is inside the second.
+/// around: the second object is inside the first. coincident: each object is inside the other.
 enum class OverlapKind { crossing, inside, around, coincident };
-/// Time integrators (docs/integration.md). Both alternate a kick, which changes velocities by forces, and a drift,
-/// which moves positions by velocities. symplectic_euler: first order when started from given velocities, with bounded
-/// energy. leapfrog: positions also drift by half a step before the first step of a call, and back by half a step after
-/// the last one, which makes the method second order in smooth motion.
+/// Time integrators (docs/integration.md). Both integrators alternate a kick, in which forces change velocities, and a
+/// drift, in which velocities change positions. symplectic_euler: first order in the step length when started from
+/// given velocities, with bounded energy. leapfrog: the positions also drift forward by half a step before the first
+/// step of a call, and back by half a step after the last step of the call. This makes the method second order in
+/// smooth motion.
 enum class Integrator { symplectic_euler, leapfrog };
 
 template <class Enum>
@@ -127,7 +129,7 @@ struct EnumNames<Integrator> {
     }};
 };
 
-/// Names of options in earlier versions, each with a hint for users who still write the old name.
+/// Option names of earlier versions. Each has a hint for users who still write the old name.
 template <class Enum>
 struct RemovedNames {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 0> table{};
@@ -175,7 +177,7 @@ constexpr std::optional<Enum> from_name(std::string_view name) {
     return std::nullopt;
 }
 
-/// The hint that names the replacement of a removed name; empty for any other name.
+/// The hint that tells the replacement of a removed name; empty if `name` is not a removed name.
 template <class Enum>
 constexpr std::string_view hint_for_removed(std::string_view name) {
     for (const auto& [removed, hint] : RemovedNames<Enum>::table)

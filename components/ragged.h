@@ -11,7 +11,8 @@ namespace skerry {
 /// Read-only view of a Ragged.
 template <class T>
 struct RaggedView {
-    std::span<const Index> offset;  // begin of each row in `item`, and the end: row_count + 1 entries, the first 0
+    // Index in `item` of the first item of each row, followed by the number of items: row_count + 1 entries.
+    std::span<const Index> offset;
     std::span<const T> item;
 
     std::size_t size() const { return offset.empty() ? 0 : offset.size() - 1; }
@@ -21,10 +22,11 @@ struct RaggedView {
     }
 };
 
-/// Rows of different lengths. Row r is item[offset[r]] .. item[offset[r + 1] - 1].
+/// Rows of different lengths. Row r consists of item[offset[r]] .. item[offset[r + 1] - 1].
 template <class T>
 struct Ragged {
-    Column<Index> offset;  // begin of each row in `item`, and the end: row_count + 1 entries, or none
+    // Index in `item` of the first item of each row, followed by the number of items: row_count + 1 entries, or none.
+    Column<Index> offset;
     Column<T> item;
 
     std::size_t size() const { return offset.empty() ? 0 : offset.size() - 1; }

@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Rows begin .. end - 1 of some table.
+/// The rows begin .. end - 1 of a table.
 struct Range {
     Index begin = 0;
     Index end = 0;
@@ -18,19 +18,19 @@ struct Range {
     bool operator==(const Range&) const = default;
 };
 
-/// Returns the part of `all` that covers `rows`.
+/// Returns the part of the span `all` that consists of the rows in `rows`.
 template <class T>
 std::span<T> rows_of(std::span<T> all, Range rows) {
     return all.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.size()));
 }
-/// Returns the part of a column that covers `rows`.
+/// Returns the part of a column that consists of the rows in `rows`.
 auto rows_of(auto& column, Range rows) requires requires {
     column.span();
 }
 { return rows_of(column.span(), rows); }
 
-/// New index of a row after the ascending ranges `gone` are removed. For a removed row: new index of the next remaining
-/// row.
+/// New index of `row` after the ascending ranges `gone` have been removed. If `row` itself is removed, this is the new
+/// index of the next remaining row.
 inline Index row_without(Index row, std::span<const Range> gone) {
     Index below = 0;
     for (const Range& rows : gone) {
@@ -40,8 +40,8 @@ inline Index row_without(Index row, std::span<const Range> gone) {
     return row - below;
 }
 
-/// Appends `rows` to the ascending list `gone` of removed ranges, and merges them with the last range if the two are
-/// adjacent. `rows` must follow all listed rows.
+/// Appends the range `rows` to the ascending list `gone` of removed ranges. If `rows` begins where the last range ends,
+/// the two ranges are merged. `rows` must come after all listed rows.
 void append_gone(Range rows, auto& gone) {
     if (rows.size() == 0) return;
     if (!gone.empty() && gone.back().end == rows.begin)

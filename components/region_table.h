@@ -13,29 +13,29 @@ namespace skerry {
 
 enum class RegionStatus : std::uint8_t { converged, certified, iteration_limit, not_finite };
 
-/// Shortcuts taken by the solver for a region; combined with bitwise or.
+/// Shortcuts that the solver used for a region; several shortcuts are combined with bitwise or.
 enum RegionShortcut : std::uint8_t {
     shortcut_none = 0,
-    shortcut_closed_form = 1,   // exact solution of a single contact
-    shortcut_separating = 2,    // no contact closes, so zero impulses are the solution
+    shortcut_closed_form = 1,   // the exact solution of a single contact was used
+    shortcut_separating = 2,    // no contact closes, so all impulses are zero
     shortcut_certified = 4,     // the warm start is the solution
-    shortcut_frictionless = 8,  // no friction: one equation per contact
-    shortcut_in_lanes = 16      // small region: solved side by side with other regions
+    shortcut_frictionless = 8,  // the contacts have no friction: one equation per contact
+    shortcut_in_lanes = 16      // the region is small and was solved side by side with other regions
 };
 
-/// One row per region, in the order of first contacts.
+/// One row per region. Regions are sorted by the row of their first contact.
 struct RegionTable {
     Ragged<Index> contacts;    // rows of ContactTable, ascending
-    Ragged<Index> joints;      // rows of JointBlockTable, ascending; without joints the list has no rows
-    Column<ContactKey> id;     // key of the first contact; identifies the region across steps
-    Column<Index> iterations;  // number of sweeps; 0 if the warm start is the solution
-    Column<Real> error;        // e_nat, docs/methods/errors.md 2
+    Ragged<Index> joints;      // rows of JointBlockTable, ascending; `joints` has no rows if there are no joints
+    Column<ContactKey> id;     // key of the region's first contact, which identifies the region across steps
+    Column<Index> iterations;  // number of solver sweeps; 0 if the warm start is the solution
+    Column<Real> error;        // relative error e_nat of the solution (docs/methods/errors.md 2)
     Column<RegionStatus> status;
     Column<RegionShortcut> shortcut;
     Column<Real> dissipated;  // energy dissipated by the contacts of the region in this step [J]
-    Column<Real> push_work;   // energy added by push_out, which moves positions only [J]
-    // Order in which the solver starts the regions: large regions by predicted cost, small ones by size, single
-    // contacts last.
+    Column<Real> push_work;   // energy added by the velocities push_out, which move positions only [J]
+    // Order in which the solver starts the regions: first large regions by predicted cost, then small regions by size,
+    // and single contacts last.
     Column<Index> order;
     bool pushed = false;  // true: some region has written NodeTable::push_out
 
@@ -59,12 +59,12 @@ struct RegionTable {
     }
 };
 
-/// History of the regions across steps, by ascending id. It serves only to predict how long a region will take. No
-/// result depends on it, so it is not part of the state.
+/// Number of sweeps of the regions in earlier steps, sorted by ascending id. This table serves only to predict the
+/// solution time of a region. No result depends on it, so it is not part of the state.
 struct RegionHistoryTable {
     Column<ContactKey> id;
     Column<Index> contacts;  // number of contacts
-    Column<Real> sweeps;     // moving average of the number of sweeps
+    Column<Real> sweeps;     // moving average of the number of solver sweeps
     Column<Index> age;       // number of steps since the number of contacts changed
 
     void for_each_column(auto&& visit) {

@@ -5,11 +5,11 @@
 
 namespace skerry {
 
-/// Contacts as they were in the last step that searched for them, in key order. When a body wakes, their impulses are
-/// the warm start. The columns other than key, normal and impulse are kept only for display.
+/// The last contacts found for the pairs of sleeping bodies, in key order. When a body wakes, the stored impulses are
+/// the warm start of these contacts. The columns other than key, normal and impulse are stored only for display.
 struct RestingContactTable {
-    ContactTable contact;  // `region`: no_index
-    Column<Real> step;     // time for which forces acted in the step that computed the impulse [s]
+    ContactTable contact;  // the column `region` is no_index
+    Column<Real> step;     // time for which forces acted in the step that computed `impulse` [s]
 
     void for_each_column(auto&& visit) {
         contact.for_each_column([&](const char* name, auto& column, ColumnRole) {

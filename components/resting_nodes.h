@@ -8,10 +8,10 @@
 
 namespace skerry {
 
-/// Tells whether a node belongs to a sleeping body. Empty spans mean that no body is asleep.
+/// Tells whether a node belongs to a sleeping body. If the spans are empty, no body is asleep.
 struct RestingNodes {
-    std::span<const Index> node_body = {};           // NodeTable
-    std::span<const std::uint8_t> body_asleep = {};  // BodyTable
+    std::span<const Index> node_body = {};           // column of NodeTable: row of BodyTable
+    std::span<const std::uint8_t> body_asleep = {};  // column BodyTable::asleep
 
     bool contain(std::size_t node) const {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(node_body[node])] != 0;

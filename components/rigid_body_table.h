@@ -1,4 +1,4 @@
-// One row per rigid or implicit body: its rigid motion, which its nodes follow (docs/methods/rigid_bodies.md).
+// One row per rigid or implicit body: the rigid motion of the body (docs/methods/rigid_bodies.md).
 #pragma once
 
 #include <cstdint>
@@ -13,50 +13,55 @@
 
 namespace skerry {
 
-/// One row per rigid or implicit body. The principal frame of a body has its origin in the centre of mass and its axes
-/// along the principal axes of inertia. `axes` maps the principal frame to the frame of the mesh, `rotation` maps it to
-/// the world. A node of a rigid body is at center + rotation axes^T (rest_position - rest_center).
+/// Rigid motion of each rigid or implicit body. The principal frame of a body has its origin in the centre of mass and
+/// its axes along the principal axes of inertia. `axes` maps vectors from the principal frame to the frame of the mesh,
+/// `rotation` maps them to the world frame. A node of a rigid body is at center + rotation axes^T (rest_position -
+/// rest_center).
 struct RigidBodyTable {
     Column<Index> body;  // row of BodyTable
     Column<Real> mass;   // [kg]
-    // Mass distribution of the rest shape, or of the current shape if the deformation is large:
+    // The next columns describe the mass distribution of the rest shape, or of the current shape if the deformation is
+    // large.
     Column<Vec3> moments;           // moments of inertia about the principal axes [kg m^2]
-    Column<Mat3> axes;              // axes of the principal frame, in the frame of the mesh
-    Column<Vec3> rest_center;       // centre of mass, in the frame of the mesh [m]
-    Column<Vec3> center;            // [m]
-    Column<Mat3> rotation;          // maps the principal frame to the world
+    Column<Mat3> axes;              // columns: directions of the principal axes in the frame of the mesh
+    Column<Vec3> rest_center;       // centre of mass in the frame of the mesh [m]
+    Column<Vec3> center;            // centre of mass in the world frame [m]
+    Column<Mat3> rotation;          // maps vectors from the principal frame to the world frame
     Column<Vec3> momentum;          // [kg m/s]
     Column<Vec3> angular_momentum;  // angular momentum about the centre of mass [kg m^2/s]
-    Column<std::uint8_t> large;     // 1: the deformation is large and follows the nonlinear laws of the elements
-    // The attachment that holds a rigid body or the frame of an implicit body, and the pose of the frame of the mesh in
-    // the frame of the attachment:
+    // 1: the deformation is large and is computed with the nonlinear laws of the elements.
+    Column<std::uint8_t> large;
+    // `holder`: the attachment that holds a rigid body or the frame of an implicit body. `held_position` and
+    // `held_rotation`: pose of the frame of the mesh in the frame of this attachment.
     Column<Index> holder;        // row of AttachmentTable, or no_index
     Column<Vec3> held_position;  // [m]
     Column<Mat3> held_rotation;
-    // kick_rigid_bodies writes the next columns in this step:
+    // kick_rigid_bodies writes the next columns in this step.
     Column<Mat3> inverse_inertia;  // inverse inertia in the world frame [1/(kg m^2)]
-    // Impulse of gravity and loads, and its moment about the centre of mass [N s, N m s].
+    // Impulse of gravity and external loads, and angular impulse about the centre of mass [N s, N m s].
     Column<Vec3> kick, moment_kick;
-    // Accumulated from zero by solve_regions:
-    // Impulse of contacts, and its moment about the centre of mass [N s, N m s].
+    // solve_regions adds to the next columns, which are zero at the start. Impulse of contacts, and its angular impulse
+    // about the centre of mass [N s, N m s].
     Column<Vec3> contact_impulse, contact_moment;
-    Column<Vec3> push_velocity, push_spin;  // velocities that move the positions of this step only [m/s, rad/s]
-    // Written by turn_rigid_bodies:
+    // Velocity and angular velocity that change the pose in this step only [m/s, rad/s].
+    Column<Vec3> push_velocity, push_spin;
+    // turn_rigid_bodies writes the next two columns.
     Column<Vec3> center_next;
     Column<Mat3> rotation_next;
-    // Written by strain_implicit_bodies: moments and axes of inertia of the new shape, and the rotation of its
-    // principal frame before the rigid rotation of this step. Unchanged for rigid bodies and for bodies with small
-    // deformation.
+    // strain_implicit_bodies writes the next columns for bodies with large deformation. `moments_next`, `axes_next`:
+    // moments and axes of inertia of the new shape. `rotation_shaped`: rotation of the new principal frame before the
+    // rigid rotation of this step. For all other bodies the values equal moments, axes and rotation.
     Column<Vec3> moments_next;
     Column<Mat3> axes_next, rotation_shaped;
-    // Angular impulse that keeps the frame of a held body on its path against the elastic forces in the body [N m s].
+    // Angular impulse that keeps the frame of a held body on its prescribed path against the elastic forces of the body
+    // [N m s].
     Column<Vec3> hold_moment;
     Column<std::uint8_t> large_next;
 
     std::size_t size() const { return mass.size(); }
 
-    /// Visits all columns. This is the only list of them. find_holders derives holder, held_position and held_rotation.
-    /// `large` is hashed only if it is set.
+    /// Visits all columns. This is the only list of the columns. find_holders derives holder, held_position and
+    /// held_rotation. `large` is hashed only if it is 1.
     void for_each_column(auto&& visit) {
         visit("body", body, ColumnRole::link);
         visit("mass", mass, ColumnRole::state);

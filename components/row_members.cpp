@@ -1,4 +1,4 @@
-// Members of table structs whose numbers have more than one type, with their names in saved worlds.
+// Members of table structs that contain numbers of several types. The strings are the member names in saved worlds.
 #include <array>
 #include <cstring>
 #include <stdexcept>

@@ -16,7 +16,8 @@ namespace {
 
 [[maybe_unused]] constexpr std::size_t large_page = std::size_t{2} << 20;
 
-/// Requests large pages. This is only a hint: if the system has none or refuses, the memory stays as it was.
+/// Asks the system for large pages. The request is only a hint: if the system refuses, the memory is used with small
+/// pages.
 void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);

@@ -1,4 +1,4 @@
-// Memory of columns: whole cache lines, and pages of 2 MiB for long columns if the system has them.
+// Memory of columns. It consists of complete cache lines, and for long columns of 2 MiB pages if the system has them.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,18 @@
 
 namespace skerry {
 
-/// Alignment of the rows of a column [bytes]. It is the size of the widest vector register and of a cache line, so that
-/// no two columns share a line.
+/// Alignment of the rows of a column [bytes]: the size of the widest vector register and of a cache line. Two columns
+/// therefore never share a cache line.
 inline constexpr std::size_t row_alignment = 64;
 
-/// Allocates `bytes`, which may be 0, with operator new. A step reads the columns of a large world once; with pages of
-/// 4 kB the address translation takes 4 % of a step of 360,000 tetrahedra (docs/scaling.md). On Linux, memory that
-/// spans whole pages of 2 MiB is therefore requested as such pages. Throws std::bad_alloc.
+/// Allocates `bytes` bytes (0 is allowed) with operator new. On Linux, memory that covers complete pages of 2 MiB is
+/// requested as such pages. With pages of 4 kB, address translation takes 4 % of a step of 360,000 tetrahedra
+/// (docs/scaling.md), because a step reads the columns of a large world only once. Throws std::bad_alloc.
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory) noexcept;
 
-/// Rows of plain data whose type only the caller knows. Each row has `row_bytes` bytes, the same in every call. Rows
-/// are copied bytewise and need no destructor. The memory never shrinks.
+/// Rows of plain data whose type only the caller knows. `row_bytes` is the size of a row [bytes] and must be equal in
+/// every call. Rows are copied bytewise and need no destructor. The memory never shrinks.
 class RowMemory {
 public:
     RowMemory() = default;
@@ -31,18 +31,18 @@ public:
     std::size_t size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
 
-    /// Reserves memory for exactly `count` rows, if there is less.
+    /// Reserves memory for exactly `count` rows if the present memory is smaller.
     void reserve(std::size_t count, std::size_t row_bytes);
-    /// Reserves memory for `more` rows behind the last row. The memory at least doubles, so that appending rows one by
-    /// one moves each row only a few times.
+    /// Reserves memory for `more` rows after the last row. If new memory is needed, it is at least twice as large, so
+    /// that appending rows one by one copies each row only a few times.
     void make_room(std::size_t more, std::size_t row_bytes);
-    /// Sets the number of rows to `count`. The caller must have reserved memory for the rows and must write the new
-    /// ones.
+    /// Sets the number of rows to `count`. The caller must have reserved memory for `count` rows and must write the new
+    /// rows.
     void set_size(std::size_t count) { size_ = count; }
     void copy(const RowMemory& other, std::size_t row_bytes);
     void swap(RowMemory& other) noexcept;
     /// Removes ascending ranges of rows. Parts of a range beyond the last row are ignored. Later rows move down in
-    /// order, each once.
+    /// order; each row is moved once.
     void erase(std::span<const Range> gone, std::size_t row_bytes);
     void erase(std::size_t first, std::size_t count, std::size_t row_bytes);
 
@@ -50,7 +50,7 @@ private:
     void move_to_room_for(std::size_t count, std::size_t row_bytes);
 
     void* rows_ = nullptr;
-    std::size_t size_ = 0, capacity_ = 0;  // in rows
+    std::size_t size_ = 0, capacity_ = 0;  // number of rows in use, and number of rows for which there is memory
 };
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Type descriptions of column rows, for code that saves, loads, hashes, resizes or erases rows without knowing their
-// type. The NumbersOf or MembersOf of a struct stored in tables follows the definition of the struct.
+// Type descriptions of the rows of columns, for code that saves, loads, hashes, resizes or erases rows of any type. The
+// specialisation of NumbersOf or MembersOf for a struct stored in tables follows the definition of the struct.
 #pragma once
 
 #include <array>
@@ -29,18 +29,19 @@ struct Member;
 
 struct RowType {
     std::size_t bytes;                            // size of a row [bytes]
-    void (*make)(void* rows, std::size_t count);  // value-initialises rows; sets vectors and matrices to zero
-    // Count of numbers per row, without padding; 0: the row has members.
+    void (*make)(void* rows, std::size_t count);  // value-initialises `count` rows; vectors and matrices become zero
+    // How many numbers a row contains, without padding; 0: the row is described by `members`.
     std::size_t width = 0;
-    NumberType number = NumberType::uint8;           // type of the numbers in a row
-    std::uint64_t values = 0;                        // number of values if the type is an enum, else 0
-    std::span<const Member> (*members)() = nullptr;  // null: no members
+    NumberType number = NumberType::uint8;  // type of the numbers in a row
+    std::uint64_t values = 0;               // how many values the type has if it is an enum, else 0
+    // Returns the members of the row type; null: the type has no members.
+    std::span<const Member> (*members)() = nullptr;
 
-    /// Whether the description suffices to save the rows.
+    /// Whether the description is complete enough to save the rows.
     bool is_known() const { return width > 0 || members != nullptr; }
 };
 
-/// Describes a row of `n` numbers of one type.
+/// Describes a row of `n` numbers of the same type.
 template <NumberType type, std::size_t n>
 struct SameNumbers {
     static constexpr NumberType number = type;
@@ -79,14 +80,15 @@ struct NumbersOf<Lanes<T, n>> : SameNumbers<NumbersOf<T>::number, std::size_t{n}
 template <>
 struct NumbersOf<Range> : SameNumbers<NumberType::int32, 2> {};
 
-/// Describes a struct whose numbers have more than one type: `list()` returns an array of Member.
+/// Describes a struct that contains numbers of several types: list() returns an array of Member.
 template <class S>
 struct MembersOf;
 
 template <class Enum>
 struct EnumNames;
 
-/// Number of values of an enum, counted from 0. 0: not an enum, or an enum whose values are not checked.
+/// Number of values of an enum whose values are 0, 1, 2, ... The number is 0 for other types and for enums whose values
+/// are not checked.
 template <class T>
 inline constexpr std::uint64_t value_count = 0;
 template <class E>
@@ -131,7 +133,7 @@ constexpr RowType describe() {
 template <class T>
 inline constexpr RowType row_type = row_type_detail::describe<T>();
 
-/// Offset of a member of S from its start [bytes].
+/// Offset of a member from the start of a struct S [bytes].
 template <class S, class T>
 std::size_t member_offset(T S::*member) {
     alignas(S) static const std::byte memory[sizeof(S)]{};
@@ -139,13 +141,13 @@ std::size_t member_offset(T S::*member) {
     return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(place) - memory);
 }
 
-/// One entry in the list of a MembersOf: a member of a struct.
+/// A member of a struct, as an entry of MembersOf<S>::list().
 struct Member {
     template <class S, class T>
     Member(const char* its_name, T S::*place) : name(its_name), offset(member_offset(place)), type(&row_type<T>) {}
 
     const char* name;
-    std::size_t offset;  // bytes
+    std::size_t offset;  // offset of the member from the start of the struct [bytes]
     const RowType* type;
 };
 

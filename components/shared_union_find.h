@@ -1,4 +1,4 @@
-// SharedUnionFind: disjoint sets of indices that any number of threads join at the same time.
+// SharedUnionFind: disjoint sets of indices. Any number of threads may join sets at the same time.
 #pragma once
 
 #include <atomic>
@@ -12,21 +12,24 @@
 namespace skerry {
 
 /// Lock-free variant of UnionFind (Anderson, Woll 1991, Wait-free parallel algorithms for the union-find problem). A
-/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If another thread was first,
-/// the join is retried from the new root. The root of a set is therefore its smallest index, whatever the number of
-/// threads and the order of the joins. Parent and stamp change together and guard no other data, so relaxed memory
-/// order suffices. Threads must synchronise before they use the result of all joins.
+/// join attaches the greater of two roots to the smaller one by one compare-and-exchange. If another thread has changed
+/// the root meanwhile, the join is repeated from the new root. The root of a set is therefore its smallest index,
+/// whatever the number of threads and the order of the joins. Parent and stamp are in the same word and protect no
+/// other data, so relaxed memory order suffices. Threads must synchronise before they read the final sets.
 struct SharedUnionFind {
-    /// Each word holds the stamp of a call of start() in its upper half. Words with an earlier stamp count as empty.
+    /// The upper half of each word is the stamp: the number of calls of start() when the word was written. Words with
+    /// an earlier stamp count as empty.
     struct Node {
         std::uint64_t parent;
-        std::uint64_t first;  // at the root: complement of the smallest item of the set, so that the largest word wins
+        // At the root: bitwise complement of the smallest item of the set, so that the largest word wins.
+        std::uint64_t first;
     };
 
     Column<Node> node;
     std::uint32_t now = 0;
 
-    /// Makes each of `count` indices a set of its own. Clears no memory.
+    /// Makes each of the indices 0 .. count - 1 a set of its own. The function does not clear the memory, because words
+    /// with an earlier stamp count as empty.
     void start(std::size_t count) {
         if (node.size() < count) node.resize(count);
         if (now == std::numeric_limits<std::uint32_t>::max()) {
@@ -46,13 +49,13 @@ struct SharedUnionFind {
             if (parent == index) return index;
             const Index next = parent_in(load(node[parent].parent), parent);
             if (next == parent) return parent;
-            // path halving; if the exchange fails, another thread has halved the path
+            // Path halving. If the exchange fails, another thread has already shortened the path.
             exchange(node[index].parent, word, stamped(next));
             index = next;
         }
     }
 
-    /// Joins the sets of two indices. Returns their common root at that time.
+    /// Joins the sets of the indices a and b. Returns the root of the joined set at that time.
     Index join(Index a, Index b) {
         while (true) {
             a = root(a);
@@ -64,14 +67,14 @@ struct SharedUnionFind {
         }
     }
 
-    /// Lowers the first item of the set of `root` to `item` if `item` is smaller. Call it only after all joins.
+    /// Lowers the first item of the set with this root to `item` if `item` is smaller. Call it only after all joins.
     void begin_with(Index root, Index item) {
         const std::uint64_t mine = stamped(static_cast<Index>(~static_cast<std::uint32_t>(item)));
         std::uint64_t word = load(node[root].first);
         while (word < mine && !exchange(node[root].first, word, mine)) continue;
     }
 
-    /// The smallest item passed to begin_with for the set of `root`, or no_index.
+    /// The smallest item passed to begin_with for the set with this root, or no_index.
     Index first_item(Index root) {
         const std::uint64_t word = load(node[root].first);
         return stamp_of(word) == now ? static_cast<Index>(~static_cast<std::uint32_t>(word)) : no_index;
@@ -87,7 +90,7 @@ private:
     }
 
     static std::uint64_t load(std::uint64_t& word) { return std::atomic_ref(word).load(std::memory_order_relaxed); }
-    /// Compare-and-exchange. On failure `expected` receives the current value.
+    /// Compare-and-exchange of a word. On failure `expected` receives the current value of the word.
     static bool exchange(std::uint64_t& word, std::uint64_t& expected, std::uint64_t next) {
         return std::atomic_ref(word).compare_exchange_strong(expected, next, std::memory_order_relaxed);
     }

@@ -7,9 +7,9 @@
 
 namespace skerry {
 
-/// splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). Unlike the distributions of
-/// the standard library, it gives the same numbers on every machine. Scenes that scatter bodies depend on the numbers,
-/// so they must not change.
+/// Random number generator splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). Unlike
+/// the distributions of the standard library, it yields the same numbers on every machine. The algorithm must not
+/// change, because the numbers determine scenes that scatter bodies at random.
 class SplitMix {
 public:
     explicit SplitMix(std::uint64_t seed) : state_(seed) {}
@@ -20,9 +20,9 @@ public:
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
         return z ^ (z >> 31);
     }
-    /// In [0, 1).
+    /// Uniform random number in [0, 1).
     Real fraction() { return static_cast<Real>(next() >> 11) * 0x1p-53; }
-    /// In [-1, 1).
+    /// Uniform random number in [-1, 1).
     Real symmetric() { return static_cast<Real>(next() >> 11) * 0x1p-52 - 1; }
 
 private:

@@ -11,18 +11,19 @@
 namespace skerry {
 
 /// Boundary triangles, counter-clockwise as seen from outside. Each vertex and each edge is owned by exactly one of its
-/// triangles, the one with the lowest row. So a pair of close triangles yields each pair of features once.
+/// triangles, the triangle with the lowest row. Two close triangles therefore yield each pair of their features only
+/// once.
 ///
 /// A round body has one degenerate triangle, its core. For a sphere or cylinder all three corners are the centre. For a
-/// capsule the corners are the two ends of the axis, the second end twice, and only the first side is an edge. Sides
-/// without an edge have no_index.
+/// capsule the first corner is one end of the axis, and the other two corners are the other end; only the side from
+/// corner 0 to corner 1 is an edge. A side without an edge has the row no_index in `edge`.
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
-    Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k joins node k and node (k + 1) % 3
+    Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k connects corner k and corner (k + 1) % 3
     Column<std::array<Index, 3>> vertex;  // rows of VertexTable
     Column<std::uint8_t> owned_vertices;  // bit k: this triangle owns vertex k
     Column<std::uint8_t> owned_edges;     // bit k: this triangle owns edge k
-    // Tetrahedron behind the triangle (index in TetrahedronBlockTable), or no_index.
+    // Tetrahedron whose face is the triangle (index in TetrahedronBlockTable), or no_index.
     Column<Index> element;
 
     void for_each_column(auto&& visit) {
@@ -42,8 +43,8 @@ inline bool is_core(const std::array<Index, 3>& node) {
 
 struct EdgeTable {
     Column<std::array<Index, 2>> node;  // rows of NodeTable, the lower row first
-    Column<std::array<Index, 2>>
-        triangle;  // rows of TriangleTable; the second is no_index on an open boundary and for a core
+    // Rows of TriangleTable: the triangles at the edge. The second row is no_index on an open boundary and for a core.
+    Column<std::array<Index, 2>> triangle;
 
     void for_each_column(auto&& visit) {
         visit("node", node, ColumnRole::derived);
@@ -52,8 +53,9 @@ struct EdgeTable {
 };
 
 struct VertexTable {
-    Column<Index> node;            // row of NodeTable
-    Column<Index> triangle_begin;  // range in SurfaceTables::vertex_triangle: the triangles around the vertex
+    Column<Index> node;  // row of NodeTable
+    // Range of rows of SurfaceTables::vertex_triangle that lists the triangles around the vertex.
+    Column<Index> triangle_begin;
     Column<Index> triangle_end;
 
     void for_each_column(auto&& visit) {
@@ -64,7 +66,7 @@ struct VertexTable {
 };
 
 /// Triangles, edges and vertices of all bodies, and the list of triangles around each vertex. Model::rebuild_outlines
-/// derives these tables.
+/// derives the columns.
 struct SurfaceTables {
     TriangleTable triangles;
     EdgeTable edges;

@@ -1,5 +1,5 @@
-// Number and vector types of the engine. Besides options.h, this is the only public component header: it is installed
-// with the library.
+// Number and vector types of the engine. This header and options.h are the only public headers of components: they are
+// installed with the library.
 #pragma once
 
 #include <Eigen/Core>

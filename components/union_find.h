@@ -10,23 +10,25 @@
 
 namespace skerry {
 
-/// Disjoint sets of 0 .. count-1, by union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case analysis of set
-/// union algorithms). A join attaches the greater root to the smaller one, so the root of a set is its smallest index,
-/// whatever the order of the joins. The next start() reuses the memory.
+/// Disjoint sets of the indices 0 .. count-1: union-find with path halving (Tarjan, van Leeuwen 1984, Worst-case
+/// analysis of set union algorithms). A join attaches the greater root to the smaller one, so the root of a set is its
+/// smallest index, whatever the order of the joins. The next call of start() reuses the memory.
 struct UnionFind {
-    /// Parent, stamp and number of an index. They are stored together, because they are accessed together and at
-    /// random.
+    /// Parent, stamp and number of an index. The three values are stored together, because they are read together and
+    /// in random order.
     struct Node {
         Index parent;
-        std::uint32_t stamp;  // parent and number are valid for the call of start() with this stamp
-        Index number;         // number of the set, stored at its root; no_index until it is assigned
+        // Number of calls of start() when the node was written; parent and number are only valid if it equals `now`.
+        std::uint32_t stamp;
+        Index number;  // number of the set, stored at its root; no_index until it is assigned
     };
 
     Column<Node> node;
     std::uint32_t now = 0;
     Index number_count = 0;
 
-    /// Makes each of `count` indices a set of its own. It clears no memory: nodes with an earlier stamp count as new.
+    /// Makes each of the indices 0 .. count - 1 a set of its own. The function does not clear the memory, because nodes
+    /// with an earlier stamp count as new.
     void start(std::size_t count) {
         if (node.size() < count) node.resize(count);
         if (now == std::numeric_limits<std::uint32_t>::max()) {
@@ -47,7 +49,7 @@ struct UnionFind {
         }
         while (node[index].parent != index) {
             const Index next = node[node[index].parent].parent;
-            // most paths are short already and need no write
+            // Most paths are already short and need no write.
             if (next != node[index].parent) node[index].parent = next;
             index = next;
         }
@@ -63,8 +65,8 @@ struct UnionFind {
 
     void join(Index a, Index b) { join_roots(root(a), root(b)); }
 
-    /// The number of the set of `index`. Sets are numbered in the order of their first query. Call it only after all
-    /// joins.
+    /// The number of the set that contains `index`. Sets are numbered in the order in which number() is first called
+    /// for them. Call it only after all joins.
     Index number(Index index) {
         Node& top = node[root(index)];
         if (top.number == no_index) top.number = number_count++;

@@ -1,4 +1,4 @@
-// Declared accesses of a stage, and the Binder, which hands out columns and records the accesses.
+// Declared accesses of a stage, and the Binder, which passes columns to stage functions and records the accesses.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace skerry {
 /// Kinds of access. value: the object is read, and no stage ever writes it, so that the access causes no dependency.
 enum class Use : std::uint8_t { value, read, write };
 
-/// Access to one object, such as a column, a table or a number. Objects are identified by the memory that they occupy.
-/// A table therefore conflicts with every column inside it.
+/// Access to one object, such as a column, a table or a number. An object is identified by its address range. An access
+/// to a table therefore conflicts with an access to any column inside the table.
 struct Access {
     std::uintptr_t begin;
     std::uintptr_t end;
@@ -24,7 +24,7 @@ struct Access {
 
     bool writes() const { return use == Use::write; }
     bool overlaps(const Access& other) const { return begin < other.end && other.begin < end; }
-    /// Whether one of the two stages has to wait for the other.
+    /// Whether a stage with this access and a stage with the other access must run one after the other.
     bool conflicts_with(const Access& other) const {
         return use != Use::value && other.use != Use::value && (writes() || other.writes()) && overlaps(other);
     }
@@ -32,8 +32,8 @@ struct Access {
 };
 using AccessList = std::vector<Access>;
 
-/// Type of an object whose accesses can be declared. A span or a pointer does not qualify: the declaration would cover
-/// the span itself instead of the data that it refers to.
+/// Type of an object whose accesses can be declared. A span or a pointer is excluded: the declaration would cover the
+/// span object instead of the data to which the span refers.
 template <class T>
 inline constexpr bool shows_other_data = std::is_pointer_v<T>;
 template <class T, std::size_t N>
@@ -43,7 +43,8 @@ inline constexpr bool shows_other_data<RaggedView<T>> = true;
 template <class T>
 concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>;
 
-/// Converts columns, which the tables own, to spans, which functions take. A struct of inputs defines its own binding:
+/// Converts columns, which the tables own, to spans, which functions take. A struct of inputs defines a static
+/// function `bind`:
 ///
 ///     struct RestInputs {
 ///         std::span<const Range> nodes;
@@ -55,8 +56,8 @@ concept Resource = std::is_object_v<T> && !shows_other_data<std::remove_cv_t<T>>
 ///     };
 ///
 /// When a stage is added to the graph, bind runs with an access list and so declares the accesses of the stage. When
-/// the stage starts, bind runs without a list. It must therefore request the same columns whatever they contain: use
-/// read_if and write_if, never if. It must not allocate.
+/// the stage starts, bind runs without a list. The function bind must therefore request the same columns in both calls,
+/// whatever the columns contain: it must use read_if and write_if instead of `if`. It must not allocate memory.
 class Binder {
 public:
     Binder() = default;
@@ -77,7 +78,7 @@ public:
         note(object, Use::read);
         return object;
     }
-    /// Declares a read of a table without one of its columns, which another stage may write at the same time.
+    /// Declares a read of a table except for one column, which another stage may write at the same time.
     template <Resource T, class Row>
     const T& read_but(const T& table, const Column<Row>& column) const {
         if (!list_) return table;
@@ -92,7 +93,7 @@ public:
         note(column, Use::write);
         return column.span();
     }
-    /// Declares a write of a whole object, for stages that add rows to it or replace it.
+    /// Declares a write of an entire object, for stages that add rows to the object or replace it.
     template <Resource T>
     requires(!std::is_const_v<T>) T& make(T& object) const {
         note(object, Use::write);
@@ -117,7 +118,7 @@ public:
     }
 
     template <Resource T>
-    void read(const T&&) const = delete;  // deleted, because a temporary would no longer exist when the stage runs
+    void read(const T&&) const = delete;  // deleted, because a temporary object no longer exists when the stage runs
     template <Resource T>
     void value(const T&&) const = delete;
 

@@ -1,4 +1,4 @@
-// Sets the floating-point mode for the lifetime of a scope.
+// Sets the floating-point mode for the lifetime of a scope object.
 #pragma once
 
 #if defined(__SSE2__)
@@ -7,10 +7,11 @@
 
 namespace skerry {
 
-/// Sets the floating-point mode: round to nearest, exceptions masked, and denormals (below 2^-1022) treated as zero,
-/// both as operands and as results. The end of the scope restores the thread's previous mode. Blocks and stages run in
-/// such a scope on any thread, so that all workers calculate alike. Decaying motion ends in denormals, which cost a
-/// hundred times as much as other numbers (Intel 64 manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
+/// Sets the floating-point mode: numbers are rounded to nearest, exceptions are masked, and denormals (magnitudes below
+/// 2^-1022) are treated as zero, both as operands and as results. The end of the scope restores the previous mode of
+/// the thread. Blocks and stages run in such a scope on every thread, so that all workers compute the same results.
+/// Decaying motion ends in denormals, whose arithmetic takes a hundred times as long as that of other numbers (Intel 64
+/// manual, volume 1, 11.6.3). Does nothing on processors without SSE2.
 class ArithmeticScope {
 public:
 #if defined(__SSE2__)

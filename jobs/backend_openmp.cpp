@@ -1,4 +1,4 @@
-// OpenMP backend: one team for each outermost call; calls from inside the team add tasks to it.
+// OpenMP backend. Each outermost call starts one team of threads; calls from inside the team add tasks to this team.
 #include <omp.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace {
 
 class OpenMpExecutor;
 
-// Executor whose team this thread works for at present. omp_in_parallel() would also be true in a team of the host
-// program.
+// Executor for whose team this thread is working now, or null. omp_in_parallel() cannot replace this pointer, because
+// it is also true in a team of the host program.
 thread_local const OpenMpExecutor* team_of_thread = nullptr;
 
 class TeamScope {
@@ -40,7 +40,8 @@ public:
         } else if (team_of_thread == this) {
             drain_in_team(job, std::min(count, workers_) - 1);
         } else {
-            // Uses the whole team even for fewer blocks: with a smaller team the runtime would end the unused threads.
+            // The complete team is used even for fewer blocks: with a smaller team the runtime would end the unused
+            // threads.
 #pragma omp parallel num_threads(workers_)
             {
                 const TeamScope scope(this);

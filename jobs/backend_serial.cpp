@@ -1,5 +1,5 @@
-// Serial backend: only the calling thread works. It is the reference for the other backends, and runs scenes that are
-// too small for threads.
+// Serial backend: only the calling thread works. The other backends are compared with it, and scenes that are too small
+// for threads use it.
 #include "jobs/backends.h"
 
 namespace skerry {

@@ -1,4 +1,4 @@
-// oneTBB backend: tasks in the arena of the caller, or in an arena of its own.
+// oneTBB backend: tasks run in the arena of the caller, or in an arena that belongs to the executor.
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -33,9 +33,8 @@ public:
         if (workers <= 1) {
             job.drain(0);
         } else {
-            // The loop is isolated: a worker that waits for the last block must not start a long stage meanwhile. The
-            // long stage would delay everything that waits for these blocks, and its time would count as time of this
-            // stage.
+            // The loop is isolated: a worker that waits for the last block must not start a long stage meanwhile. Such
+            // a stage would delay all work that waits for these blocks, and its time would count as time of this stage.
             in_arena([&] { tbb::this_task_arena::isolate([&] { drain_together(job, workers); }); });
         }
         job.rethrow();
@@ -60,7 +59,8 @@ private:
         }
     }
 
-    // The task contexts are isolated: if a host program cancels its own tasks, the blocks and stages here still run.
+    // The task contexts are isolated: if the host program cancels its own tasks, the blocks and stages of this executor
+    // still run.
     static void drain_together(BlockJob& job, int workers) {
         tbb::task_group_context context(tbb::task_group_context::isolated);
         tbb::parallel_for(
@@ -88,10 +88,10 @@ private:
         }
     };
 
-    // oneTBB runs more workers than cores only if the limit is raised. It applies the smallest requested limit, so this
-    // request never raises a limit that the host program has set.
+    // oneTBB runs more workers than cores only if the limit on the number of threads is raised. oneTBB applies the
+    // smallest limit that anyone has requested. So this request never raises a limit that the host program has set.
     std::optional<tbb::global_control> more_threads_;
-    std::optional<tbb::task_arena> arena_;  // empty: the arena of the caller is used
+    std::optional<tbb::task_arena> arena_;  // empty: tasks run in the arena of the caller
     PredecessorCounts left_;
 };
 

@@ -1,4 +1,4 @@
-// Thread backend without a library, so that the thread sanitizer can see all of its code.
+// Thread backend that uses no library, so that the thread sanitizer can see all of its code.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,14 +15,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Time for which an idle worker spins before it sleeps. A step has a dozen stages in 100 us: a worker that slept
-// between two stages would wake too late for the second.
+// Time for which an idle worker spins before it sleeps. A step has a dozen stages in 100 us. A worker that fell asleep
+// between two stages would wake up too late for the second stage.
 constexpr std::chrono::microseconds spin_time{50};
 
-// Number of this thread among the workers of its executor. All calling threads have number 0.
+// Number of this thread among the workers of its executor. Every thread that calls the executor from outside has number
+// 0.
 thread_local int own_number = 0;
 
-/// Spins for at most spin_time until ready() is true. Returns the last value of ready().
+/// Spins for at most spin_time until ready() is true. If `may_spin` is false, ready() is called only once. Returns the
+/// last value of ready().
 bool spin_until(bool may_spin, auto&& ready) {
     if (!may_spin) return ready();
     const Clock::time_point end = Clock::now() + spin_time;
@@ -35,8 +37,9 @@ bool spin_until(bool may_spin, auto&& ready) {
     return false;
 }
 
-/// An executor of workers - 1 threads and the calling thread. One mutex guards the open work: the unfinished run_blocks
-/// calls and the stages that are ready. Blocks are taken from the atomic counter of their call, without the mutex.
+/// An executor that consists of workers - 1 threads and the calling thread. One mutex guards the list of unfinished
+/// run_blocks calls and the list of stages that are ready. Each call has an atomic counter of blocks, from which
+/// workers take blocks without the mutex.
 class ThreadsExecutor final : public Executor {
 public:
     explicit ThreadsExecutor(int workers)
@@ -98,17 +101,19 @@ public:
     }
 
 private:
-    /// A run_blocks call that other workers may help with. It lives on the stack of its caller, which returns only
-    /// after all helpers have left.
+    /// A run_blocks call with blocks that other workers may run. The object is on the stack of the calling thread,
+    /// which returns only after all helpers have finished.
     struct OpenJob {
         BlockJob& job;
         OpenJob* next = nullptr;
-        // Changed under mutex_; atomic, so that the owner can wait for zero without the mutex.
+        // Number of workers that help with this call. It changes only under mutex_. It is atomic, so that the calling
+        // thread can wait for zero without the mutex.
         std::atomic<int> helpers{0};
         bool owner_sleeps = false;
     };
 
-    /// Does open work until finished() is true. finished() is called with the mutex held.
+    /// Runs ready stages and blocks of open calls until finished() is true. finished() is called while the mutex is
+    /// locked.
     void work_until(auto&& finished) {
         std::unique_lock lock(mutex_);
         while (true) {
@@ -133,7 +138,7 @@ private:
             lock.unlock();
             open->job.drain(own_number);
             lock.lock();
-            // Unless the owner sleeps, it may return and destroy its job as soon as `helpers` is zero.
+            // Unless the calling thread sleeps, it may return and destroy its job as soon as `helpers` is zero.
             const bool owner_sleeps = open->owner_sleeps;
             if (open->helpers.fetch_sub(1, std::memory_order_release) == 1 && owner_sleeps) helpers_left_.notify_all();
             return true;
@@ -152,8 +157,8 @@ private:
         --sleepers_;
     }
 
-    /// Wakes sleeping workers for `useful` new pieces of work. Call it after releasing the mutex, so that a woken
-    /// thread does not block on it.
+    /// Wakes sleeping workers because of `useful` new stages or blocks. Call it after unlocking the mutex, so that a
+    /// woken thread does not have to wait for the mutex.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {
@@ -180,7 +185,7 @@ private:
     void spawn(Index stage) {
         {
             std::lock_guard lock(mutex_);
-            ready_.push_back(stage);  // fits into the capacity that run_graph reserved
+            ready_.push_back(stage);  // needs no allocation, because run_graph reserved enough capacity
             ++announced_;
         }
         wake(1);
@@ -208,13 +213,15 @@ private:
     }
 
     const int workers_;
-    const bool may_spin_;  // false if there are more workers than cores: a spinning worker would hold up a working one
+    // False if there are more workers than cores: a spinning worker would take a core from a working one.
+    const bool may_spin_;
     PredecessorCounts left_;
 
     std::mutex mutex_;
     std::condition_variable work_announced_, helpers_left_;
-    std::atomic<std::uint64_t> announced_{0};  // changed under mutex_; spinning threads read it without the mutex
-    std::atomic<int> sleepers_{0};             // likewise
+    // Changed under mutex_; spinning threads read it without locking the mutex.
+    std::atomic<std::uint64_t> announced_{0};
+    std::atomic<int> sleepers_{0};  // changed under mutex_; wake() reads it without locking the mutex
     OpenJob* open_ = nullptr;
     GraphJob* graph_ = nullptr;
     std::vector<Index> ready_;

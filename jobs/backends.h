@@ -1,4 +1,5 @@
-// Shared parts of the backends: the work of one call, which any number of workers do together.
+// Common code of the backends: the work of one call of run_blocks or run_graph, which any number of workers do
+// together.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +20,10 @@ std::unique_ptr<Executor> make_openmp_executor(int workers);
 std::unique_ptr<Executor> make_threads_executor(int workers);
 std::unique_ptr<Executor> make_serial_executor();
 
-/// Keeps the exception of the block or stage with the lowest number.
+/// Stores the exception of the block or stage with the lowest number.
 class FirstError {
 public:
-    /// Stores the current exception of block or stage `number`. Call it inside a catch block.
+    /// Stores the current exception, thrown by block or stage `number`. Call it inside a catch block.
     void keep(Index number) noexcept {
         std::lock_guard lock(mutex_);
         if (any() && number_ <= number) return;
@@ -31,7 +32,7 @@ public:
         any_.store(true, std::memory_order_relaxed);
     }
     bool any() const noexcept { return any_.load(std::memory_order_relaxed); }
-    /// Rethrows the stored exception, if there is one. Call it after all workers have returned.
+    /// Rethrows the stored exception if there is one. Call it after all workers have returned.
     void rethrow() {
         if (any()) std::rethrow_exception(std::move(error_));
     }
@@ -44,10 +45,10 @@ private:
 };
 
 /// The blocks of one run_blocks call, divided into one contiguous share per worker. A worker begins with its own share,
-/// whose data it wrote in the previous loop and may still have in its caches. Then it helps with the following shares.
-/// A share is a counter of blocks, so a call costs one task per worker instead of one per block, and a slow block
-/// delays no other block. After an exception the other blocks still run, so that the lowest failing block does not
-/// depend on timing.
+/// because it wrote the data of this share in the previous loop and may still have them in its caches. Then it runs
+/// blocks of the following shares. Workers take blocks from a counter per share. A call therefore needs one task per
+/// worker instead of one per block, and a slow block delays no other block. After an exception the other blocks still
+/// run, so that the lowest failing block does not depend on timing.
 class BlockJob {
 public:
     BlockJob(Index count, FunctionRef<void(Index)> body, int workers)
@@ -61,7 +62,8 @@ public:
     /// Runs blocks until none is left. `worker`: number of the calling thread among the workers of the executor.
     void drain(int worker) noexcept {
         const ArithmeticScope arithmetic;
-        const AccessScope access(watch_);  // a block may access the columns declared by its stage, on any thread
+        // On every thread, a block may access the columns that its stage has declared.
+        const AccessScope access(watch_);
         for (int i = 0; i < shares_; ++i) {
             const int share = (worker + i) % shares_;
             const Index end = begin_of(share + 1);
@@ -77,13 +79,13 @@ public:
         }
         exhausted_.store(true, std::memory_order_relaxed);
     }
-    /// Whether all blocks have been taken. The answer may lag behind.
+    /// Whether all blocks have been taken. The result may become true with a delay.
     bool exhausted() const noexcept { return exhausted_.load(std::memory_order_relaxed); }
     void rethrow() { error_.rethrow(); }
 
 private:
     static constexpr int most_shares = 64;
-    struct alignas(64) Share {  // on a cache line of its own, because the counter is written for each block
+    struct alignas(64) Share {  // each share is on its own cache line, because its counter is written for each block
         Index next;
     };
 
@@ -99,8 +101,8 @@ private:
     Share share_[most_shares];
 };
 
-/// Number of unfinished predecessors of each stage. The executor keeps the array, so that a graph no larger than an
-/// earlier one allocates nothing.
+/// Number of unfinished predecessors of each stage. The executor stores the array between calls, so that a graph with
+/// no more stages than an earlier graph needs no allocation.
 class PredecessorCounts {
 public:
     void reset(std::span<const Index> counts) {
@@ -111,8 +113,8 @@ public:
         for (std::size_t stage = 0; stage < counts.size(); ++stage)
             left_[stage].store(counts[stage], std::memory_order_relaxed);
     }
-    /// Reports that one predecessor of the stage has finished. Returns true for the last predecessor, whose thread then
-    /// sees the writes of all others.
+    /// Records that one predecessor of the stage has finished. Returns true for the last predecessor. The thread that
+    /// receives true sees the memory writes of all predecessors.
     bool arrive(Index stage) {
         return left_[static_cast<std::size_t>(stage)].fetch_sub(1, std::memory_order_acq_rel) == 1;
     }
@@ -122,7 +124,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// The work of one run_graph call.
+/// The stages of one run_graph call, and a count of the unfinished predecessors of each stage.
 class GraphJob {
 public:
     GraphJob(const GraphEdges& edges, FunctionRef<void(Index)> run_stage, PredecessorCounts& left)
@@ -130,8 +132,8 @@ public:
         left_.reset(edges.predecessor_count);
     }
 
-    /// Returns the first stage without a predecessor, or no_index for an empty graph. Calls spawn for every other stage
-    /// without a predecessor.
+    /// Returns the first stage that has no predecessor, or no_index for an empty graph. Calls spawn(stage) for every
+    /// other stage without a predecessor.
     template <class Spawn>
     Index spawn_roots(Spawn&& spawn) {
         Index first = no_index;
@@ -146,9 +148,9 @@ public:
         return first;
     }
 
-    /// Runs the stage, then a stage that became ready by it, and so on until there is none. All other stages that
-    /// became ready are passed to spawn. Returns the number of finished stages. After an exception the remaining stages
-    /// count as finished without being run.
+    /// Runs the stage, then one of the stages that became ready, and so on until no stage became ready. Calls
+    /// spawn(stage) for all other stages that became ready. Returns the number of finished stages. After an exception
+    /// the remaining stages count as finished but are not run.
     template <class Spawn>
     Index run_from(Index stage, Spawn&& spawn) noexcept {
         Index done = 0;
@@ -170,7 +172,7 @@ public:
         return done;
     }
 
-    /// Runs every stage on the calling thread, in order of stage numbers.
+    /// Runs all stages on the calling thread, in the order of their numbers.
     void run_all() noexcept {
         for (Index stage = 0; stage < static_cast<Index>(edges_.predecessor_count.size()); ++stage) run(stage);
     }

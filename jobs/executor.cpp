@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-// SKERRY_BACKEND_LIST comes from the build, with a comma after each name.
+// The build system defines SKERRY_BACKEND_LIST, with a comma after each name.
 constexpr std::array built_backends{SKERRY_BACKEND_LIST Backend::serial};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Executors: workers that run blocks of rows and stages of a graph. Each backend_*.cpp has one implementation.
+// Executors: workers that run blocks of rows and stages of a graph. Each backend_*.cpp contains one implementation.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,18 @@
 
 namespace skerry {
 
-/// Dependencies of the stages. Stages are numbered so that every edge goes from a lower to a higher number.
+/// Dependencies between stages. Stages are numbered so that every edge goes from a lower to a higher number.
 struct GraphEdges {
-    std::span<const Index> successor_offset;  // stage_count + 1
+    // Index in `successor` of the first successor of each stage, and the end: stage count + 1 entries.
+    std::span<const Index> successor_offset;
     std::span<const Index> successor;
-    std::span<const Index> predecessor_count;  // by stage
+    std::span<const Index> predecessor_count;  // number of predecessors of each stage
 };
 
-/// A set of workers, one of which is the calling thread. Results never depend on the number of workers, because work is
-/// split into fixed blocks. run_blocks and run_graph rethrow an exception of a block or stage; if several fail, the
-/// exception of the lowest number. A graph starts no further stage after an exception.
+/// A set of workers; the calling thread is one of them. Results never depend on the number of workers, because work is
+/// divided into fixed blocks. run_blocks and run_graph rethrow an exception thrown by a block or stage. If several
+/// blocks or stages throw, the exception of the lowest number is rethrown. After an exception, no further stage of the
+/// graph starts.
 class Executor {
 public:
     virtual ~Executor() = default;
@@ -28,21 +30,21 @@ public:
     virtual Backend backend() const = 0;
     virtual int worker_count() const = 0;
 
-    /// Calls body(0) .. body(count - 1), each once, in any order and concurrently. Returns when all calls have
-    /// returned. It may be called from within a block or a stage.
+    /// Calls body(0) .. body(count - 1), each once, concurrently and in any order. Returns when all these calls have
+    /// returned. A block or a stage may call run_blocks itself.
     virtual void run_blocks(Index count, FunctionRef<void(Index block)> body) = 0;
 
     /// Calls run_stage once for every stage, after all predecessors of the stage. Independent stages run concurrently.
     virtual void run_graph(const GraphEdges& edges, FunctionRef<void(Index stage)> run_stage) = 0;
 };
 
-/// Makes an executor of the given backend; `automatic` picks the first backend of this build. If `workers` is 0, the
+/// Makes an executor of the given backend; `automatic` selects the first backend of this build. If `workers` is 0, the
 /// number of workers is the size of the caller's arena (tbb), OMP_NUM_THREADS (openmp), or the number of cores
-/// (threads). With tbb and 0 the work runs in the arena of the caller. Throws std::invalid_argument if this build lacks
-/// the backend or `workers` is negative.
+/// (threads). A tbb executor with 0 workers runs its tasks in the arena of the caller. Throws std::invalid_argument if
+/// this build lacks the backend or if `workers` is negative.
 std::unique_ptr<Executor> make_executor(Backend backend, int workers);
 
-/// The backends of this build, the default one first.
+/// The backends of this build; the first one is the default.
 std::span<const Backend> available_backends();
 
 }  // namespace skerry

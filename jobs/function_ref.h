@@ -1,4 +1,5 @@
-// FunctionRef: a non-owning reference to a callable. It does not allocate, and is valid while the callable lives.
+// FunctionRef: a non-owning reference to a callable object. It does not allocate, and is valid as long as the callable
+// exists.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Parallel loops over rows in fixed blocks.
+// Parallel loops over rows. The rows are divided into fixed blocks.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Calls body(begin, end) for consecutive blocks of at most `block` rows that cover 0 .. count - 1. A single block runs
-/// on the calling thread. The blocks do not depend on the number of workers.
+/// Divides the rows 0 .. count - 1 into consecutive blocks of at most `block` rows and calls body(begin, end) for each
+/// block. A single block runs on the calling thread. The division does not depend on the number of workers.
 template <class Body>
 void parallel_for(Executor& executor, std::size_t count, std::size_t block, Body&& body) {
     if (count == 0) return;

@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-/// Yields the core to its other hardware thread for some cycles.
+/// Lets the other hardware thread of the core run for some cycles.
 inline void pause_briefly() {
 #if defined(__x86_64__)
     __builtin_ia32_pause();

@@ -1,4 +1,4 @@
-// PhaseRunner: an interface of executors that run every block themselves, including those of a Team.
+// PhaseRunner: interface of an executor that runs all blocks itself, including the blocks of a Team.
 #pragma once
 
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace skerry {
 
-/// Additional base class of an executor that runs the phases of a Team itself. Profiling uses it to record the blocks
-/// one by one. A Team gathered on such an executor calls no other worker.
+/// Additional base class of an executor that runs the phases of a Team itself. Profiling uses such an executor to
+/// record the blocks one by one. A Team that gathers on such an executor uses no other workers.
 class PhaseRunner {
 public:
     virtual ~PhaseRunner() = default;
 
-    /// Runs the phases under the same contract as Team::run_phases.
+    /// Runs the phases. The contract is that of Team::run_phases.
     virtual void run_phases(std::span<const Index> phase_offset, FunctionRef<void(Index block)> body) = 0;
 };
 

@@ -1,4 +1,4 @@
-// Reductions (sums, extremes) over rows that give the same bits on any number of workers.
+// Reductions (sums, minima, maxima) over rows whose results are bitwise equal on any number of workers.
 #pragma once
 
 #include <type_traits>
@@ -8,10 +8,10 @@
 
 namespace skerry {
 
-/// Returns combine(... combine(combine(identity, block 0), block 1) ..., last block), where block b is the result of
-/// block_result(begin, end) for at most `block` rows. Blocks run concurrently. Their results are combined in block
-/// order, because floating-point addition depends on the order. `partial` holds the results of the blocks and keeps its
-/// memory between calls.
+/// Calls block_result(begin, end) for blocks of at most `block` rows, concurrently, and combines the results r_0, r_1,
+/// ... in block order: combine(... combine(combine(identity, r_0), r_1) ...). The order is fixed, because
+/// floating-point addition depends on the order. `partial` stores the results of the blocks; its memory is reused by
+/// later calls.
 template <class T, class BlockResult, class Combine>
 T reduce(Executor& executor, std::size_t count, std::size_t block, Column<T>& partial,
          const std::type_identity_t<T>& identity, BlockResult&& block_result, Combine&& combine) {

@@ -30,7 +30,7 @@ struct Bind {
 };
 
 // Stage argument that the functor `Take` makes from objects. Its accesses are declared when the stage is added to the
-// graph. Its value is made anew whenever the stage starts.
+// graph. Its value is computed again whenever the stage starts.
 template <class Take, class... Objects>
 struct Argument {
     using Passed = std::invoke_result_t<Take, const Binder&, Objects&...>;
@@ -76,13 +76,13 @@ AccessList joined(const auto&... args) {
 
 }  // namespace access_detail
 
-/// Passes a span<const T> for a column, a RaggedView<T> for a Ragged, a const T& for any other object.
+/// Passes a span<const T> for a column, a RaggedView<T> for a Ragged, and a const T& for any other object.
 template <Resource T>
 auto read(const T& object) {
     return access_detail::Argument<access_detail::Read, const T>{{&object}};
 }
 template <Resource T>
-void read(const T&&) = delete;  // deleted, because a temporary would no longer exist when the stage runs
+void read(const T&&) = delete;  // deleted, because a temporary object no longer exists when the stage runs
 
 /// Passes a span<T> for a column.
 template <class T>
@@ -90,13 +90,14 @@ auto write(Column<T>& column) {
     return access_detail::Argument<access_detail::Write, Column<T>>{{&column}};
 }
 
-/// Passes a T&, for stages that add rows to an object or write it as a whole.
+/// Passes a T&. It is for stages that add rows to an object or overwrite the entire object.
 template <Resource T>
 requires(!std::is_const_v<T>) auto make(T& object) {
     return access_detail::Argument<access_detail::Make, T>{{&object}};
 }
 
-/// Passes a const T& to an object that no stage writes. If a stage writes the object, compile() of the graph throws.
+/// Passes a const T& to an object that no stage writes. If a stage writes the object, compile() of the graph throws an
+/// exception.
 template <Resource T>
 auto value(const T& object) {
     return access_detail::Argument<access_detail::Value, const T>{{&object}};
@@ -104,20 +105,21 @@ auto value(const T& object) {
 template <Resource T>
 void value(const T&&) = delete;
 
-/// Passes X::bind(binder, objects...), which declares the parts of the objects (mostly tables) that X reads.
+/// Passes X::bind(binder, objects...). X is a struct of inputs; bind declares the members of the objects (mostly
+/// tables) that X reads.
 template <class X, Resource... T>
 auto inputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, const T...>{{&objects...}};
 }
 
-/// Passes X::bind(binder, objects...) for a struct X through which the stage writes.
+/// Passes X::bind(binder, objects...). X is a struct of spans to which the stage writes.
 template <class X, Resource... T>
 auto outputs(T&... objects) {
     return access_detail::Argument<access_detail::Bind<X>, T...>{{&objects...}};
 }
 
-/// Skips the stage if predicate(values passed by args) is false when the stage is due. The predicate must be stateless:
-/// one with captures could read data that the stage has not declared.
+/// Skips the stage if predicate(values of args) is false when the stage is due. The predicate must be stateless,
+/// because captured variables could read data that the stage has not declared.
 template <class Predicate, class... Args>
 auto only_if(Predicate predicate, Args... args) {
     static_assert(access_detail::is_stateless<Predicate>,

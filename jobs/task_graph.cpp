@@ -16,7 +16,7 @@ bool conflict(const AccessList& a, const AccessList& b) {
     });
 }
 
-/// Whether one stage may write an object that the other declares as a value.
+/// Whether one of two stages may write an object that the other stage declares as a value.
 bool breaks_value(const AccessList& written, const AccessList& taken) {
     return std::ranges::any_of(written, [&](const Access& access) {
         return access.writes() && std::ranges::any_of(taken, [&](const Access& other) {
@@ -29,7 +29,7 @@ bool breaks_value(const AccessList& written, const AccessList& taken) {
 
 TaskGraph::TaskGraph() : inline_executor_(make_executor(Backend::serial, 1)) {}
 
-/// Throws CheckFailed for accesses that the running stage has not declared.
+/// AccessWatch that throws CheckFailed if the running stage accesses a column without having declared the access.
 class TaskGraph::StageWatch final : public AccessWatch {
 public:
     StageWatch(const StageDeclaration& stage, const Tracked& tracked) : stage_(stage), tracked_(tracked) {}
@@ -72,9 +72,9 @@ void TaskGraph::compile() {
                 throw CheckFailed(std::string("the stage ") + reader.name + " takes as a value what " + writer.name +
                                   " writes");
     edges_.clear();
-    // before[s][p]: stage s waits for stage p, directly or through other stages. The nearest predecessors are visited
-    // first. A predecessor that another predecessor already waits for needs no edge of its own, so the set of edges is
-    // minimal.
+    // before[s][p]: stage s waits for stage p, directly or through other stages. For each stage, the nearest
+    // predecessors are visited first. A predecessor for which another predecessor already waits needs no edge of its
+    // own, so the set of edges is minimal.
     std::vector<std::vector<bool>> before(count, std::vector<bool>(count, false));
     for (std::size_t s = 0; s < count; ++s) {
         for (std::size_t p = s; p-- > 0;) {
@@ -114,8 +114,8 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
         executor.run_graph(edges, [&](Index number) { run_stage(number, Trace::now(), executor, trace); });
         return;
     }
-    // Stages run one after the other, so the end time of a stage is the start time of the next. This halves the clock
-    // reads, which matter in a step of some microseconds.
+    // The stages run one after the other, so the end time of a stage is also the start time of the next stage. This
+    // halves the number of clock reads, whose time matters in a step of some microseconds.
     Trace::Time time = Trace::now();
     executor.run_graph(edges, [&](Index number) { time = run_stage(number, time, executor, trace); });
 }

@@ -1,4 +1,4 @@
-// TaskGraph: the stages of a step in one list. Their dependencies follow from their declared reads and writes.
+// TaskGraph: the stages of a step in one list. Dependencies between stages follow from the declared reads and writes.
 #pragma once
 
 #include <concepts>
@@ -20,7 +20,8 @@ namespace skerry {
 
 namespace access_detail {
 
-// Calls a function with the values that its arguments pass, preceded by the executor if the function takes one.
+// Calls a stage function with the values that the stage arguments pass, preceded by the executor if the function takes
+// one.
 template <class F, class Passed>
 struct StageCall;
 
@@ -52,28 +53,29 @@ using ResultOf =
 
 }  // namespace access_detail
 
-/// Whether the arguments fit the parameters of the function. For example, read() does not fit a mutable span.
+/// Whether the arguments of a stage fit the parameters of its function. For example, read() does not fit a mutable
+/// span.
 template <class F, class... Args>
 concept StageFits = access_detail::CallOf<F, Args...>::possible;
 
-/// Statistics of a stage since the graph was made, or since reset_stats().
+/// Statistics of a stage since the graph was made or since reset_stats() was called.
 struct StageStats {
     const char* name;
-    double seconds = 0;  // time on the thread of the stage, from start to end, summed over runs [s]
+    double seconds = 0;  // time from start to end on the thread of the stage, summed over all runs [s]
     std::uint64_t runs = 0;
-    std::uint64_t skipped = 0;  // number of times that the guard was false or the stage returned false
+    std::uint64_t skipped = 0;  // how often the guard of the stage was false or the stage returned false
 };
 
-/// Declaration of a stage.
+/// Name, accesses and phase of a stage.
 struct StageDeclaration {
     const char* name;
     AccessList accesses;
-    bool guarded;            // true: the stage has an only_if and may be skipped
+    bool guarded;            // true: the stage has an only_if argument and may be skipped
     const char* phase = "";  // set by TaskGraph
 };
 
-/// Stages and the order between them. Building a graph may allocate memory. Running it does not, after the first run on
-/// an executor.
+/// Stages and the order between them. Building a graph may allocate memory. Running a graph allocates no memory after
+/// its first run on an executor. Example of a stage:
 ///
 ///     g.stage("dynamics/drive_nodes", drive_nodes, inputs<NodeMotionInputs>(attachments), value(s.h),
 ///             read(n.position), write(n.velocity));
@@ -91,11 +93,11 @@ public:
 
     TaskGraph();
 
-    /// Begins a phase: stages that are added from now on belong to it. Phases group the stages in the drawing and have
-    /// no effect on the order. The name must be a literal.
+    /// Begins a phase: stages that are added from now on belong to this phase. Phases group the stages in the drawing
+    /// and have no effect on the order of stages. `name` must be a string literal.
     void begin_phase(const char* name) { phase_ = name; }
-    /// Adds a stage. The name must be a literal, or live as long as the graph and any trace of it. A stage function may
-    /// return bool: false means that it had nothing to do.
+    /// Adds a stage. `name` must be a string literal, or exist as long as the graph and any trace of it. A stage
+    /// function may return bool; false means that the stage had nothing to do.
     template <class F, class... Args>
     requires StageFits<F, Args...>
     void stage(const char* name, F function, Args... args) {
@@ -115,7 +117,7 @@ public:
         add({name, access_detail::joined(args...), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Adds a stage whose return value is written to `result`. The write is declared as an access of the stage.
+    /// Adds a stage whose return value is assigned to `result`. This write is declared as an access of the stage.
     template <class Result, class F, class... Args>
     requires StageFits<F, Args...>
     void stage_with_result(const char* name, Result& result, F function, Args... args) {
@@ -128,29 +130,31 @@ public:
         add({name, access_detail::joined(args..., make(result)), (Args::guards || ...)}, std::move(run));
     }
 
-    /// Finds the edges. Call it once, after the last stage was added. Throws CheckFailed if a stage declares as a value
-    /// an object that some stage writes.
+    /// Computes the edges of the graph. Call it once, after the last stage was added. Throws CheckFailed if a stage
+    /// declares an object as a value and some stage writes this object.
     void compile();
 
-    /// Sets the memory in which accesses are checked. With SKERRY_CHECK_ACCESS a stage throws CheckFailed if it
-    /// accesses a column within this memory that it has not declared. `name_of` returns the name of the object at an
-    /// address, for the message.
+    /// Sets the memory range in which accesses are checked. With SKERRY_CHECK_ACCESS, a stage throws CheckFailed if it
+    /// accesses a column in this range without having declared the access. `name_of` returns the name of the object at
+    /// an address, for the message of the exception.
     using NameOf = std::string (*)(void* memory, const void* place);
     void track(void* memory, std::size_t bytes, NameOf name_of) { tracked_ = {memory, bytes, name_of}; }
 
-    /// Runs every stage once. Rethrows an exception of a stage; stages that had not started then are left out.
+    /// Runs every stage once. If a stage throws, stages that have not started yet are skipped, and the exception is
+    /// rethrown.
     void run(Executor& executor, Trace* trace = nullptr);
-    /// Runs every stage once on the calling thread, in list order. Use it for scenes too small to pay for threads.
+    /// Runs every stage once on the calling thread, in list order. Use it for scenes that are too small for threads to
+    /// pay off.
     void run_inline(Trace* trace = nullptr);
 
     std::span<const StageDeclaration> stages() const { return stages_; }
     std::span<const StageStats> stats() const { return stats_; }
     void reset_stats();
 
-    /// The smallest set of edges that implies all dependencies, ordered by first stage, then by second stage. Stages
-    /// are numbered in list order.
+    /// The smallest set of edges that implies all dependencies, sorted by first stage, then by second stage. Stages are
+    /// numbered in list order.
     std::span<const Edge> edges() const { return edges_; }
-    /// The graph as Graphviz dot text, with a box around the stages of each phase.
+    /// The graph as text in the dot language of Graphviz, with a box around the stages of each phase.
     std::string to_dot() const;
 
 private:
@@ -164,7 +168,7 @@ private:
     class StageWatch;
 
     void add(StageDeclaration stage, Run run);
-    /// Runs a stage. Returns the end time of the stage, or `begin` if its guard was false.
+    /// Runs a stage. Returns the end time of the stage, or `begin` if the guard of the stage was false.
     Trace::Time run_stage(Index number, Trace::Time begin, Executor& executor, Trace* trace);
     void run_all(Executor& executor, Trace* trace);
 
@@ -173,7 +177,7 @@ private:
     std::vector<Run> run_;           // by stage
     std::vector<StageStats> stats_;  // by stage
     std::vector<Edge> edges_;
-    // edges_ in the form in which an executor needs them.
+    // The edges in the form of GraphEdges, which an executor needs.
     std::vector<Index> successor_offset_, successor_, predecessor_count_;
     std::unique_ptr<Executor> inline_executor_;
     Tracked tracked_;

@@ -11,12 +11,12 @@
 
 namespace skerry {
 
-/// Waits until ready() is true. The thread first spins, because the awaited threads are usually running. Then it yields
-/// the core, in case the system has suspended them.
+/// Waits until ready() is true. The thread first spins, because the threads for which it waits are usually running.
+/// Then it yields the core, because the operating system may have suspended them.
 template <class Ready>
 void Team::wait_until(Ready&& ready) const {
-    // Number of pauses before the thread yields; 50,000 take 2 ms. A yield gives the core away for a time slice of
-    // about that length, which is too long for a wait of a microsecond.
+    // Number of pauses before the thread yields; 50,000 pauses take 2 ms. A yield gives up the core for a time slice of
+    // about this length, which is too long for a wait of a microsecond.
     const int patience = may_spin_ ? 50000 : 20;
     for (int i = 0; !ready(); ++i) {
         if (i < patience) {
@@ -49,7 +49,7 @@ void Team::gather(Executor& executor, FunctionRef<void()> work) {
     together_ = true;
     std::atomic<bool> has_leader{false};
     executor.run_blocks(workers, [&](Index) {
-        // The first thread to arrive leads, because no block is sure to be taken first.
+        // The first thread that arrives becomes the leader, because no particular block is certain to run first.
         if (has_leader.exchange(true)) {
             help();
             return;
@@ -99,8 +99,8 @@ void Team::run_phases(std::span<const Index> phase_offset, FunctionRef<void(Inde
     open_.store(number);
     take_part(job_, 0);
     wait_until([&] { return done_.load(std::memory_order_acquire) == count; });
-    // A helper first enters `inside_` and then checks whether the job is open. The leader first closes the job and then
-    // reads `inside_`. So either the helper finds the job closed, or the leader sees the helper and waits for it.
+    // A helper first increments `inside_` and then checks whether the job is open. The leader first closes the job and
+    // then reads `inside_`. So either the helper finds the job closed, or the leader sees the helper and waits for it.
     open_.store(0);
     wait_until([&] { return inside_.load() == 0; });
     error.rethrow();
@@ -130,17 +130,17 @@ void Team::take_part(const Job& job, Index member) {
     for (std::size_t phase = 0; phase + 1 < job.phase_offset.size(); ++phase) {
         const Index begin = job.phase_offset[phase], end = job.phase_offset[phase + 1], count = end - begin;
         if (count == 0) continue;
-        // Blocks of a phase start only after all earlier blocks are done. The number of finished blocks therefore shows
-        // which phases are done.
+        // Blocks of a phase start only after all blocks of earlier phases have returned. The number of finished blocks
+        // therefore shows which phases are complete.
         wait_until([&] { return done_.load(std::memory_order_acquire) >= begin; });
         if (done_.load(std::memory_order_acquire) >= end) continue;
         const Index share = static_cast<Index>(std::int64_t{count} * (member % job.members) / job.members);
         const Index own_end =
             begin + static_cast<Index>(std::int64_t{count} * (member % job.members + 1) / job.members);
         take_blocks(job, begin + share, own_end);
-        // The other workers are about to finish, and reading their claims would take the cache lines from them. So this
-        // worker waits a little, and then helps only late workers.
-        constexpr int hesitation = 40;  // pauses, 2 us
+        // Usually the other workers are about to finish. Reading their claims would move the cache lines away from
+        // them. This worker therefore waits a little, and then helps only workers that are late.
+        constexpr int hesitation = 40;  // number of pauses, 2 us in total
         for (int i = 0; i < hesitation && done_.load(std::memory_order_acquire) < end; ++i) pause_briefly();
         if (done_.load(std::memory_order_acquire) >= end) continue;
         take_blocks(job, own_end, end);

@@ -31,8 +31,8 @@ std::string json_string(std::string_view text) {
     return quoted + '"';
 }
 
-// Converts nanoseconds to text in microseconds with three decimals: exact, and independent of the settings and locale
-// of the stream. The number is negative for a zone that was open when the trace was cleared.
+// Converts nanoseconds to text in microseconds with three decimals. The conversion is exact and independent of the
+// settings and locale of the stream. The number is negative for a zone that had begun before the trace was cleared.
 std::string microseconds(std::int64_t nanoseconds) {
     const long long size = std::abs(static_cast<long long>(nanoseconds));
     std::array<char, 40> text{};
@@ -44,7 +44,8 @@ std::int64_t nanoseconds_between(Trace::Time begin, Trace::Time end) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
 }
 
-// Category of a zone: its name up to the slash. "dynamics/predict_velocity" is shown in the category dynamics.
+// Category of a zone: its name up to the first slash. For example, "dynamics/predict_velocity" has the category
+// "dynamics".
 std::string_view category(std::string_view name) {
     const std::size_t slash = name.find('/');
     return slash == std::string_view::npos ? std::string_view("skerry") : name.substr(0, slash);
@@ -64,7 +65,7 @@ Trace::Worker& Trace::worker_of_this_thread() {
     thread_local Worker* known = nullptr;
     if (known_id == id_) return *known;
 
-    // This thread records its first zone in this trace, or it has recorded in another trace meanwhile.
+    // Either this thread has recorded no zone in this trace yet, or it has recorded in another trace meanwhile.
     std::lock_guard lock(mutex_);
     known = nullptr;
     for (const auto& worker : workers_)

@@ -1,4 +1,4 @@
-// Trace: a timeline of the work of every worker, for Perfetto and chrome://tracing.
+// Trace: a timeline of the work of every worker, which Perfetto and chrome://tracing can display.
 #pragma once
 
 #include <chrono>
@@ -12,14 +12,14 @@
 
 namespace skerry {
 
-/// Records zones: pieces of work with a begin and an end. Every thread writes to a list of its own, which grows up to
-/// the given bound. Zones beyond the bound are only counted, and the file reports their number.
+/// Records zones: named time intervals of work. Every thread writes to its own list, which grows up to the given
+/// maximum. Further zones are only counted, and the file reports their number.
 class Trace {
 public:
     using Clock = std::chrono::steady_clock;
     using Time = Clock::time_point;
 
-    static constexpr std::size_t default_zones_per_worker = std::size_t{1} << 20;  // 24 bytes each
+    static constexpr std::size_t default_zones_per_worker = std::size_t{1} << 20;  // a zone takes 24 bytes
 
     /// Starts a trace in which the calling thread is worker 0.
     explicit Trace(std::size_t max_zones_per_worker = default_zones_per_worker);
@@ -29,24 +29,25 @@ public:
 
     static Time now() { return Clock::now(); }
 
-    /// Adds a zone of the calling thread. The name must outlive the trace, as a literal does. It can be called from any
-    /// thread at any time except during clear and write_json.
+    /// Adds a zone for the calling thread. `name` must outlive the trace, for example as a string literal. Any thread
+    /// may call add at any time except during clear and write_json.
     void add(const char* name, Time begin, Time end);
 
-    /// Removes all zones and restarts the clock at zero.
+    /// Removes all zones and restarts the clock of the trace at zero.
     void clear();
 
     std::size_t zone_count() const;
     std::uint64_t dropped_count() const;
-    int worker_count() const;  // number of threads that recorded a zone, and the thread that made the trace
+    // Number of threads that recorded a zone, plus the thread that made the trace if it recorded none.
+    int worker_count() const;
 
-    /// Writes the Trace Event Format: one complete event ("X") for each zone, times in microseconds.
+    /// Writes a file in the Trace Event Format: one complete event ("X") for each zone, with times in microseconds.
     void write_json(std::ostream& out) const;
 
 private:
     struct Zone {
         const char* name;
-        std::int64_t begin;  // after start_ [ns]
+        std::int64_t begin;  // time since start_ [ns]
         std::int64_t end;
     };
     struct Worker {
@@ -57,15 +58,16 @@ private:
 
     Worker& worker_of_this_thread();
 
-    std::uint64_t id_;  // number of this trace, never reused: a thread caches its list under the number
+    // Number of this trace, which is never reused: a thread remembers its list together with this number.
+    std::uint64_t id_;
     std::size_t max_zones_per_worker_;
     Time start_;
-    mutable std::mutex mutex_;  // guards the list of workers, not its elements
+    mutable std::mutex mutex_;  // guards the list of workers, but not the lists of zones
     std::vector<std::unique_ptr<Worker>> workers_;
 };
 
-/// Records the time between its construction and its destruction as a zone. If `trace` is null, it costs one pointer
-/// test.
+/// Records the time from its construction to its destruction as a zone. A null `trace` records nothing and costs one
+/// comparison.
 class TraceZone {
 public:
     TraceZone(Trace* trace, const char* name) : trace_(trace), name_(name) {

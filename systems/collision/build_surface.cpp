@@ -13,8 +13,8 @@ Index rows(std::size_t count) {
     return static_cast<Index>(count);
 }
 
-// Corners of the faces of a tetrahedron with positive volume, counter-clockwise as seen from outside. Face k is
-// opposite to corner k.
+// Corners of the faces of a tetrahedron with positive volume. They are counter-clockwise as seen from outside. Face k
+// is opposite to corner k.
 constexpr std::array<std::array<std::size_t, 3>, 4> face_corner{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k) {
@@ -22,13 +22,13 @@ std::array<Index, 2> edge_nodes(const std::array<Index, 3>& node, std::size_t k)
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// True if side k of a triangle is an edge of the surface. The core of a round body is stored as a degenerate triangle,
-/// of which at most side 0 is an edge.
+/// True if side k of a triangle is an edge of the surface. The core of a round body is stored as a degenerate triangle.
+/// At most side 0 of such a triangle is an edge.
 bool has_edge(const std::array<Index, 3>& node, std::size_t k) {
     return !is_core(node) || (k == 0 && node[0] != node[1]);
 }
 
-/// Returns one more than the highest node number of the triangles.
+/// Returns the highest node number of the triangles plus one.
 Index end_of(std::span<const BoundaryTriangle> triangles) {
     Index end = 0;
     for (const BoundaryTriangle& triangle : triangles)
@@ -36,7 +36,8 @@ Index end_of(std::span<const BoundaryTriangle> triangles) {
     return end;
 }
 
-/// Nodes of a boundary surface in ascending order, and the index of each node in this list.
+/// `node`: nodes of a boundary surface in ascending order. `place`: index of each node of the body in this list, or
+/// no_index.
 struct BoundaryNodes {
     std::vector<Index> node, place;
 
@@ -52,10 +53,11 @@ struct BoundaryNodes {
     }
 };
 
-/// Edges of a boundary surface, sorted by their nodes, and the three edges of each triangle.
+/// `node`: the two nodes of each edge of a boundary surface, sorted. `of_triangle`: the three edges of each triangle.
 struct BoundaryEdges {
     std::vector<std::array<Index, 2>> node;
-    std::vector<std::array<Index, 3>> of_triangle;  // edge of each side; no_index if the side is not an edge
+    // Edge at each side of the triangle; no_index if the side is not an edge.
+    std::vector<std::array<Index, 3>> of_triangle;
 
     BoundaryEdges(std::span<const BoundaryTriangle> triangles, Index end)
         : of_triangle(triangles.size(), {no_index, no_index, no_index}) {
@@ -149,7 +151,7 @@ std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> 
 
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra) {
     const std::vector<TetrahedronFace> faces = sorted_faces(tetrahedra);
-    // 1 for a boundary face; by tetrahedron and opposite corner.
+    // Flag of each face, by tetrahedron and opposite corner: 1 for a boundary face.
     std::vector<std::uint8_t> is_single(faces.size(), 0);
     for (std::size_t i = 0; i < faces.size();) {
         std::size_t end = i + 1;

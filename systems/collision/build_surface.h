@@ -1,4 +1,4 @@
-// Surface of a new body: boundary triangles, edges and vertices.
+// Computes the surface of a new body: boundary triangles, edges and vertices.
 #pragma once
 
 #include <array>
@@ -12,22 +12,20 @@
 
 namespace skerry {
 
-/// A face of a tetrahedron.
 struct TetrahedronFace {
     std::array<Index, 3> node;  // ascending
     Index tetrahedron;
-    std::uint8_t corner;  // local index of the corner opposite to the face
-    bool turned;          // true if the sorted nodes are clockwise as seen from outside
+    std::uint8_t corner;  // number, 0 to 3, of the tetrahedron's corner opposite to the face
+    bool turned;          // true: the nodes in ascending order are clockwise as seen from outside
 };
-/// Returns the faces of all tetrahedra, sorted by their nodes. Faces with equal nodes are in the order of their
-/// tetrahedra.
+/// Returns the faces of all tetrahedra, sorted by their nodes. Faces with the same nodes are sorted by tetrahedron.
 std::vector<TetrahedronFace> sorted_faces(std::span<const std::array<Index, 4>> tetrahedra);
 
 /// A boundary triangle of a tetrahedral mesh: a face that belongs to exactly one tetrahedron. Its nodes are
-/// counter-clockwise as seen from outside. boundary_triangles lists the triangles in element order.
+/// counter-clockwise as seen from outside. boundary_triangles returns the triangles in the order of their tetrahedra.
 struct BoundaryTriangle {
-    std::array<Index, 3> node;  // local numbers
-    Index element;              // local number
+    std::array<Index, 3> node;  // node numbers within the body
+    Index element;              // element number within the body
 };
 std::vector<BoundaryTriangle> boundary_triangles(std::span<const std::array<Index, 4>> tetrahedra);
 
@@ -35,15 +33,15 @@ struct SurfaceRanges {
     Range triangles, edges, vertices;
 };
 
-/// Appends the triangles, edges and vertices of the surface of a new body. The node and element numbers in `triangles`
-/// are local to the body. `first_node` and `first_element` are the table rows of local number 0. For a surface without
-/// elements, `first_element` is no_index.
+/// Appends the triangles, edges and vertices of the surface of a new body to `surface`. The node and element numbers in
+/// `triangles` are local to the body. `first_node` and `first_element` are the table rows of node 0 and element 0 of
+/// the body. For a surface without elements, `first_element` is no_index.
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
 /// Appends the surface of a body by copying the surface of an earlier body with the same mesh. `like`: rows of the
-/// earlier surface. `behind`: new row minus earlier row; the node and element offsets are read, the others are written.
-/// The result equals that of append_surface.
+/// earlier surface. `behind`: offsets from rows of the earlier body to rows of the new body; the node and element
+/// offsets are inputs, all other offsets are outputs. The appended rows equal those of append_surface.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

@@ -53,7 +53,8 @@ private:
         }
         if (motion_.stands_still() && is_convex_part(geometry_, part) &&
             !within_reach(distance, speed_against(Vec3::Zero(), node))) {
-            least_ = std::min(least_, distance - scale.radii);  // lower bound for every point of the edge
+            // Distance - radii is a lower bound for every point of the edge.
+            least_ = std::min(least_, distance - scale.radii);
             return;
         }
         const EdgeContact contact = edge_contact(geometry_, part, end[0], end[1]);
@@ -79,7 +80,8 @@ private:
         const Vec3 point = to_world(motion_, contact.point.at - contact.point.radius * contact.normal),
                    velocity = velocity_at(motion_, point);
         if (!within_reach(contact.distance, speed_against(velocity, node))) return;
-        const Real depth = -(contact.distance + contact.point.radius);  // depth of the point's centre behind the face
+        // Depth of the collider point's centre behind the face [m].
+        const Real depth = -(contact.distance + contact.point.radius);
         if (depth > 0 && !is_truly_behind(c, contact.point.at, depth)) return;
         const auto& weight = contact.closest.weight;
         add(candidate.feature, ContactKind::face_collider,
@@ -87,8 +89,9 @@ private:
             {point, -(motion_.rotation * contact.normal), contact.distance, scale.contact_distance, velocity});
     }
 
-    /// True if a point of the collider has passed through this face into the body. If the result is false, the point
-    /// may be in front of the far side of a thin part, nearer to another face, or outside the body in a fold.
+    /// True if the collider point has entered the body through this face. If the result is false, the point may be in
+    /// front of a face on the far side of a thin part, nearer to another face, or outside the body in a fold of its
+    /// surface.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return depth <= scale.face_depth &&
                is_nearest(c, depth,

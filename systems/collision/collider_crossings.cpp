@@ -15,13 +15,13 @@ class ColliderCrossings : PairCrossings {
 public:
     using PairCrossings::PairCrossings;
 
-    /// Tests one candidate. `least`: lower bound of the distance of its features, or of the motion during which only
-    /// nodes can touch [m].
+    /// Tests one candidate for a crossing in this step. `least`: lower bound of the distance between its features, or
+    /// of the motion during which only nodes can touch [m]. Returns true if a full test was needed.
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
-        // A rim is tested once, as a whole: by the candidate of the rim point that depends on the face. Candidates of
-        // the other rim points are skipped.
+        // A rim is tested only once: the candidate of the rim point whose position depends on the face tests the
+        // complete rim. The candidates of the other points on the rim are skipped.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);
@@ -34,7 +34,8 @@ public:
                                                  {to_local(pose_, x[0]), to_local(pose_, x[1]), to_local(pose_, x[2])});
             if (!(approach > slow_fraction * std::max(now.nearest, now.distance))) return false;
         }
-        const Real height = pose_.rotation.col(2).dot(feature.position[0] - pose_.position);  // above a plane
+        // Height of the first node above a plane collider [m].
+        const Real height = pose_.rotation.col(2).dot(feature.position[0] - pose_.position);
         if (the_end_tells(geometry_, feature) && !(approach > height)) return false;
         const std::optional<Touch> touch = first_touch(geometry_, pose_, motion.h, feature);
         if (!touch || (touch->within && !is_outside(inputs, first, to_world(pose_, touch->point)))) return true;
@@ -62,11 +63,12 @@ private:
 
     void add(const Candidate& candidate, const TouchingFeature& feature, const std::array<Index, 3>& node,
              const Touch& touch) {
-        // contact point and normal on the collider at its pose at the start of the step
+        // contact point and normal of the collider in its pose at the start of the step
         const Vec3 normal = pose_.rotation * touch.normal, point = to_world(pose_, touch.point);
         Stencil stencil{{}, {}};
         std::size_t count = 0;
-        Real along = 0;  // [m]
+        // Distance of the feature from the contact point along the normal, at the start of the step [m].
+        Real along = 0;
         for (std::size_t i = 0; i < feature.nodes(); ++i) {
             if (touch.weight[i] == 0) continue;
             stencil.node[count] = node[i];

@@ -14,22 +14,24 @@ namespace skerry {
 
 namespace {
 
-// Lower bound of the ratio between the travel of the rim nodes and the motion of the rim points between these nodes.
+// Lower bound of the ratio between the displacement of the rim nodes of a cylinder and the displacement of rim points
+// between these nodes.
 constexpr Real of_rim_nodes = 0.95;
 
-// An edge counts as parallel to the cylinder axis if the sine of the angle between edge and axis is below this limit.
-// Such an edge touches the round side along a stretch of its length, or hardly at all.
+// An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
+// an edge touches the curved side of the cylinder along a part of its length, or not at all.
 constexpr Real parallel_sine = 1e-3;
 
-// If the derivative of the distance along an edge is below this limit, the distance counts as constant.
+// The distance along an edge counts as constant if its derivative is below this limit.
 constexpr Real straight_slope = 1e-7;
 
-// Numbering of the touching points on a triangle: three corners, then eight points of each edge, then nine points of
-// each cylinder rim.
+// Numbers of the contact points between a cylinder and a triangle: 0 to 2 for the three corners, then eight for each
+// edge, then nine for each rim of the cylinder.
 constexpr Index number_of_edges = 3, places_of_edge = 8, number_of_faces = number_of_edges + 3 * places_of_edge;
 static_assert(number_of_faces + 2 * RimPoints::most_of_rim <= touches_of_triangle);
 
-// Rim points that are beside a face by less than this fraction of the edge length count as above the face.
+// A rim point beside a face counts as above the face if its distance from the face's border is below this fraction of
+// the edge length.
 constexpr Real seam_fraction = 1e-9;
 
 class CylinderContacts : PairContacts {
@@ -50,15 +52,15 @@ public:
     Real least_distance() const { return least_; }
 
 private:
-    /// Stores until when candidate c may sleep. `distance`: lower bound of the distance between the surfaces [m].
-    /// Returns true if the candidate needs a closer test in this step.
+    /// Stores the travel up to which candidate c needs no test. `distance`: lower bound of the distance between the two
+    /// surfaces [m]. Returns true if the candidate must be tested more closely in this step.
     bool note(Index c, Real distance) {
         least_ = std::min(least_, distance);
         asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if the lower bound `bound` of the distance is so large that the candidate needs no closer test. If the
-    /// result is false, the touching points will give a sharper bound.
+    /// True if the candidate needs no closer test, because the lower bound `bound` of its distance is large enough.
+    /// Otherwise the contact points will provide a sharper bound.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 
@@ -103,8 +105,8 @@ private:
             const EdgePoint& touch = contact.point[i];
             if (!(touch.on.distance <= near_surface())) continue;
             const Vec3 normal = -(cylinder_.motion.rotation * touch.on.normal);
-            // A cylinder that rolls or slides over a nearly flat region is supported by faces only. An edge ahead of it
-            // would act as a bump.
+            // A cylinder that rolls or slides over a nearly flat region is supported by faces only. An edge in front of
+            // the cylinder would act as a bump.
             const CylinderPlace place = place_of(touch.on.normal);
             const bool straight_on = std::abs(touch.on.normal.dot(along)) <= straight_slope * along.norm();
             const bool nearly_flat =
@@ -137,8 +139,8 @@ private:
         }
     }
 
-    /// True if a point of the cylinder has passed through this face into the body. If the pair is held apart, no point
-    /// can be behind a face, so the result is false.
+    /// True if a point of the cylinder has entered the body through this face. If contacts keep the two surfaces apart,
+    /// no point can be behind a face, so the result is false.
     bool is_truly_behind(Index c, const Vec3& point, Real depth) const {
         return !held_apart && depth <= scale.face_depth && is_nearest(c, depth, [&](Index i) {
             const auto& node = inputs.surface.triangles.node[candidates[i].second];
@@ -155,9 +157,9 @@ private:
                        speed_against(cylinder_.velocity_at(point), node));
     }
 
-    /// Adds a contact if its gap can close in this step. `node`, `weight`: nodes of the other body at the touching
-    /// point and their weights, which are zero for a collider. `speed`: relative speed of both partners at this point
-    /// [m/s].
+    /// Adds a contact if its gap can close in this step. `node`, `weight`: nodes of the other body at the contact
+    /// point, and their weights. All weights are zero if the other partner is a collider. `speed`: relative speed of
+    /// the two partners at the contact point [m/s].
     void add_if_reached(std::uint64_t feature, Index number, const std::array<Index, 3>& node,
                         const std::array<Real, 3>& weight, const ContactPlace& place, Real speed) {
         if (!within_reach(place.distance + scale.radii, speed)) return;
@@ -165,8 +167,8 @@ private:
             kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
             stencil_of_point({cylinder_.middle, node[0], node[1], node[2]}, weight), place);
     }
-    /// Adds the touching points on one shape. `speed_at(velocity, place)`: relative speed at `place`, where the
-    /// cylinder has the given velocity [m/s].
+    /// Adds the contact points on one other shape. `speed_at(velocity, place)`: relative speed of the shape and the
+    /// cylinder at the contact point `place`, where the cylinder has the velocity `velocity` [m/s].
     void add_touches(Index c, const std::array<Index, 3>& node, auto&& weight_of, auto&& speed_at) {
         for (const CylinderTouch& touch : touches_) {
             const Vec3 point = cylinder_.world(touch.on_other), velocity = cylinder_.velocity_at(point);

@@ -17,15 +17,15 @@ namespace skerry {
 
 namespace {
 
-// Numbers of crossings follow the numbers of the touching points at the start of the step. A triangle has eight
-// crossings: three corners, three edges and two rims. A shape has one crossing for each touching point at the end of
-// the step, and one for the first touch during the step.
+// Numbers of crossings, which follow the numbers of the contact points at the start of the step. A triangle has eight
+// crossings: three for corners, three for edges and two for rims of the cylinder. Another shape has one crossing for
+// each contact point at the end of the step, and one for the first contact during the step.
 constexpr Index crossing_of_triangle = 48, crossing_of_shape = CylinderTouches::most,
                 crossing_on_the_way = touches_of_shape - 1;
 static_assert(crossing_of_triangle + 8 <= touches_of_triangle && 2 * CylinderTouches::most <= touches_of_shape);
 
-// If the motion in the step is below this fraction of the smaller half thickness, no shape can pass through the other
-// between the start and the end of the step.
+// If the motion in the step is below this fraction of the smaller half thickness of the two shapes, neither shape can
+// pass completely through the other within the step.
 constexpr Real thin_fraction = 0.5;
 
 class CylinderCrossings : PairCrossings {
@@ -71,8 +71,8 @@ private:
         return true;
     }
 
-    /// Tests a feature of the other body. For a sphere or capsule with the given radius [m], the feature is the core.
-    /// Returns true if a full test was needed.
+    /// Tests a feature of the other body for a crossing. `radius`: radius of the other body if it is a sphere or
+    /// capsule, whose feature is its core (centre or axis) [m]. Returns true if a full test was needed.
     bool test_feature(const Candidate& candidate, Index number, Kind of_other, const std::array<Index, 3>& node,
                       Index of_shape = 0, Real radius = 0) {
         const TouchingFeature feature = feature_of(of_other, node, of_shape, kept(radius));
@@ -84,16 +84,16 @@ private:
         return true;
     }
 
-    /// Tests the cylinder against a sphere or a capsule. `node`: nodes at the ends of the capsule's axis; equal nodes
-    /// for a sphere.
+    /// Tests the cylinder against a sphere or a capsule. `node`: nodes at the ends of the capsule's axis, or twice the
+    /// node at the centre of the sphere.
     bool against_core(const Candidate& candidate, const std::array<Index, 3>& node) {
         return any_moves(node) &&
                test_feature(candidate, crossing_of_shape, node[0] == node[1] ? Kind::node : Kind::edge, node, 0,
                             inputs.body.round_radius[second]);
     }
 
-    /// A shape near the cylinder and its motion in the step. `stencil`: nodes and weights of the contact if the shape
-    /// is a body; empty for a collider.
+    /// A shape near the cylinder, and the motion of the shape in the step. `stencil`: nodes and weights of the contact
+    /// if the shape is a body; no value for a collider.
     struct OtherShape {
         const ColliderGeometry& geometry;
         const RigidMotion& motion;
@@ -118,9 +118,8 @@ private:
         return true;
     }
 
-    /// Adds the points that overlap at the end of the step, and the near touching points beside them. If only the
-    /// overlapping points were held, the cylinder would penetrate at the near points. Returns true if any point
-    /// overlaps.
+    /// Adds the contact points that overlap at the end of the step, and other contact points near them. Without
+    /// contacts at the near points, the cylinder would penetrate there. Returns true if any point overlaps.
     bool add_end(const Candidate& candidate, const OtherShape& other) {
         find_touches(1, other, scale.shell);
         if (!any_overlap()) return false;
@@ -129,7 +128,7 @@ private:
         return true;
     }
 
-    /// Adds the first touch during the step of the cylinder and the facets of the other shape.
+    /// Adds the first contact during the step between the cylinder and the facets of the other shape.
     void add_on_the_way(const Candidate& candidate, const OtherShape& other) {
         std::optional<Hit> first_found;
         TouchingFeature of_first{};
@@ -157,14 +156,14 @@ private:
 
     struct Hit {
         Touch touch;
-        Real time;  // fraction of the step
+        Real time;  // time of the contact as a fraction of the step
     };
     std::optional<Hit> first_hit(const TouchingFeature& feature) const {
         Real time = 0;
         const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
     }
-    /// Position of the touched point of the feature at the start of the step [m].
+    /// Position at the start of the step of the point of the feature that the cylinder touches [m].
     static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];
@@ -206,7 +205,8 @@ private:
         return std::any_of(touches_.begin(), touches_.end(), [](const CylinderTouch& t) { return t.distance < 0; });
     }
 
-    /// Tests the cylinder against a plane. Only the end of the step is tested, because no shape can get around a plane.
+    /// Tests the cylinder against a plane. The positions at the end of the step suffice for this test, because no shape
+    /// can move around a plane.
     bool against_plane(const Candidate& candidate, const RigidMotion& plane, Real distance) {
         if (!(greatest_way_of_cylinder() + motion.h * plane.velocity.norm() +
                   motion.h * plane.angular_velocity.norm() *
@@ -237,14 +237,15 @@ private:
         return greatest_approach(cylinder_.motion, motion.h, feature) > slow_fraction * distance;
     }
 
-    /// Orientation of the cylinder at `time`, a fraction of the step.
+    /// Rotation matrix of the cylinder at `time`, a fraction of the step.
     Mat3 rotation_at(Real time) const {
         return rotation_matrix(time * motion.h * cylinder_.motion.angular_velocity) * cylinder_.motion.rotation;
     }
-    /// Appends a crossing. `arm`: vector from the middle of the cylinder to the touching point at the start of the step
-    /// [m]. `along` and `left`: distances at this point at the start and at the end of the step [m]. If an earlier
-    /// attempt at the step already had this contact and `left` is still negative, the rotation of the cylinder has used
-    /// up the gap. The distance of the contact is then reduced by this overlap.
+    /// Appends a crossing. `arm`: vector from the centre of the cylinder to the contact point at the start of the step
+    /// [m]. `along` and `left`: distances between the surfaces at the contact point at the start and at the end of the
+    /// step [m]. Suppose that an earlier attempt at the step already had this contact, and `left` is still negative.
+    /// Then the rotation of the cylinder has used up the gap, and the distance of the contact is reduced by the
+    /// overlap.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {
@@ -253,7 +254,8 @@ private:
                                kind == PairKind::collider ? ContactKind::point_collider : ContactKind::point_triangle,
                                stencil, {point, normal, distance, scale.shell, surface_velocity});
         };
-        // A feature that rotates by more than a right angle can have a negative distance here without an overlap.
+        // If the feature rotates by more than a right angle, the distance can be negative at this place although
+        // nothing overlaps.
         ContactRow row = row_at(std::max(along, Real(0)));
         if (left < 0) {
             const auto before = std::ranges::lower_bound(known_, row.key, std::less{}, &ContactRow::key);
@@ -263,14 +265,14 @@ private:
         found.push_back(row);
     }
 
-    /// Distance that a feature has to keep from the cylinder. A feature that a contact stops at the contact distance
-    /// has not crossed, however far it moved.
+    /// Distance that must remain between a feature and the cylinder. If a contact stops the feature at the contact
+    /// distance, the feature has not crossed the surface, however far it moved.
     KeptApart kept(Real radius) const { return {radius, scale.shell > 0 ? contact_slack * scale.shell : infinity}; }
     bool any_moves(const std::array<Index, 3>& node) const {
         return can_move(std::array{cylinder_.middle, node[0], node[1], node[2]});
     }
     Stencil stencil_of_middle() const { return stencil_of_point({cylinder_.middle, no_index, no_index, no_index}, {}); }
-    /// Index of the point of a cylinder rim that depends on the face (collider_point).
+    /// Index of the rim point whose position depends on the face (collider_point).
     static Index point_of_rim(Index rim) { return rim * collider_point_count(ColliderShape::cylinder) / 2; }
     /// Pose of a shape at `time`, a fraction of the step.
     RigidMotion at(const RigidMotion& pose, Real time) const {
@@ -278,7 +280,7 @@ private:
         return {pose.position + passed * pose.velocity, rotation_matrix(passed * pose.angular_velocity) * pose.rotation,
                 Vec3::Zero(), Vec3::Zero()};
     }
-    /// Half of the thickness of a shape at its thinnest part [m].
+    /// Half of the smallest thickness of a shape [m].
     static Real thickness(const ColliderGeometry& geometry) {
         const Vec3& size = geometry.size;
         switch (geometry.shape) {
@@ -302,7 +304,7 @@ private:
     }
 
     const RigidCylinder cylinder_ = cylinder_in_step(inputs, motion, first);
-    std::span<const ContactRow> known_;  // contacts that earlier attempts at this step found, in key order
+    std::span<const ContactRow> known_;  // contacts found by earlier attempts at this step, in key order
     CylinderTouches touches_;
 };
 

@@ -17,12 +17,12 @@ namespace skerry {
 
 namespace {
 
-// Refitting a tree takes some microseconds; fitting a box and a sphere takes less.
+// Refitting the trees of one block takes some microseconds; computing the boxes and spheres of one block takes less.
 constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;
-// A block of this many bodies or pairs takes some microseconds.
+// The work for one block of this many bodies or pairs takes some microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
-/// Marks the bodies or colliders about whose distances nothing is known. Returns true if any is marked.
+/// Marks the bodies or colliders whose distances from other objects are unknown. Returns true if any object is marked.
 bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Column<std::uint8_t>& forgotten) {
     if (all) valid_until.clear();
     SKERRY_CHECK(valid_until.size() <= count);
@@ -33,7 +33,8 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-/// Adds the bodies that are forgotten in this attempt at the step to the bodies with unmeasured speeds.
+/// Adds the bodies that are forgotten in this attempt at the step to body_unmeasured, the set of bodies without known
+/// speed.
 void note_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
@@ -72,8 +73,8 @@ bool all_below(const Column<Real>& travel_bound, const Column<Real>& valid_until
     return below;
 }
 
-/// True if the travel bounds of all colliders are below their limits. A mesh collider moves as a body, so its row in
-/// ColliderTable is not checked.
+/// True if the travel bounds of all colliders are below their limits. The rows of mesh colliders in ColliderTable are
+/// skipped, because mesh colliders move as bodies.
 bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     bool below = true;
     for (std::size_t c = 0; c < search.memory.collider_travel_bound.size(); ++c)
@@ -82,14 +83,14 @@ bool colliders_below(const CollisionInputs& inputs, const SearchState& search) {
     return below;
 }
 
-/// Bounds the relative motion of a pair, both up to now and to the end of this step.
+/// Bounds the relative motion of the two partners of a pair, both up to now and up to the end of this step.
 void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Real h, Index p, PairTable& pairs) {
     const Index a = pairs.first[p], b = pairs.second[p];
     if (pairs.kind[p] == PairKind::collider) {
         pairs.travel[p] = inputs.body.travel[a] + inputs.body.frame[a].path + inputs.collider.travel[b];
         pairs.travel_bound[p] = memory.body_travel_bound[a] + memory.collider_travel_bound[b];
-        // The reach of the collider is computed again. It is not the difference of bound and travel, because the travel
-        // of a rotating shape grows without limit, so that this difference would be inexact.
+        // The reach of the collider is computed again instead of as the difference travel_bound - travel. The travel of
+        // a rotating shape grows without limit, so the difference would have a large rounding error.
         pairs.closing[p] = memory.body_reach[a] + collider_reach(inputs, b, memory.collider_extent[b], h);
         return;
     }
@@ -102,7 +103,7 @@ void bound_travel(const CollisionInputs& inputs, const SearchMemory& memory, Rea
     pairs.closing[p] = memory.body_reach[a] + memory.body_reach[b];
 }
 
-/// Lists the bodies that are marked in needs_refit.
+/// Lists the rows of the bodies that are marked in needs_refit.
 void list_bodies(SearchMemory& memory) {
     for (std::size_t b = 0; b < memory.needs_refit.size(); ++b)
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
@@ -134,7 +135,7 @@ void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, Sea
     list_bodies(memory);
 }
 
-/// Fits the box and the sphere of each body in an expired pair to its present positions.
+/// Computes the box and the bounding sphere of each body in an expired pair from the present node positions.
 void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aabb> box, SearchMemory& memory) {
     parallel_for(executor, memory.refit.size(), bounds_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -145,13 +146,14 @@ void fit_expired(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-/// Upper bound of the distance that a pair may close in this step [m]. For two bodies, the bound from their motion
-/// relative to their frames is sharper than that from their speeds.
+/// Upper bound of the decrease in distance between the partners of a pair in this step [m]. For two bodies, the bound
+/// by motions relative to their frames is sharper than the bound by their speeds.
 Real closing(const PairTable& pairs, Index p) {
     return pairs.kind[p] == PairKind::collider ? pairs.closing[p] : pairs.travel_bound[p] - pairs.travel[p];
 }
 
-/// Lower bound of the distance between the features of two bodies, from their boxes and spheres [m].
+/// Lower bound of the distance between any features of two bodies. It follows from the boxes and bounding spheres of
+/// the bodies [m].
 Real least_distance(const CollisionInputs& inputs, std::span<const Aabb> box, const SearchMemory& memory, Index first,
                     Index second) {
     const Range a = inputs.body.bvh_nodes[first], b = inputs.body.bvh_nodes[second];
@@ -172,20 +174,20 @@ PairToSearch pair_to_search(const CollisionInputs& inputs, const CollisionSettin
     return pair;
 }
 
-/// True if the boxes and spheres of two bodies show that no features are near enough to be searched.
+/// True if the boxes and spheres of two bodies show that no features are close enough to become candidates.
 bool is_far(const PairToSearch& pair) {
     return pair.apart - pair.scale.zone >= pair.margin;
 }
 
-/// Splits the expired pairs into near pairs, which are searched, and far pairs. Only trees of bodies in near pairs are
-/// refit, each tree once.
+/// Splits the expired pairs into near pairs, which must be searched, and far pairs. Trees are refitted only for bodies
+/// in near pairs, each tree once.
 void list_refits(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box,
                  SearchMemory& memory, const PairTable& pairs) {
     memory.refit.clear();
     memory.needs_refit.assign(inputs.body.slot.size(), 0);
     memory.near.clear();
     memory.far.clear();
-    memory.near.reserve(pairs.size());  // any pair may expire in a later step
+    memory.near.reserve(pairs.size());  // room for all pairs, because any pair may expire in a later step
     memory.far.reserve(pairs.size());
     for (Index p : memory.expired) {
         const bool surfaces = pairs.kind[p] != PairKind::collider;
@@ -207,7 +209,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
                   const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
-        // The state is determined before the search, because surfaces that are apart need a smaller search distance.
+        // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
+        // distance.
         const bool crossing = !is_far(pair) && surfaces_cross(inputs, pair, box);
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
@@ -222,8 +225,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     }
 }
 
-/// Each block searches one near pair, which takes some ten microseconds, and an equal share of the far pairs, which
-/// take almost no time. So all blocks have about the same work.
+/// Searches the expired pairs. Each block searches one near pair, which takes some ten microseconds, and an equal share
+/// of the far pairs, which take almost no time. All blocks thus have about the same amount of work.
 void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
@@ -250,7 +253,8 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Marks the bodies whose displacement from their origins has cost a searched pair more than a quarter of its skin.
+/// Requests new displacement origins for bodies in expired pairs whose displacement has used up more than a quarter of
+/// the skin, the margin of a candidate list.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real good_part = 0.25;
@@ -279,7 +283,7 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
     broad |= !all_below(memory.body_travel_bound, search.body_valid_until) || !colliders_below(inputs, search);
     if (broad) {
         find_pairs(executor, inputs, settings, h, search, pairs);
-        // For a rotating plane, the bounds depend on the present positions of the bodies.
+        // For a rotating plane, the travel bounds depend on the present positions of the bodies.
         bound_collider_travels(inputs, h, memory);
     }
     list_expired(executor, inputs, h, memory, pairs);

@@ -1,5 +1,5 @@
-// Search for pairs of bodies, and for pairs of their features, that could touch soon (docs/methods/collision.md 1 to
-// 3).
+// Search for pairs of bodies that could touch soon, and for pairs of their features that could touch soon
+// (docs/methods/collision.md 1 to 3).
 #pragma once
 
 #include "components/pair_table.h"
@@ -8,15 +8,15 @@
 
 namespace skerry {
 
-/// Updates the list of pairs and the candidate list of each pair. Returns false (skipped) if no list has expired, which
-/// costs one comparison per body and per pair. Otherwise, if a body or collider has travelled up to its limit, the
-/// broad search lists the pairs again. Then the trees of each pair with an expired candidate list are refit and
-/// traversed, in parallel over these pairs. `box`: boxes of BvhTable, refit here. The limits of travel are explained in
-/// contact_reach.h. They require that BodyTable::travel bounds the motion of every node since the body was added.
-/// BodyTable::max_speed and frame_speed must be speeds of the motion to the present positions. A body without these
-/// bounds (new, or moved by hand) is marked as forgotten (SearchState). Then only the pairs of this body are found and
-/// searched again, with its present velocities, in all attempts at the step (SearchState::end_step). The result is
-/// deterministic: pairs are in key order, candidates in feature order.
+/// Updates the list of pairs and the candidate list of each pair. If no list has expired, the function returns false
+/// after one comparison per body and per pair. If a body or collider has travelled up to its limit, the broad search
+/// lists all pairs again. For each pair with an expired candidate list, the trees of its bodies are refitted and
+/// traversed, in parallel over the pairs. `box`: boxes of BvhTable, refitted by this function. contact_reach.h explains
+/// the limits of travel. They require that BodyTable::travel bounds the motion of every node since the body was added.
+/// BodyTable::max_speed and frame_speed must be the speeds of the last motion. A body without such bounds (new, or
+/// moved by the user) is marked as forgotten (SearchState). In all attempts at the step, the pairs of this body are
+/// then found and searched again with its present velocities. The result is deterministic: pairs are in key order,
+/// candidates in feature order.
 bool find_candidates(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<Aabb> box, SearchState& search, PairTable& pairs);
 

@@ -16,17 +16,18 @@ namespace skerry {
 
 namespace {
 
-// Work of one block, in tests of candidates between two surfaces. Each pair adds a fixed amount. A candidate against a
-// collider counts several times, because it is tested in every step, and not in groups of eight. A block takes a
-// microsecond if all its candidates are asleep, and a hundred microseconds if they are awake.
+// Work of one block, in units of the test of one candidate between two surfaces. Each pair adds a fixed amount of work.
+// A candidate against a collider counts several times, because it is tested in every step and not in groups of eight. A
+// block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all candidates must
+// be tested.
 constexpr std::int64_t candidates_per_block = 1536;
 constexpr Index candidates_worth_of_a_pair = 16;
 constexpr Index candidates_worth_of_one_at_collider = 5;
 
 constexpr std::size_t contacts_per_block = 256;
-// The candidate list of the pair this many pairs ahead is prefetched.
+// While the candidates of a pair are tested, the candidate list of the pair with this offset is prefetched.
 constexpr Index pairs_ahead = 3;
-constexpr std::size_t counted_pairs_per_block = 512;  // number of pairs whose work is counted by one task
+constexpr std::size_t counted_pairs_per_block = 512;  // number of pairs whose work is estimated by one task
 
 bool collider_stands_still(const CollisionInputs& inputs, Index collider) {
     return inputs.collider.motion[collider].stands_still();
@@ -37,19 +38,19 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
-/// Work of testing one candidate, as a multiple of that for a candidate between two surfaces.
+/// Work of testing one candidate of a pair, in units of the test of one candidate between two surfaces.
 Index work_of_one(const PairTable& pairs, std::size_t p) {
     return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
 }
 
-/// Work of testing all candidates of a pair, as a multiple of that for one candidate between two surfaces.
+/// Work of testing all candidates of a pair, in units of the test of one candidate between two surfaces.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     const Index count = pairs.looked_at[p];
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;
 }
 
-/// Marks pairs as idle if neither partner moves. The contacts of an idle pair are in equilibrium, otherwise the bodies
-/// would not be asleep. For the other pairs, it counts the candidates and sums their work.
+/// Marks pairs as idle if neither partner moves. The contacts of an idle pair are in equilibrium, because otherwise the
+/// bodies would not be asleep. For all other pairs, the function counts the candidates and adds up their work.
 void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pairs) {
     pairs.idle.resize(pairs.size());
     pairs.looked_at.resize(pairs.size());
@@ -67,8 +68,8 @@ void mark_idle(Executor& executor, const CollisionInputs& inputs, PairTable& pai
     });
 }
 
-/// Cuts the concatenated candidate lists of all pairs that are not idle into blocks of equal work. Returns the number
-/// of blocks.
+/// Divides the concatenated candidate lists of all pairs that are not idle into blocks of equal work. Returns the
+/// number of blocks.
 Index cut_blocks(Executor& executor, PairTable& pairs) {
     std::int64_t total = 0;
     for (std::int64_t& work : pairs.work) total += std::exchange(work, total);
@@ -77,7 +78,7 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     pairs.block[blocks] = {static_cast<Index>(pairs.size()), 0};
     parallel_for(executor, pairs.size(), counted_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         std::int64_t before = pairs.work[begin / counted_pairs_per_block];
-        // Index of the next block to begin.
+        // Number of the next block whose start is to be found.
         std::int64_t next = (before + candidates_per_block - 1) / candidates_per_block;
         for (std::size_t p = begin; p < end; ++p) {
             const std::int64_t until = before + work_of(pairs, p);
@@ -92,8 +93,8 @@ Index cut_blocks(Executor& executor, PairTable& pairs) {
     return blocks;
 }
 
-/// Prefetches the beginning of a pair's list; the hardware prefetches the rest. The lists are far apart in memory, and
-/// waiting for them would take a good part of the stage.
+/// Prefetches the beginning of a candidate list; the hardware prefetches the rest. The lists are scattered in memory.
+/// Waiting for them would take a considerable part of the time of this stage.
 void prefetch_list(const PairTable& pairs, Index p) {
     constexpr std::size_t begin = 32;
     if (p < static_cast<Index>(pairs.size())) ask_for_lines(pairs.asleep_until[p].data(), begin);
@@ -117,7 +118,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
             surfaces.add(p, {from, to});
             continue;
         }
-        surfaces.test();  // contacts must be in the order of their pairs
+        surfaces.test();  // the contacts of earlier pairs must be appended first
         const auto find = cylinder ? find_cylinder_contacts : find_collider_contacts;
         nearest = std::min(nearest, find(inputs, settings, h, p, {from, to}, pairs, found));
     }
@@ -150,7 +151,7 @@ void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTab
     }
 }
 
-/// Writes the contacts. A crossing replaces the contact found for the same features.
+/// Writes the contacts. If a crossing and a contact have the same features, the crossing replaces the contact.
 void write_with_crossings(std::size_t blocks, PairTable& pairs, CrossingTable& crossings, ContactTable& contacts) {
     for (std::size_t b = blocks; b < pairs.found.size(); ++b) pairs.found[b].clear();
     merge_rows(pairs.found, crossings.row, false, crossings.merged);
@@ -179,8 +180,8 @@ bool find_contacts(Executor& executor, const CollisionInputs& inputs, const Coll
         write_with_crossings(static_cast<std::size_t>(blocks), pairs, crossings, contacts);
         return true;
     }
-    // Pairs are in key order, candidates in feature order, and blocks follow both orders. So the contacts are in key
-    // order.
+    // Pairs are in key order, candidates are in feature order, and the blocks follow both orders. The contacts are
+    // therefore in key order.
     pairs.block_first.resize(static_cast<std::size_t>(blocks));
     std::size_t count = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {

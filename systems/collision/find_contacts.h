@@ -1,4 +1,5 @@
-// Contacts of this step, found from the candidates (docs/methods/contact.md 1.1, 3.1, docs/methods/collision.md 1, 4).
+// Finds the contacts of this step among the candidates (docs/methods/contact.md 1.1, 3.1, docs/methods/collision.md 1,
+// 4).
 #pragma once
 
 #include "components/contact_table.h"
@@ -9,10 +10,10 @@
 namespace skerry {
 
 /// Fills the contact table in key order. A candidate becomes a contact if its gap could close within the step of length
-/// h, with a margin for the velocity that forces can add. Crossings from an earlier attempt at this step are added
-/// unchanged. Candidates that are known to stay apart for some travel are skipped after one comparison. Impulses and
-/// slips are set to zero, regions to no_index and states to open. Returns false if no candidate has to be tested
-/// (skipped). Runs in parallel over blocks of candidates.
+/// h. A margin accounts for the velocity that forces can add. Crossings from an earlier attempt at this step are added
+/// unchanged. A candidate that cannot touch before the pair has travelled a known distance is skipped after one
+/// comparison. Impulses and slips are set to zero, regions to no_index and states to open. Returns false if no
+/// candidate has to be tested. Runs in parallel over blocks of candidates.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

@@ -20,17 +20,18 @@ namespace skerry {
 
 namespace {
 
-constexpr std::size_t checked_pairs_per_block = 512;  // number of pairs whose motion is checked by one task
+// Number of pairs for which one task compares motion and list validity.
+constexpr std::size_t checked_pairs_per_block = 512;
 
-/// Nearest points of two features at some time of the step.
+/// Nearest points of two features at some time within the step.
 struct NearestPoints {
     Stencil stencil;
-    Vec3 offset;  // from the point on the second feature to that on the first [m]
+    Vec3 offset;  // vector from the point on the second feature to the point on the first feature [m]
     Vec3 point;   // nearest point of the second feature [m]
 };
 
-// Bound of the relative rounding difference between the distances computed in lanes and by scalar code. The result of
-// the scalar code is used; the actual difference is much smaller.
+// Bound of the relative difference, due to rounding, between distances computed by vector code (eight lanes) and by
+// scalar code. The actual difference is much smaller. The result of the scalar code is used.
 constexpr Real lane_rounding = 1e-6;
 
 /// Tests candidates of two surfaces for crossings.
@@ -39,15 +40,16 @@ public:
     SurfaceCrossings(const PairCrossings& pair, std::span<const Real> asleep_until)
         : PairCrossings(pair), asleep_until_(asleep_until) {}
 
-    /// Tests the candidates that can have met by the time the travel is `travel_bound` [m]. Returns the number of
-    /// candidates tested.
+    /// Tests the candidates that can have met when the travel of the pair is `travel_bound` [m]. Returns the number of
+    /// tested candidates.
     std::uint64_t run(Range range, Real travel_bound) {
         return count_tested(asleep_until_, range, travel_bound,
                             [&](Index c) { return test(candidates[c], asleep_until_[c] - travel); });
     }
 
-    /// Tests the candidates that find_contacts has listed as near. This is complete as long as the pair closes no more
-    /// than find_contacts assumed. `reach`: distance that the pair may move [m].
+    /// Tests the candidates that find_contacts has listed as near. No crossing is missed as long as the partners
+    /// approach by no more than find_contacts assumed. `reach`: distance by which the partners may approach in the step
+    /// [m].
     std::uint64_t run(std::span<const NearCandidate> near, Real reach, Real travel_bound) {
         std::uint64_t tested = 0;
         for (const NearCandidate& at : near)
@@ -57,8 +59,8 @@ public:
     }
 
 private:
-    /// `least`: lower bound of the distance between the surfaces [m]. For round bodies, the surfaces are around the
-    /// features.
+    /// Tests one candidate. `least`: lower bound of the distance between the surfaces [m]. The surface of a round body
+    /// is at a distance of its radius from the feature, its core. Returns true if a full test was needed.
     bool test(const Candidate& candidate, Real least) {
         const FeaturePair features = features_of(candidate);
         const CandidateNodes node = nodes_of(inputs.surface, candidate);
@@ -68,7 +70,8 @@ private:
         if (!(approach > slow_fraction * least) || !can_move(node)) return false;
         for (std::size_t i = 0; i < 4; ++i) x[i] = inputs.position[node[i]];
         const Real apart = nearest(features, node, x).offset.norm();
-        // if the surface of a round body is already penetrated, only a crossing of its core is prevented
+        // If the surface of a round body already overlaps another surface, only a crossing of the core (centre or axis)
+        // of the body is prevented.
         const KeptApart kept = apart > scale.radii ? kept_of_radii(scale) : KeptApart{};
         if (!(approach > slow_fraction * (apart - kept.distance))) return false;
         const std::optional<Real> time = time_of_contact(features, x, displacement, kept);
@@ -97,13 +100,13 @@ private:
 
     void add(const Candidate& candidate, FeaturePair features, const NearestPoints& met) {
         const Real length = met.offset.norm();
-        if (!(length > 0)) return;  // the features touched before the step
+        if (!(length > 0)) return;  // The features already touched at the start of the step.
         const Vec3 normal = met.offset / length;
-        Real along = 0;  // distance of the two points along the normal at the start of the step [m]
+        Real along = 0;  // distance of the two nearest points along the normal, at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)
             along += met.stencil.weight[a] * normal.dot(inputs.position[met.stencil.node[a]]);
-        // Features that rotate by more than a right angle can have a negative distance along the normal without an
-        // overlap.
+        // If features rotate by more than a right angle, the distance along the normal can be negative although nothing
+        // overlaps.
         found.push_back(
             contact_row(*this, candidate.feature,
                         features == FeaturePair::edge_edge ? ContactKind::edge_edge : ContactKind::point_triangle,
@@ -113,14 +116,14 @@ private:
     std::span<const Real> asleep_until_;
 };
 
-/// Upper bounds of the motion of a pair in this step.
+/// Upper bounds of the relative motion of a pair in this step.
 struct PairReach {
-    Real motion;        // relative motion of both partners in this step [m]
-    Real travel_bound;  // travel of the pair at the end of this motion [m]
+    Real motion;        // relative motion of the two partners in this step [m]
+    Real travel_bound;  // travel of the pair at the end of this step [m]
 };
 
-/// Largest distance from the collider's origin to a point of the collider that can touch the body [m]. For a plane, it
-/// is the distance to the furthest node of the body.
+/// Distance from the origin of a collider to its furthest point that can touch the body [m]. For a plane, this is the
+/// distance from the origin to the furthest node of the body.
 Real collider_extent(const CollisionInputs& inputs, Index body, Index collider) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -156,8 +159,8 @@ bool is_watched(const CollisionInputs& inputs, const PairTable& pairs, Index p) 
            pair_scale(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]).contact_distance > 0;
 }
 
-/// Returns the entries of pair p in `near`, the candidates of a block that find_contacts has tested. `next`: first
-/// entry that was not passed yet.
+/// Returns the entries of `near` that belong to pair p. `near` lists the candidates of one block that could meet in
+/// this step, in pair order. `next`: index of the first entry that no earlier call has passed.
 std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, Index p, std::size_t& next) {
     while (next < near.size() && near[next].pair < p) ++next;
     const std::size_t first = next;
@@ -165,7 +168,8 @@ std::span<const NearCandidate> take_near(std::span<const NearCandidate> near, In
     return near.subspan(first, next - first);
 }
 
-/// Tests a block of candidates. Without `use_budgets` all of them, not only those that find_contacts has tested.
+/// Tests the candidates of one block for crossings. Without `use_budgets`, all candidates are tested, including those
+/// that find_contacts skipped. Returns the number of tested candidates.
 std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const StepMotion& motion,
                          const PairTable& pairs, std::size_t b, std::span<const ContactRow> known,
                          Column<ContactRow>& found) {
@@ -177,9 +181,9 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
         const Index to = p == end.pair ? end.candidate : static_cast<Index>(pairs.candidates[p].size());
         if (from >= to) continue;
         const PairReach reach = reach_of(inputs, pairs, p, motion.h);
-        // Candidates that were awake in find_contacts have a distance of at least block_nearest, so a motion below
-        // slow_fraction * block_nearest cannot make them meet. Sleeping candidates have gaps larger than their reach,
-        // as long as the motion stays within the travel_bound of find_contacts.
+        // Candidates that find_contacts has tested have a distance of at least block_nearest, so a motion below
+        // slow_fraction * block_nearest cannot make them meet. Candidates that find_contacts skipped have gaps that the
+        // motion cannot close, as long as the travel stays below the travel_bound of find_contacts.
         const bool in_front = reach.travel_bound <= pairs.travel_bound[p];
         const bool slow = reach.motion <= slow_fraction * pairs.block_nearest[b] && in_front;
         if (slow || !is_watched(inputs, pairs, p)) continue;
@@ -197,18 +201,18 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
     return tested;
 }
 
-/// True if a pair moves further in this step than its candidate list is valid for.
+/// True if a pair moves further in this step than the distance for which its candidate list is valid.
 bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
-    // A list is valid up to the travel T - 2 d0 + m, where T is the travel and d0 the displacement at the search, and m
-    // is the margin. If the list was made from the positions of this step, nothing has moved since. Then it is valid up
-    // to T + m, so 2 d0 is added.
+    // A candidate list is valid up to the travel T - 2 d0 + m. T is the travel and d0 the displacement at the time of
+    // the search, and m is the margin of the search. If the list was made from the positions of this step, nothing has
+    // moved since the search. The list is then valid up to T + m, so 2 d0 is added.
     const Real drifted =
         pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     return !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
 }
 
-/// True if any pair moves further than its candidate list is valid for, which almost never happens.
+/// True if any pair moves further than its candidate list is valid for. This happens almost never.
 bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const PairTable& pairs, Real h) {
     std::atomic<bool> any{false};
     parallel_for(executor, pairs.size(), checked_pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -218,9 +222,9 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Pa
     return any;
 }
 
-/// Requests longer candidate lists for the pairs that move further than their lists are valid for. Returns the number
-/// of requests. Pairs that get no new list are counted in `hopeless`: if their list was already made for such a motion,
-/// if the motion is not finite, or if no request is `allowed`.
+/// Requests candidate lists with a longer validity for the pairs that move further than their present lists allow.
+/// Returns the number of requests. `hopeless` counts the pairs for which no list is requested. The reason is that the
+/// list was already made for such a motion, that the motion is not finite, or that requests are not `allowed`.
 Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
@@ -243,10 +247,10 @@ void let_through(const CrossingTable& crossings, PairTable& pairs) {
         for (const ContactRow& row : found) {
             const auto at = std::lower_bound(pairs.key.begin(), pairs.key.end(), row.key.pair);
             const auto p = static_cast<std::size_t>(at - pairs.key.begin());
-            // Distances to colliders are signed, so their pairs have no state.
+            // Pairs with a collider have no state, because distances from colliders are signed.
             if (pairs.kind[p] == PairKind::collider) continue;
             pairs.state[p] = PairState::overlapping;
-            pairs.valid_until[p] = -infinity;  // an overlapping pair needs a longer list
+            pairs.valid_until[p] = -infinity;  // an overlapping pair needs a list with a larger search distance
         }
 }
 

@@ -1,5 +1,6 @@
 // Contact tests of the candidates of one pair in one step. A candidate whose gap may close within the step of length h
-// is appended to a list, in order. Each tested candidate stores the travel until which it may sleep.
+// becomes a contact; contacts are appended in candidate order. For each tested candidate, the travel of the pair up to
+// which the candidate needs no further test is stored (asleep_until).
 #pragma once
 
 #include <algorithm>
@@ -13,24 +14,25 @@
 
 namespace skerry {
 
-/// Tests the awake candidates of pair p, a body and an analytic collider, in a range of its candidate list. Without
-/// use_budgets, it tests all candidates. Returns the least distance of the tested features [m]. For features over a
-/// flat region, the distance they may move over this region counts if it is larger.
+/// Tests candidates of pair p, which consists of a body and an analytic collider. The range of the candidate list is
+/// `range`. Candidates that cannot touch in this step are skipped if use_budgets is set. Returns the least distance of
+/// the tested features [m]. If a feature is over a flat region of the collider and can move further inside this region,
+/// the latter distance is used instead.
 Real find_collider_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
-/// Variant of find_collider_contacts for a rigid cylinder against a body or an analytic collider.
+/// Variant of find_collider_contacts for a pair of a rigid cylinder and another body or an analytic collider.
 Real find_cylinder_contacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p,
                             Range range, PairTable& pairs, Column<ContactRow>& found);
 
-// Number of candidates that are checked together for sleep, without a branch for each.
+// Number of candidates whose asleep_until is compared at once, without a branch for each candidate.
 inline constexpr Index candidates_at_once = 16;
 
-// Another triangle counts as nearer to a point only if the relative difference in distance exceeds this bound of the
-// rounding.
+// Another triangle counts as nearer to a point only if the relative difference of the distances exceeds this value,
+// which bounds the rounding error.
 inline constexpr Real nearer_fraction = 1e-9;
 
-/// Bit mask of the awake candidates among the candidates_at_once candidates that start at `begin`.
+/// Bit mask of the candidates that may touch in this step, for candidates_at_once candidates from index `begin` on.
 inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
     static_assert(candidates_at_once == 2 * element_lanes);
     const Real* const until = asleep_until.data() + begin;
@@ -39,8 +41,8 @@ inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Rea
     return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
 }
 
-/// Calls `test` for each awake candidate in a range of the list of pair p, in order. Without use_budgets, `test` is
-/// called for all candidates.
+/// Calls test(c) for each candidate c in a range of the list of pair p that may touch in this step, in list order.
+/// Without use_budgets, test(c) is called for all candidates in the range.
 void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, Index p, Range range, auto&& test) {
     const std::span<const Real> asleep_until = pairs.asleep_until[p].span();
     const Real travel_bound = settings.use_budgets ? pairs.travel_bound[p] : infinity;
@@ -52,7 +54,7 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance up to which features get a closer test, if the pair closes by `closing` in this step [m].
+/// Distance up to which features must be tested closely if the partners approach by `closing` in this step [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }
@@ -61,9 +63,9 @@ inline Real near_distance(const PairScale& scale, Real closing) {
 struct PairContacts : PairData {
     const CollisionSettings& settings;
     const Real h;
-    const Real travel_base;  // [m]
-    const Real near;         // features further apart get no closer test [m]
-    const bool held_apart;   // true if neither partner can have passed through the other
+    const Real travel_base;  // travel T0 of the pair from which bounds are counted (contact_reach.h) [m]
+    const Real near;         // features at a larger distance are not tested closely [m]
+    const bool held_apart;   // true: contacts and find_crossings have kept the two surfaces apart
     std::span<Real> asleep_until;
     Column<ContactRow>& found;
 
@@ -83,7 +85,7 @@ struct PairContacts : PairData {
         return gap <= reach(h, relative_speed, settings.gravity, scale.shell);
     }
 
-    /// Greatest speed of the given nodes relative to `velocity` [m/s].
+    /// Greatest speed of the given nodes relative to the velocity `velocity` [m/s].
     Real speed_against(const Vec3& velocity, std::span<const Index> nodes) const {
         Real squared = 0;
         for (const Index n : nodes) squared = std::max(squared, (inputs.velocity[n] - velocity).squaredNorm());
@@ -99,15 +101,15 @@ struct PairContacts : PairData {
             }
     }
 
-    /// True if no other triangle near the same point is nearer than `depth`. All triangles within this distance are
-    /// candidates, side by side in the list. `squared(i)`: squared distance from the point of candidate c to the
-    /// triangle of candidate i [m^2].
+    /// True if no other triangle that is a candidate for the same point is nearer to the point than `depth`. All
+    /// triangles within this distance are candidates and adjacent in the list. `squared(i)`: squared distance from the
+    /// point of candidate c to the triangle of candidate i [m^2].
     bool is_nearest(Index c, Real depth, auto&& squared) const {
         const Real limit = depth - nearer_fraction * (depth + scale.edge);
         return none_of_point(c, [&](Index i) { return limit > 0 && squared(i) < limit * limit; });
     }
 
-    /// True if `holds(i)` is false for every other candidate i that has the same point as candidate c.
+    /// True if `holds(i)` is false for every other candidate i with the same point as candidate c.
     bool none_of_point(Index c, auto&& holds) const {
         const std::uint64_t group = point_of_feature(candidates[c].feature);
         const Index count = static_cast<Index>(candidates.size());

@@ -1,4 +1,4 @@
-// Features of one pair that would pass through each other, or enter a shape, during the motion of the step.
+// Tests whether features of one pair would pass through each other, or enter a shape, during the step.
 #pragma once
 
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace skerry {
 
-/// Tests the candidates of pair p, a body and an analytic collider, in a range that can have met when the travel is
-/// `travel_bound` [m]. Features that would cross are appended as contacts. Returns the number of candidates tested.
+/// Tests candidates of pair p, which consists of a body and an analytic collider. Candidates in `range` are tested if
+/// they can have met when the travel of the pair is `travel_bound` [m]. Features that would cross are appended to
+/// `found` as contacts. Returns the number of tested candidates.
 std::uint64_t find_collider_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, Column<ContactRow>& found);
 
-/// Variant of find_collider_crossings for a rigid cylinder against a body or an analytic collider. `known`: contacts
+/// Variant of find_collider_crossings for a rigid cylinder and another body or an analytic collider. `known`: contacts
 /// that earlier attempts at the step have found, in key order.
 std::uint64_t find_cylinder_crossings(const CollisionInputs& inputs, const StepMotion& motion, const PairTable& pairs,
                                       Index p, Range range, Real travel_bound, std::span<const ContactRow> known,
                                       Column<ContactRow>& found);
 
-/// Calls `test(c)` for the candidates c of a range that can have met when the travel is `travel_bound` [m]. `test`
-/// returns true if it needed a full test. Returns the number of full tests.
+/// Calls test(c) for those candidates c in a range that can have met when the travel of the pair is `travel_bound` [m].
+/// test(c) returns true if a full test was needed. Returns the number of full tests.
 std::uint64_t count_tested(std::span<const Real> asleep_until, Range range, Real travel_bound, auto&& test) {
     std::uint64_t tested = 0;
     for (Index c = range.begin; c < range.end; ++c)

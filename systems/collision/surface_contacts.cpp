@@ -14,16 +14,17 @@ namespace skerry {
 
 namespace {
 
-// Fraction of the distance to a point by which faces around the point may seem to lie in front of it, due to rounding.
+// Rounding tolerance of the test whether faces lie between a point and another point, as a fraction of the distance of
+// the two points.
 constexpr Real sight_slack = 1e-6;
 
-/// Tests candidates of two surfaces, one by one.
+/// Tests single candidates of two surfaces.
 class CloseTest : PairContacts {
 public:
     using PairContacts::PairContacts;
 
-    /// Tests candidate c of the list, unless it is too slow to close its distance in this step. If the surfaces may
-    /// overlap, slow candidates are tested, too, because they may already have passed through each other.
+    /// Tests candidate c of the list, unless its features move too slowly to touch in this step. If the surfaces may
+    /// overlap, slow candidates are tested, too, because their features may already have passed through each other.
     void test(Index c, const CandidateNodes& node, Real distance) {
         const FeaturePair features = features_of(candidates[c]);
         const Real speed = relative_speed(features, node);
@@ -73,10 +74,11 @@ private:
             {contact.closest.on_second, contact.normal, contact.distance, scale.contact_distance - contact.slack});
     }
 
-    /// True if a point behind a triangle is held by this triangle. No other triangle of the body may be nearer: the
-    /// point may be in front of the far side of a thin part, or be pushed out through a nearer face.
+    /// True if a point behind a triangle must be pushed out through this triangle. No other triangle of the body may be
+    /// nearer to the point. Otherwise the point may be in front of a face on the far side of a thin part, or must be
+    /// pushed out through a nearer face.
     bool is_truly_behind(Index c, Index point, const std::array<Index, 3>& corner, Real depth) const {
-        // In self-contact, the point may simply be on the other side of a thin part of the body.
+        // In self-contact, the point may belong to the body on the other side of a thin part.
         if (kind == PairKind::self && !was_far_at_rest(inputs, scale, point, corner)) return false;
         return is_nearest(c, depth, [&](Index i) {
             const auto& n = inputs.surface.triangles.node[candidates[i].second];
@@ -86,8 +88,9 @@ private:
         });
     }
 
-    /// True if a point of the other body touches the core of a round body. If an end of the core's axis is nearest,
-    /// that end is tested against the other surface instead. Two ends are tested against each other once.
+    /// True if a point of the other body touches the core (axis or centre) of a round body at this candidate. If an end
+    /// of the axis is nearest to the point, another candidate tests this end against the other surface instead. Two
+    /// ends of axes are tested against each other once.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;
@@ -100,9 +103,9 @@ private:
                                             inputs.position[b] - inputs.position[a], scale);
     }
 
-    /// True if no face of the other body lies between the core of a round body and `place`. The round body then touches
-    /// this place from behind, because the other body is inverted there. Other faces may be nearer, because a round
-    /// body lies on many faces at once.
+    /// True if no face of the other body lies between the core (axis or centre) of a round body and the point `place`
+    /// on that body. The round body then touches `place` from behind, because the other body is inverted there. Other
+    /// faces may be nearer, because a round body touches many faces at once.
     bool is_in_sight(Index c, Index core, const Vec3& place) const {
         const Vec3& from = inputs.position[core];
         const Vec3 until = from + (1 - sight_slack) * (place - from);
@@ -130,7 +133,8 @@ void SurfaceContacts::add(Index p, Range range) {
             test();
             begin = 0;
         }
-        __builtin_prefetch(list + c);  // without the prefetch, each load would wait for the previous one
+        // Without the prefetch, each load of a candidate would have to wait for the previous one.
+        __builtin_prefetch(list + c);
         row_[count_++] = c;
     });
     close_pair();
@@ -144,7 +148,7 @@ void SurfaceContacts::test() {
     count_ = pair_count_ = 0;
 }
 
-/// Lists the nodes of the candidates, and the indices of the candidates of each kind.
+/// Lists the nodes of the collected candidates, and the indices of the candidates of each kind.
 void SurfaceContacts::list_nodes() {
     for (std::size_t i = 0; i < pair_count_; ++i) {
         const Candidate* const list = pairs_.candidates[pair_[i].pair].data();
@@ -173,7 +177,8 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
     }
 }
 
-/// Puts the candidates of a pair to sleep that cannot touch at the greatest speeds of the pair, and tests the others.
+/// Sorts out the candidates of a pair that cannot touch at the greatest speeds of the two bodies, and tests the others.
+/// Stores the travel up to which each candidate needs no further test.
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;
     const PairScale scale = pair_scale_as_known(settings_, pairs_.state[p],
@@ -186,7 +191,7 @@ void SurfaceContacts::test_pair(const AwakePair& awake) {
     ByPlace<std::uint16_t> close, meeting;
     std::size_t close_count = 0, meeting_count = 0;
     Real least = least_distance_;
-    // The loop has no branches, because they would be hard to predict.
+    // The loop has no branches, because their outcome would be hard to predict.
     for (std::size_t place = awake.begin; place < awake.end; ++place) {
         const Real zone = features_of(candidate_[place]) == FeaturePair::edge_edge ? scale.edge_depth : scale.zone;
         const Real distance = distance_[place], apart = distance - scale.radii;

@@ -1,4 +1,4 @@
-// Contacts of this step between the surfaces of two bodies, or of a body with itself.
+// Contacts of this step between the surfaces of two bodies, or between parts of the surface of one body.
 #pragma once
 
 #include <array>
@@ -12,39 +12,42 @@
 
 namespace skerry {
 
-/// Tests the awake candidates of several pairs together, eight at a time, because most pairs have few candidates.
-/// Candidates whose gap may close within the step of length h are appended to `found`, in order. Candidates that could
-/// meet within the step are appended to `near`. Each tested candidate stores the travel until which it may sleep.
+/// Tests the candidates of several pairs together, because most pairs have few candidates; distances are computed for
+/// eight candidates at a time. Candidates whose gap may close within the step of length h are appended to `found` as
+/// contacts, in list order. Candidates that could meet within the step are appended to `near`. For each tested
+/// candidate, the travel of the pair up to which the candidate needs no further test is stored (asleep_until).
 class SurfaceContacts {
 public:
     SurfaceContacts(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, PairTable& pairs,
                     Column<ContactRow>& found, Column<NearCandidate>& near)
         : inputs_(inputs), settings_(settings), h_(h), pairs_(pairs), found_(found), near_(near) {}
 
-    /// Collects the awake candidates in a range of the list of pair p. Without use_budgets, it collects all candidates.
-    /// Neither partner may be a cylinder.
+    /// Collects the candidates in a range of the list of pair p that may touch in this step. Without use_budgets, all
+    /// candidates in the range are collected. Neither partner may be a cylinder.
     void add(Index p, Range range);
-    /// Tests the candidates that were collected.
+    /// Tests the collected candidates.
     void test();
 
-    /// Least distance of all candidates tested [m].
+    /// Least distance of all tested candidates [m].
     Real least_distance() const { return least_distance_; }
 
 private:
-    static constexpr std::size_t most_candidates = 256;  // small enough for their data to stay in the first-level cache
+    // Small enough for the data of all collected candidates to fit into the first-level cache.
+    static constexpr std::size_t most_candidates = 256;
 
     template <class T>
     using ByPlace = std::array<T, most_candidates>;
 
-    /// Indices of the candidates of one kind (FeaturePair), ascending.
+    /// Indices of the collected candidates of one kind (FeaturePair), ascending.
     struct Places {
         std::size_t count = 0;
         ByPlace<std::uint16_t> place;
     };
-    /// The awake candidates of one pair, in the order of its list: points against triangles, then edges against edges.
+    /// The collected candidates of one pair, in the order of its list. Candidates of points and triangles precede
+    /// candidates of two edges.
     struct AwakePair {
         Index pair;
-        std::size_t begin, end;  // range of indices of the collected candidates
+        std::size_t begin, end;  // range of indices of these candidates among all collected candidates
     };
 
     void list_nodes();
@@ -60,9 +63,9 @@ private:
     Real least_distance_ = infinity;
 
     std::size_t count_ = 0, pair_count_ = 0;
-    ByPlace<AwakePair> pair_;       // each pair has at least one collected candidate
-    ByPlace<Index> row_;            // index in the candidate list of the pair
-    ByPlace<Candidate> candidate_;  // copies
+    ByPlace<AwakePair> pair_;       // pairs with at least one collected candidate
+    ByPlace<Index> row_;            // index of the collected candidate in the list of its pair
+    ByPlace<Candidate> candidate_;  // copy of the collected candidate
     ByPlace<CandidateNodes> node_;
     ByPlace<Real> distance_;        // [m]
     std::array<Places, 2> places_;  // by FeaturePair

@@ -8,14 +8,15 @@ namespace skerry {
 
 namespace {
 
-// A triangle whose height is below this fraction of its longest edge counts as that edge. At a fraction of 1e-8 the
-// sums below lose all digits.
+// A triangle whose height is below this fraction of its longest edge is treated as this edge. At a fraction of 1e-8,
+// the sub-areas computed below would lose all digits.
 constexpr Real min_height_fraction = 1e-6;
 
-// Squared sine of the angle between two segments below which they have no well-defined crossing.
+// Squared sine of the angle between two segments below which the position of their crossing is not well defined.
 constexpr Real min_sine_squared = 1e-6;
 
-// Squared sine of the angle between two segments below which the denominator of the crossing is rounding noise.
+// Squared sine of the angle between two segments below which the denominator in the formula of the crossing is only a
+// rounding error.
 constexpr Real noise_sine_squared = 1e-14;
 
 Real clamp01(Real x) {
@@ -26,7 +27,7 @@ PointTriangle at(const Vec3& p, const Vec3& nearest, TriangleRegion region, Real
     return {{w0, w1, w2}, region, nearest, (p - nearest).squaredNorm()};
 }
 
-/// Nearest point on the longest edge of a degenerate triangle. The edge stands for the triangle.
+/// Nearest point on the longest edge of a degenerate triangle. This edge replaces the triangle.
 PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec3, 3>& corner) {
     constexpr std::array<TriangleRegion, 3> edge_region{TriangleRegion::edge01, TriangleRegion::edge12,
                                                         TriangleRegion::edge20};
@@ -56,11 +57,12 @@ PointTriangle closest_point_on_flat_triangle(const Vec3& p, const std::array<Vec
 PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const Real longest_squared = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
-    // 2 area = height * longest edge. Values that are not finite take this branch, too.
+    // Twice the area equals height times longest edge. The condition is written so that it is also true for NaN.
     if (!(ab.cross(ac).squaredNorm() > min_height_fraction * min_height_fraction * longest_squared * longest_squared))
         return closest_point_on_flat_triangle(p, {a, b, c});
 
-    // Method of Ericson 5.1.5: signed projections on the edges, then signed sub-areas.
+    // Method of Ericson 5.1.5: the signs of projections on the edges and of sub-areas tell which part of the triangle
+    // is nearest.
     const Real d1 = ab.dot(ap), d2 = ac.dot(ap);
     if (d1 <= 0 && d2 <= 0) return at(p, a, TriangleRegion::vertex0, 1, 0, 0);
     const Real d3 = ab.dot(bp), d4 = ac.dot(bp);
@@ -83,8 +85,8 @@ PointTriangle closest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3
         return at(p, b + s * (c - b), TriangleRegion::edge12, 0, 1 - s, s);
     }
     const Real scale = 1 / (va + vb + vc);
-    // Beside an edge, rounding can make a weight negative. Such weights are set to zero, because the sign of a weight
-    // tells to which body a node belongs.
+    // Near an edge, rounding errors can make a weight negative. Such weights are set to zero, because the sign of a
+    // weight tells to which body the node belongs.
     const Real v = std::max(Real(0), vb * scale), w = std::max(Real(0), vc * scale);
     return at(p, a + v * ab + w * ac, TriangleRegion::face, std::max(Real(0), 1 - v - w), v, w);
 }
@@ -93,8 +95,8 @@ SegmentSegment closest_points_of_segments(const Vec3& a0, const Vec3& a1, const 
     const Vec3 ea = a1 - a0, eb = b1 - b0, r = a0 - b0;
     const Real a = ea.squaredNorm(), e = eb.squaredNorm(), b = ea.dot(eb), c = ea.dot(r), f = eb.dot(r);
     const Real denominator = a * e - b * b;  // |ea x eb|^2
-    // Method of Ericson 5.1.9: the crossing of the lines is clamped to the first segment, then to the second, then
-    // again to the first.
+    // Method of Ericson 5.1.9: the parameter of the crossing is clamped on the first segment, then on the second
+    // segment, then on the first segment again.
     Real s = denominator > noise_sine_squared * a * e ? clamp01((b * f - c * e) / denominator) : 0;
     Real t = e > 0 ? (b * s + f) / e : 0;
     if (t < 0 || !(e > 0)) {

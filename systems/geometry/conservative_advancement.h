@@ -7,12 +7,14 @@
 
 namespace skerry {
 
-/// Time in [0, 1] at which a gap has fallen to `near` [m], or nothing if it does not. `gap`: that at the start.
-/// `free_time(gap, time)`: time after `time` in which certainly nothing meets, infinite without motion. `gap_at(time)`:
-/// gap at a later time. After some thousand rounds the search gives up and returns the time reached: shapes that need
-/// more roll over each other at a distance too small to be resolved in a step.
+/// Time in [0, 1] at which the gap between two shapes has fallen to `near` [m]; no value if the gap stays larger.
+/// `gap`: gap at time 0 [m]. `free_time(gap, time)`: duration after `time` in which the shapes certainly do not meet;
+/// infinite without motion. `gap_at(time)`: gap at a later time. The search gives up after 4096 iterations and returns
+/// the time reached. Shapes that need more iterations roll over each other at a distance too small to be resolved in a
+/// step.
 std::optional<Real> advance_conservatively(Real gap, Real near, auto&& free_time, auto&& gap_at) {
-    constexpr Real part = 0.9;  // of the free time. The rest keeps the shapes apart in spite of rounding.
+    // Fraction of the free time used per iteration; the remainder keeps the shapes apart in spite of rounding errors.
+    constexpr Real part = 0.9;
     constexpr int most_rounds = 4096;
     Real time = 0;
     for (int round = 0; round < most_rounds && gap > near; ++round) {

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Rotates the body about one of its principal axes, at the rate given by the angular momentum about that axis. The
-/// rotation conserves this component and, in the world frame, the whole angular momentum.
+/// Rotates a body about one of its principal axes with the angular velocity given by the angular momentum about this
+/// axis. The rotation conserves this component of the angular momentum and, in the world frame, the complete vector.
 inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat3& rotation, Vec3& own_momentum) {
     const Real angle = seconds * own_momentum[axis] / moments[axis];
     if (angle == 0) return;
@@ -22,10 +22,11 @@ inline void turn_about(Eigen::Index axis, const Vec3& moments, Real seconds, Mat
     own_momentum[second] = cosine * q - sine * p;
 }
 
-/// Rotation (principal frame to world) after `seconds` without torque. `moments`: moments of inertia about the
-/// principal axes [kg m^2]. The motion is a symmetric composition of five rotations about these axes. Each is the exact
-/// motion of one part of the kinetic energy (Dullweber, Leimkuhler, McLachlan 1997). The method is symplectic,
-/// reversible and of order 2, and it conserves the angular momentum.
+/// Orientation (principal frame to world) of a body after a rotation without torque for `seconds`. `moments`: moments
+/// of inertia about the principal axes [kg m^2]. The motion is approximated by a symmetric composition of five
+/// rotations about principal axes. Each rotation is the exact motion for one of the three terms of the kinetic energy
+/// (Dullweber, Leimkuhler, McLachlan 1997). The method is symplectic, time-reversible and of order 2, and it conserves
+/// the angular momentum.
 inline Mat3 turned_freely(const Mat3& rotation, const Vec3& moments, const Vec3& angular_momentum, Real seconds) {
     Mat3 turned = rotation;
     Vec3 own = rotation.transpose() * angular_momentum;

@@ -1,4 +1,4 @@
-// Masks from comparisons of eight lanes, and operations on them.
+// Masks that result from comparisons of eight lanes, and operations on such masks.
 #pragma once
 
 #include <bit>
@@ -9,17 +9,19 @@
 
 namespace skerry {
 
-/// Result of comparing two Real8. All bits of a lane are set where the comparison holds, and no bit elsewhere.
+/// Result of comparing two Real8. In each lane, all bits are set if the comparison is true, and no bit is set
+/// otherwise.
 typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 
-/// Bitwise or of all lanes. It combines halves of the register, because a loop over the lanes would go through memory.
+/// Bitwise or of all lanes. The halves of the register are combined, because a loop over the lanes would store the
+/// register in memory.
 [[gnu::always_inline]] inline std::int64_t any_bits(const LaneBits& mask) {
     const LaneBits four = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3),
                    two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5);
     return two[0] | two[1];
 }
 
-/// Integer whose bit l is set if lane l of the mask is set. It takes one instruction where AVX-512DQ is available.
+/// Integer in which bit l is set if lane l of the mask is set. The conversion takes one instruction with AVX-512DQ.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
 #if defined(__AVX512DQ__)
     typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));
@@ -30,7 +32,7 @@ typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 #endif
 }
 
-/// Calls visit(lane) for each set bit, in ascending order.
+/// Calls visit(l) for each set bit l, in ascending order.
 void for_each_lane(unsigned bits, auto&& visit) {
     for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }

@@ -1,4 +1,5 @@
-// Vectors whose components are registers. The same source works on one row (T = Real) and on several rows side by side.
+// Vectors whose components are registers. Functions of these vectors work on one row (T = Real) or on several rows side
+// by side.
 #pragma once
 
 #include <cmath>
@@ -20,8 +21,8 @@ requires(lanes_of<T> > 1) [[gnu::always_inline]] inline T square_root(const T& x
     return load_part<T>(root, 0);
 }
 
-/// A vector of three T. Its components are named, not indexed, so that they stay in registers at every optimisation
-/// level.
+/// A vector with three components of type T. The components are named members instead of an array, so that they stay in
+/// registers at every optimisation level.
 template <class T>
 struct LaneVec3 {
     T x, y, z;

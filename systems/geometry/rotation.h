@@ -1,4 +1,4 @@
-// Rotation vectors: axis times angle.
+// Rotation vectors: direction of the axis times rotation angle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,26 +9,26 @@
 
 namespace skerry {
 
-/// Matrix of the rotation about the axis `rotation` by the angle |rotation| [rad].
+/// Matrix of the rotation about the direction of `rotation` by the angle |rotation| [rad].
 inline Mat3 rotation_matrix(const Vec3& rotation) {
     const Real angle = rotation.norm();
     if (angle == 0) return Mat3::Identity();
     return Eigen::AngleAxis<Real>(angle, rotation / angle).toRotationMatrix();
 }
 
-/// Rotation vector of a rotation matrix: axis times angle, at most pi [rad].
+/// Rotation vector of a rotation matrix: unit axis times angle, with an angle of at most pi [rad].
 inline Vec3 rotation_vector(const Mat3& rotation) {
     const Eigen::AngleAxis<Real> turn(rotation);
     return turn.axis() * turn.angle();
 }
 
-/// The rotation vector nearest to `to` among all vectors of the same rotation as `rotation`. These vectors differ by
-/// whole revolutions.
+/// Among all rotation vectors of the rotation described by `rotation`, returns the vector nearest to `to`. These
+/// vectors differ by multiples of a full revolution.
 inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        const Real length = to.norm();  // identity, or whole revolutions about the axis of `to`
+        const Real length = to.norm();  // the rotation is the identity, or full revolutions about the axis of `to`
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }
     const Vec3 axis = rotation / angle;

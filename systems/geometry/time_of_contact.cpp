@@ -10,15 +10,16 @@ namespace skerry {
 
 namespace {
 
-/// Vector between the nearest points of two features, from the second feature to the first [m].
+/// Vector from the nearest point of the second feature to the nearest point of the first feature [m].
 Vec3 offset_between(FeaturePair kind, const FourPoints& x) {
     if (kind == FeaturePair::point_triangle) return x[0] - closest_point_on_triangle(x[0], x[1], x[2], x[3]).nearest;
     const SegmentSegment nearest = closest_points_of_segments(x[0], x[1], x[2], x[3]);
     return nearest.on_first - nearest.on_second;
 }
 
-/// Fraction of `displacement` until which a slab of thickness `kept`, perpendicular to `normal`, separates the two
-/// features. Until then no two points of the features are nearer than `kept`. This holds for any unit normal.
+/// Fraction of `displacement` up to which a slab of thickness `kept`, perpendicular to the unit vector `normal`,
+/// separates the two features. Up to this fraction, the distance between the features is at least `kept`. This is true
+/// for any unit vector.
 Real time_of_slab(FeaturePair kind, const FourPoints& x, const FourPoints& displacement, const Vec3& normal,
                   Real kept) {
     const std::size_t own = kind == FeaturePair::point_triangle ? 1 : 2;

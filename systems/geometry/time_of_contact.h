@@ -1,4 +1,4 @@
-// Time at which features that move in straight lines meet (docs/methods/collision.md 7.2).
+// Time at which two features meet whose points move along straight lines (docs/methods/collision.md 7.2).
 #pragma once
 
 #include <array>
@@ -8,32 +8,35 @@
 
 namespace skerry {
 
-/// Kinds of pairs of features with four points: a point and the three corners of a triangle, or the ends of two edges.
+/// Kinds of feature pairs with four points: a point and the three corners of a triangle, or the two ends of each of two
+/// edges.
 enum class FeaturePair : std::uint8_t { point_triangle, edge_edge };
 
 using FourPoints = std::array<Vec3, 4>;  // [m]
 
-/// A search ends when the distance of the features is below this fraction of their distance at the start.
+/// A search for the time of contact ends when the gap between two features has fallen below this fraction of the gap at
+/// the start.
 inline constexpr Real contact_slack = 0.1;
 
-/// Upper bound of the decrease in distance between any two points of the two features while their four points move by
-/// `displacement` [m]. Motion that all points share does not count.
+/// Upper bound of the decrease in distance between a point of the first feature and a point of the second feature,
+/// while the four points that define the features move by `displacement` [m]. Motion that is common to all four points
+/// does not count.
 Real greatest_approach(FeaturePair kind, const FourPoints& displacement);
 
-/// Distance that two features keep, because they are the cores of round bodies.
+/// Distance that must remain between two features, because they are the cores (centres or axes) of round bodies.
 struct KeptApart {
     Real distance = 0;  // sum of the radii of the round bodies [m]
-    // Largest gap beyond `distance` at which the features count as in contact [m].
+    // The features count as in contact if their gap, the distance beyond `distance`, is at most this value [m].
     Real near = infinity;
 };
 
-/// Time in [0, 1] at which two features come near contact, or nothing if they do not. Their points move in straight
-/// lines from `position` by `displacement`. Uses additive conservative advancement (Li, Kaufman, Jiang 2021,
-/// Codimensional IPC, section 5). An iteration also advances as long as a slab separates the features, so that sliding
-/// takes few iterations. The time is never later than the contact. At that time the gap is at most `contact_slack` of
-/// the gap at the start, and at most kept.near. A gap is the distance minus kept.distance. The time is 0 if the
-/// features touch at the start. After some thousand iterations the search gives up and reports contact at the time
-/// reached.
+/// Time in [0, 1] at which two features are nearly in contact; no value if they stay apart. The points of the features
+/// move in straight lines from `position` by `displacement`. The gap is the distance between the features minus
+/// kept.distance. At the returned time the gap is at most `contact_slack` times the gap at the start and at most
+/// kept.near, but the features have not met yet. The time is 0 if the features touch at the start. The method is
+/// additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In addition, an iteration
+/// advances as long as a slab separates the features, so that sliding features need few iterations. After some thousand
+/// iterations the search gives up and returns the time reached as time of contact.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept = {});
 

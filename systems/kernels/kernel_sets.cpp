@@ -3,8 +3,8 @@
 #include "systems/kernels/kernels.h"
 
 extern "C" const skerry::Kernels skerry_kernels_base;
-// The build generates the declarations of the tables of all other instruction sets, and the entries for these tables
-// below.
+// The build generates two include files. kernel_tables.inc declares the kernel tables of all other instruction sets.
+// kernel_sets.inc adds an entry for each of these tables to the array below.
 #include <kernel_tables.inc>
 
 namespace skerry {

@@ -1,5 +1,6 @@
-// Kernels: the functions that take nearly all of the time of a step, compiled once for each instruction set of a build
-// (docs/decisions/0018-instruction-sets.md). The engine chooses one table of kernels and calls them through it.
+// Kernels: the functions in which a step spends nearly all of its time. They are compiled once for each instruction set
+// of a build (docs/decisions/0018-instruction-sets.md). The engine selects one table of kernels and calls the kernels
+// through it.
 #pragma once
 
 #include <span>
@@ -27,10 +28,10 @@
 
 namespace skerry {
 
-/// Table of kernels compiled for one instruction set. Each function is documented in the header that declares it. The
-/// results are bitwise equal for all instruction sets.
+/// Table of the kernels for one instruction set. Each function is documented in the header that declares it. Results
+/// are bitwise equal for all instruction sets.
 struct Kernels {
-    const char* instruction_set;  // name of the instruction set in the compiler, such as x86-64-v3
+    const char* instruction_set;  // name of the instruction set for the compiler, for example x86-64-v3
     decltype(&skerry::find_candidates) find_candidates;
     decltype(&skerry::find_contacts) find_contacts;
     decltype(&skerry::find_crossings) find_crossings;
@@ -63,14 +64,14 @@ struct Kernels {
     decltype(&skerry::solve_regions) solve_regions;
 };
 
-/// The kernels of an instruction set, and whether this processor and its operating system can run them.
+/// The kernels for one instruction set. `runs`: whether this processor and its operating system can run them.
 struct KernelSet {
     const Kernels* kernels;
     bool runs;
 };
 
-/// All compiled sets of kernels; the set that demands the newest processor is last. The first set always runs, because
-/// it uses the instruction set of all other code.
+/// The kernel tables of all instruction sets of the build, ascending by the demands on the processor. The first table
+/// can always be used, because its instruction set is that of all other code.
 std::span<const KernelSet> kernel_sets();
 
 }  // namespace skerry

@@ -1,8 +1,9 @@
-// Table of kernels, compiled once for each instruction set. SKERRY_KERNELS is the name of the table, SKERRY_KERNELS_FOR
-// the name of the instruction set.
+// Table of the kernels for one instruction set. The build compiles this file once per instruction set. SKERRY_KERNELS
+// is the name of the table, SKERRY_KERNELS_FOR the name of the instruction set.
 #include "systems/kernels/kernels.h"
 
-// Name without C++ mangling. It is the only symbol that the objects of an instruction set export (cmake/close.cmake).
+// The table has a name without C++ mangling. This name is the only symbol that the objects of an instruction set export
+// (cmake/close.cmake).
 extern "C" {
 extern const skerry::Kernels SKERRY_KERNELS;
 

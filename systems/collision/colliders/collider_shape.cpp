@@ -11,7 +11,7 @@ namespace skerry {
 
 namespace {
 
-// Number of tested points of a rim: one that depends on the face, and four fixed points at right angles.
+// Number of test points on a rim: one point that depends on the face, and four fixed points at right angles.
 constexpr Index points_of_rim = 5;
 
 struct Rim {
@@ -19,8 +19,8 @@ struct Rim {
     Real z;       // [m]
 };
 
-/// Returns one of the two convex rims of a cylinder or bucket. The inner rim of a bucket is not convex: only edges of
-/// bodies can touch it.
+/// Returns one of the two convex rims of a cylinder or bucket. The inner rim of a bucket is not convex, so only edges
+/// of bodies can touch it.
 Rim rim_of(const ColliderGeometry& geometry, Index rim) {
     const Vec3& size = geometry.size;
     if (geometry.shape == ColliderShape::bucket) return {size[0] + size[2], rim == 0 ? size[1] : -size[2]};
@@ -34,8 +34,9 @@ Vec3 rim_direction(Index point, const Vec3& normal) {
     return length > 0 ? Vec3(flat / length) : Vec3(Vec3::UnitX());
 }
 
-/// Distance a point can move while a given flat side of the shape stays nearest to it [m]. The point is `beside` from
-/// the border of the side and `above` the side. The opposite side is `thickness` behind this side.
+/// Distance that a point can move while a given flat side of the shape remains the nearest side [m]. `beside`: distance
+/// of the point from the border of the side, measured along the side. `above`: height above the side. `thickness`:
+/// distance of the opposite side.
 Real within_side(Real beside, Real above, Real thickness) {
     return std::min({beside, (beside + above) * std::sqrt(Real(0.5)), above + thickness / 2});
 }
@@ -180,7 +181,7 @@ FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalF
     const Real height = contact.normal.dot(contact.point.at - face[0]);
     contact.above = length > 0 && contact.closest.region == TriangleRegion::face;
     contact.distance = height - contact.point.radius;
-    // The point of a rim that depends on the face moves around the rim as the face rotates.
+    // The rim point that depends on the face moves around the rim while the face rotates.
     contact.nearest = collider_point_follows(geometry.shape, k)
                           ? hull_distance(geometry, face)
                           : std::sqrt(contact.closest.distance_squared) - contact.point.radius;

@@ -10,29 +10,29 @@ namespace skerry {
 
 namespace {
 
-// A derivative of the distance along the edge below this value counts as zero. If the derivative had this value on the
-// whole edge, the distance would change by a hundredth of the default contact distance, which is 0.02 edge lengths.
+// The derivative of the distance along the edge counts as zero if it is below this value. With such a derivative on the
+// complete edge, the distance would change by a hundredth of the default contact distance, which is 0.02 edge lengths.
 constexpr Real flat_slope = 2e-4;
 
-// Where the derivative of the distance along the edge exceeds this value, the edge cannot touch unless it rotates.
+// Where the derivative of the distance along the edge exceeds this value, the edge can only touch after it has rotated.
 constexpr Real steep_slope = 0.05;
 
 // Accuracy of the position of a minimum or of an end of a flat stretch, as a fraction of the edge length.
 constexpr Real place_tolerance = 1e-10;
 
-// Two points on an edge count as one if they are nearer to each other than this fraction of the edge length.
+// Two points on an edge are merged if their distance is below this fraction of the edge length.
 constexpr Real shortest_stretch = 0.1;
 
-// The wall of a bucket is not convex: the distance along an edge across its rim has two minima. So the edge is searched
-// in this many intervals.
+// Number of intervals in which an edge near the wall of a bucket is searched. The wall is not convex: along an edge
+// across its rim, the distance has two minima.
 constexpr int wall_intervals = 16;
 
-/// An interval of edge parameters that contains the parameter to be found.
+/// An interval of the parameter along the edge. The interval contains the parameter to be found.
 struct Bracket {
     Real low, high;
 };
 
-/// Distance between an edge and a collider part, as a function of the parameter s along the edge (0 to 1).
+/// Distance between an edge and a part of a collider, as a function of the parameter s along the edge, from 0 to 1.
 class Along {
 public:
     Along(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b)
@@ -40,12 +40,12 @@ public:
 
     Real length() const { return length_; }
     SurfacePoint at(Real s) const { return local_distance(geometry_, a_ + s * edge_, part_); }
-    /// Derivative of the distance with respect to the length along the edge, from -1 to 1.
+    /// Derivative of the distance with respect to the arc length along the edge, from -1 to 1.
     Real slope(const SurfacePoint& found) const { return found.normal.dot(edge_) / length_; }
     Real slope(Real s) const { return slope(at(s)); }
 
-    /// Returns the minimum of the distance in an interval. If the distance has a kink there, the normals of both sides
-    /// are combined into a normal without component along the edge.
+    /// Returns the minimum of the distance in an interval. If the distance has a kink in the interval, the normals on
+    /// both sides of the kink are combined into a normal perpendicular to the edge.
     EdgePoint minimum(Real low, Real high) const {
         EdgePoint found{0, 0.5 * (low + high), at(0.5 * (low + high))};
         const SurfacePoint before = at(low), after = at(high);
@@ -57,23 +57,24 @@ public:
         return found;
     }
 
-    /// Visits the parameters at which the edge crosses the planes of the sides of a box. Between these parameters, the
-    /// same sides stay nearest.
+    /// Calls visit(s) for the parameters s at which the edge crosses the planes of the sides of a box. Between two such
+    /// parameters, the nearest feature of the box stays the same.
     void for_each_kink(auto&& visit) const {
         if (geometry_.shape != ColliderShape::box) return;
         for (int i = 0; i < 3; ++i)
             for (const Real side : {-geometry_.size[i], geometry_.size[i]}) visit((side - a_[i]) / edge_[i]);
     }
 
-    /// Parameter s at which the derivative of the distance has a given value, in closed form. For a box, it assumes
-    /// that the nearest corner, edge or side is the one at s = `near`. Outside of the shape, the distance along the
-    /// edge is f(s) = sqrt(q^2 (s - s0)^2 + f0^2), where f0 is the minimum and s0 its parameter. The derivative is q^2
-    /// (s - s0) / (length f). The result is not a number if the derivative never has this value or if the shape has no
-    /// closed form.
+    /// Parameter s at which the derivative of the distance has the value `slope`, in closed form. For a box, the
+    /// formula is valid as long as the nearest corner, edge or side of the box is the same as at s = `near`. Outside of
+    /// the shape, the distance is f(s) = sqrt(q^2 (s - s0)^2 + f0^2), where f0 is its minimum and s0 the parameter of
+    /// the minimum. The derivative is q^2 (s - s0) / (length f). The result is NaN if the derivative never has this
+    /// value or if the shape has no closed form.
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
-        Vec3 from = a_, along = edge_;  // edge relative to the nearest corner, edge or side of the shape
+        // Edge vector without the components in which the nearest corner, edge or side extends.
+        Vec3 from = a_, along = edge_;
         for (int i = 0; i < 3 && is_box; ++i) {
             const Real at = a_[i] + near * edge_[i];
             const bool beyond = std::abs(at) > geometry_.size[i];
@@ -91,13 +92,13 @@ private:
     const Real length_;
 };
 
-/// Finds the parameter along an edge at which the derivative of the distance passes a given value. It first tests kinks
-/// and the prediction of a closed form, then uses the Illinois variant of regula falsi. Every fourth iteration bisects
-/// the interval, which also finds kinks and stretches with constant derivative.
+/// Finds the parameter along an edge at which the derivative of the distance passes a given value. The search first
+/// tests kinks and the result of the closed form, then uses the Illinois variant of regula falsi. Every fourth
+/// iteration bisects the interval, which also finds kinks and stretches with constant derivative.
 class PlaceOfSlope {
 public:
-    /// `below` and `above`: derivatives at the two ends of the interval. `itself_is_below`: true if a derivative equal
-    /// to `slope` counts as below it.
+    /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
+    /// derivative equal to `slope` counts as below `slope`.
     PlaceOfSlope(const Along& along, Bracket on, Real below, Real above, Real slope, bool itself_is_below)
         : along_(along),
           on_(on),
@@ -123,10 +124,10 @@ public:
     }
 
 private:
-    // Step past a position that is approached from one side only.
+    // Distance of test parameters from a predicted position, so that they enclose the position.
     static constexpr Real least_step = 0.45 * place_tolerance;
 
-    /// Evaluates the derivative at `s` and shrinks the interval, unless `s` is outside of it.
+    /// Evaluates the derivative at `s` and shrinks the interval. Does nothing if `s` is outside of the interval.
     void test(Real s) {
         if (!(s > on_.low && s < on_.high)) return;
         const Real value = along_.slope(s) - slope_;
@@ -147,7 +148,7 @@ private:
     int same_side_ = 0;
 };
 
-/// Finds the possible contact points in one interval in which the derivative of the distance increases.
+/// Finds the possible contact points in an interval in which the derivative of the distance increases.
 class Stretch {
 public:
     Stretch(const Along& along, Bracket interval, Index first_number, EdgeContact& contact)
@@ -176,9 +177,9 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// first_place: position behind which the distance no longer falls by more than `slope`. last_place: position
-    /// behind which the distance rises by more than `slope`. Both are on the flatter side of a kink, whose normal is
-    /// valid along the stretch.
+    /// first_place: parameter from which on the distance falls by no more than `slope` per length. last_place:
+    /// parameter up to which the distance rises by no more than `slope` per length. At a kink, both parameters are on
+    /// the flatter side, whose normal is valid along the flat stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }
@@ -198,8 +199,8 @@ private:
             add(1, last);
         }
     }
-    /// Adds a point only if the derivative at shortest_stretch from the other point is not too steep. One evaluation
-    /// shows this, because the derivative increases along the edge.
+    /// add_before and add_behind: add a point only if the derivative at the distance shortest_stretch from the other
+    /// point is not too steep. One evaluation shows this, because the derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
@@ -224,8 +225,8 @@ private:
     EdgeContact& contact_;
 };
 
-/// Calls `visit(low, high)` for each interval in which the derivative passes one of the values -steep_slope,
-/// -flat_slope, flat_slope or steep_slope. Returns a lower bound of the distance of the edge (edge_distance).
+/// Calls visit(low, high) for each interval in which the derivative passes one of the values -steep_slope, -flat_slope,
+/// flat_slope or steep_slope. Returns a lower bound of the distance between the edge and the part (edge_distance).
 Real scan(const Along& along, bool convex, auto&& visit) {
     const int intervals = convex ? 1 : wall_intervals;
     Real nearest = infinity, low = 0;
@@ -234,8 +235,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const Real high = static_cast<Real>(i) / intervals;
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
-        // For a convex part, the tangents at both ends bound the distance. For any other part, the length of the
-        // interval bounds it.
+        // For a convex part, the tangents of the distance at both ends of the interval give a lower bound. For other
+        // parts, the length of the interval gives a lower bound.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

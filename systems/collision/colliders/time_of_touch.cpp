@@ -16,15 +16,15 @@ namespace {
 
 using Nodes = std::array<Vec3, 3>;
 
-// Accuracy of the position of the least distance along an edge, as a fraction of the edge length.
+// Accuracy of the position along an edge at which the distance is least, as a fraction of the edge length.
 constexpr Real least_place_tolerance = 1e-12;
 
 Touch of_surface(const SurfacePoint& on, Real distance, const std::array<Real, 3>& weight) {
     return {distance, weight, on.point, on.normal};
 }
 
-/// Nearest point of an edge to a convex part. The distance along the edge is convex, so it is least where its
-/// derivative changes sign. Outside of the part the distance has no kinks, and only there touches are searched.
+/// Nearest points of an edge and a convex collider part. The distance along the edge is a convex function, so it is
+/// least where its derivative changes sign. Outside of the part, where touches are searched, the distance has no kinks.
 Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Nodes& end) {
     const Vec3 edge = end[1] - end[0];
     const auto at = [&](Real s) { return local_distance(geometry, end[0] + s * edge, part); };
@@ -46,7 +46,7 @@ Touch nearest_on_convex(const ColliderGeometry& geometry, Index part, const Node
     return of_surface(last, last.distance, {1 - high, high, 0});
 }
 
-/// The wall of a bucket. It fills the range between two radii and between two heights.
+/// The wall of a bucket: a hollow cylinder between an inner and an outer radius.
 class Wall {
 public:
     Wall(const ColliderGeometry& geometry, const Nodes& end)
@@ -61,8 +61,8 @@ public:
             across > 0 ? std::clamp(-start_.head<2>().dot(edge_.head<2>()) / across, Real(0), Real(1)) : 0;
     }
 
-    /// Lower bound of the distance between the wall and a stretch of the edge, from the ranges of height and radius on
-    /// the stretch [m]. `low`, `high`: ends of the stretch as fractions of the edge.
+    /// Lower bound of the distance between the wall and a stretch of the edge. It follows from the ranges of height and
+    /// radius on the stretch [m]. `low`, `high`: ends of the stretch as fractions of the edge.
     Real bound(Real low, Real high) const {
         const Real r_low = from_axis(low), r_high = from_axis(high), r_most = std::max(r_low, r_high),
                    r_least = from_axis(std::clamp(nearest_to_axis_, low, high)), z_low = height(low),
@@ -81,9 +81,9 @@ private:
     Real nearest_to_axis_;
 };
 
-/// Nearest point of an edge to the wall of a bucket, by branch and bound, because the distance may have several minima.
-/// The returned distance is a lower bound, and at least half of the distance at the returned point. If the search
-/// reaches its limit of samples, it is at least a quarter. Both distances are reduced by `kept` [m].
+/// Nearest points of an edge and the wall of a bucket, found by branch and bound, because the distance may have several
+/// minima. The returned distance is a lower bound; it is at least half of the distance at the returned point, or a
+/// quarter if the search reaches its limit of samples. `kept` is subtracted from both distances [m].
 Touch nearest_on_wall(const ColliderGeometry& geometry, Index part, const Nodes& end, Real kept) {
     constexpr int most_samples = 1024;
     const Wall wall(geometry, end);
@@ -130,8 +130,8 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
 }
 
 /// Nearest points of a face and the disc inside a rim. The interior of the face is touched first at the rim point that
-/// is furthest towards the plane of the face, from either side. Otherwise an edge of the face is nearest, unless the
-/// rim has passed through the face.
+/// is furthest in the direction of the face, from either side of the face. If this point is beside the face, an edge of
+/// the face is nearest, unless the rim has passed through the face.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
@@ -166,7 +166,7 @@ bool touches_within(const TouchingFeature& feature, const Touch& touch, const No
            touch.normal.dot((nodes[1] - nodes[0]).cross(nodes[2] - nodes[0])) > 0;
 }
 
-/// Motion of a feature relative to the collider. Times are fractions of the step.
+/// Motion of a feature of a body relative to a collider. Times are fractions of the step.
 class RelativeMotion {
 public:
     RelativeMotion(const RigidMotion& motion, Real h, const TouchingFeature& feature)
@@ -179,7 +179,7 @@ public:
         return local;
     }
 
-    /// Upper bound of the speeds of all nodes of the feature [m per step].
+    /// Upper bound of the speeds of all nodes of the feature relative to the collider [m per step].
     Real greatest_speed() const {
         Real greatest = 0;
         for (std::size_t i = 0; i < feature_.nodes(); ++i)
@@ -187,8 +187,8 @@ public:
         return greatest;
     }
 
-    /// Time after `time` during which no node can pass the tangent plane at the nearest point of the collider, as a
-    /// fraction of the step.
+    /// Length of time after `time` during which no node can pass the tangent plane at the nearest point of the
+    /// collider, as a fraction of the step.
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinity;
@@ -208,9 +208,9 @@ private:
         return feature_.position[i] + time * feature_.displacement[i] - (motion_.position + time * shift_);
     }
     Vec3 drift(std::size_t i) const { return feature_.displacement[i] - shift_; }
-    /// Velocity of node i in the rotating frame of the collider, in world coordinates [m per step].
+    /// Velocity of node i in the frame of the collider, which rotates, expressed in world axes [m per step].
     Vec3 velocity(std::size_t i, Real time) const { return drift(i) - turn_.cross(arm(i, time)); }
-    /// Upper bound of the acceleration of node i in the rotating frame of the collider [m per step^2].
+    /// Upper bound of the acceleration of node i in the frame of the collider, which rotates [m per step^2].
     Real greatest_turn(std::size_t i) const {
         const Real turning = turn_.norm(), drifting = drift(i).norm();
         return turning * (2 * drifting + turning * (arm(i, 0).norm() + drifting));
@@ -219,10 +219,11 @@ private:
     const RigidMotion& motion_;
     const TouchingFeature& feature_;
     const Vec3 shift_;  // translation of the collider in the step [m]
-    const Vec3 turn_;   // [rad]
+    const Vec3 turn_;   // rotation vector of the collider in the step [rad]
 };
 
-/// True if all of the collider part or collider point that is tested lies behind the tangent plane of a touch.
+/// True if the complete collider part or collider point that is tested lies behind the tangent plane at the touched
+/// point.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;

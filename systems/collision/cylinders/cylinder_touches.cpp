@@ -15,29 +15,30 @@ namespace skerry {
 
 namespace {
 
-// If the tilt between an end of the cylinder and a side is below this angle, the end is supported by rim points that
-// rotate with the cylinder. At rest these points stay the same [rad].
+// If the angle between an end of the cylinder and a side is below this value, fixed points on the rim support the end.
+// These points rotate with the cylinder, so at rest they are always the same [rad].
 constexpr Real standing_tilt = 1e-4;
-// If the sine of the angle between an end of the cylinder and a side exceeds this limit, the end touches the side at
-// only one point of its rim.
+// If the sine of the angle between an end of the cylinder and a side exceeds this limit, only one point of the rim of
+// this end can touch the side.
 constexpr Real lying_tilt = 0.5;
-// Tolerance by which the normal of a touch may lie outside the range of normals at an edge or rim, equal to that of
-// capsules (docs/methods/collision.md 4.5) [rad].
+// Tolerance of contact normals at an edge or rim: a normal may be outside of the range between the adjacent sides by
+// this angle. Capsules have the same tolerance (docs/methods/collision.md 4.5) [rad].
 constexpr Real rim_angle = 0.03;
-// A gradient of the cylinder's distance is that of an end if it differs from the axis by less than this. It is that of
-// the round side if its component along the axis is below this.
+// Tolerance for classifying the gradient of the distance from the cylinder. If the gradient differs from the axis by
+// less, it belongs to an end. If its component along the axis is smaller, it belongs to the curved side.
 constexpr Real place_rounding = 1e-9;
-// Tolerance of the border of a side, as a fraction of the size of the side. Points that rounding puts beside a side
-// count as above the side.
+// Tolerance at the border of a flat side, as a fraction of the size of the side. Points that rounding errors put beside
+// a side thus count as above the side.
 constexpr Real over_fraction = 1e-9;
-// If the derivative of a distance along a rim is below this limit, the distance counts as constant.
+// The distance along a rim counts as constant if its derivative is below this limit.
 constexpr Real level_slope = 1e-9;
-// Number of samples of a rim, between which minima are searched.
+// Number of samples on a rim. Minima are searched between adjacent samples.
 constexpr int samples_around = 16;
 constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
-// Numbering of the touching points on a shape. of_rim and of_side are the numbers of points per rim and per side. The
-// other constants are the first numbers of groups.
+// Numbers of the contact points on a shape. of_rim and of_side are the counts of numbers per rim and per side. The
+// other constants are the first numbers of each kind of contact point: on rims of the other shape, on sides, at
+// corners, on edges, and between curved sides.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 
@@ -45,17 +46,18 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
     return {radius * direction[0], radius * direction[1], z};
 }
 
-/// A circle around the z axis: the edge between a round side and a flat side.
+/// A circle around the z axis: the edge between a curved side and a flat side of a shape.
 struct CylinderRim {
-    Real radius, z;       // [m]
-    Real outward, along;  // 1 or -1: directions of the normals of both sides, away from the axis and along it
+    Real radius, z;  // [m]
+    // 1 or -1: directions of the normals of the curved side (away from the axis) and of the flat side (along z).
+    Real outward, along;
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;
     }
 };
 
-/// Visits the minima of a distance along a rim, each of them found between two samples. If the distance is constant
-/// along a stretch, both ends of the stretch are visited.
+/// Calls `visit` for each minimum of a distance along a rim. Each minimum is found between two samples. If the distance
+/// is constant along an arc, both ends of the arc are visited.
 template <class Distance, class Visit>
 void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& visit) {
     struct Sample {
@@ -72,8 +74,9 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
     };
     constexpr Real round = 2 * std::numbers::pi, between = round / samples_around;
     Index number = 0;
-    std::optional<Real> first, last;  // angles of the first and of the last minimum found [rad]
-    // Bisects for the angle between two samples at which the derivative of the distance passes the value `slope`.
+    std::optional<Real> first, last;  // angles at which the first and the last minimum were found [rad]
+    // Finds, by bisection between two samples, the angle at which the derivative of the distance passes the value
+    // `slope`.
     const auto find = [&](Real low, Real high, Real slope, const Sample& behind) {
         Sample found = behind;
         while (high - low > turn_tolerance) {
@@ -89,7 +92,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const bool again = (last && high - *last < same_place) || (first && high - *first > round - same_place);
         last = high;
         if (!first) first = high;
-        // A kink in the distance is at an edge of the other shape. The touching points of this edge are found
+        // A kink of the distance is caused by an edge of the other shape. The contact points of this edge are found
         // separately.
         if (!again && number < of_rim && std::abs(found.slope) < rim_angle) visit(number++, found.direction, found.on);
     };
@@ -98,7 +101,7 @@ void for_each_minimum(const CylinderRim& rim, Distance&& distance_at, Visit&& vi
         const Sample after = sample(i * between);
         const bool falls = before.slope<-level_slope, rises = after.slope> level_slope;
         const Real low = (i - 1) * between, high = i * between;
-        // A sample that happens to be at a minimum is not a stretch of constant distance.
+        // A sample may by chance lie at a minimum. This is not an arc of constant distance.
         if (falls && after.slope >= -level_slope) {
             const Sample beyond = rises ? after : sample(high + same_place);
             if (beyond.slope > level_slope)
@@ -118,7 +121,7 @@ struct FlatSide {
     Vec3 normal, at;
     enum class Region : std::uint8_t { all, rectangle, disc } region;
     Vec3 half;                  // half extents of a rectangle [m]
-    Real inner = 0, outer = 0;  // inner and outer radius of a disc [m]
+    Real inner = 0, outer = 0;  // inner and outer radius of a disc or ring [m]
 
     bool holds(const Vec3& p) const {
         switch (region) {
@@ -136,7 +139,7 @@ struct FlatSide {
     }
 };
 
-/// Finds the touching points of the cylinder on one part of another shape.
+/// Finds the contact points of the cylinder on one part of another shape.
 class ShapeTouches {
 public:
     ShapeTouches(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
@@ -200,8 +203,8 @@ private:
         on.point = from_other(on.point);
         return on;
     }
-    /// True if `side` is the nearest side of the shape for a point p at the given height above it. A point behind the
-    /// side may be nearer to another side.
+    /// True if `side` is the side of the shape nearest to a point p. `height`: height of p above the side. A point
+    /// behind the side may be nearer to another side.
     static bool is_before(const FlatSide& side, Real height, const ColliderGeometry& geometry, Index part,
                           const Vec3& p) {
         return height >= 0 || local_distance(geometry, p, part).normal.dot(side.normal) > 1 - over_fraction;
@@ -238,8 +241,8 @@ private:
             });
     }
 
-    /// Adds the rim points of the cylinder that are above a flat side of the other shape. If this side is a disc, it
-    /// also adds the points where a rim crosses the border of the disc.
+    /// Adds the rim points of the cylinder that are above a flat side of the other shape. If this side is a disc, the
+    /// points where a rim crosses the outer border of the disc are added, too.
     void touch_side(Index number, const FlatSide& side) {
         const Vec3 normal = place_.rotation * side.normal;
         const Vec3 at = from_other(side.at);
@@ -250,7 +253,7 @@ private:
             if (side.holds(to_other(foot)) && is_before(side, height, other_, part_, to_other(p)))
                 add(of_sides + of_side * number + k, height, normal, foot);
         };
-        // If the end is tilted more, touch_rims finds the rim points that reach furthest.
+        // If no end of the cylinder nearly faces the side, touch_rims finds the rim points that reach furthest.
         const bool all = side.region == FlatSide::Region::all;
         if (!all && !stands) return;
         for (const RimPoints::Point& p : RimPoints(own_, normal)) {
@@ -273,7 +276,7 @@ private:
     /// Adds the rim points of the other shape, a cylinder, that are above an end of this cylinder.
     void touch_end(Index number, Index end) {
         const FlatSide side = end_of(own_, end);
-        // Normal of the end, in the frame of the other shape.
+        // Normal of the end in the frame of the other cylinder.
         const Vec3 normal = place_.rotation.transpose() * side.normal;
         if (normal.head<2>().norm() > lying_tilt) return;
         const auto over = [&](Index k, const Vec3& p) {
@@ -339,8 +342,8 @@ private:
             }
     }
 
-    /// Adds the touch of two round sides whose axes cross. `low`, `high`: range of heights of the other round side.
-    /// Cylinders with parallel axes touch at their rims instead.
+    /// Adds the contact point between two curved sides whose axes cross. `radius`, `low` and `high`: radius of the
+    /// other curved side and the range of its heights. Cylinders with parallel axes touch at their rims instead.
     void touch_round_sides(Real radius, Real low, Real high) {
         const Vec3 half = own_.size[1] * Vec3::UnitZ();
         const SegmentSegment nearest =
@@ -348,7 +351,7 @@ private:
         const Real length = std::sqrt(nearest.distance_squared);
         if (!nearest.interior || !(length > 0)) return;
         const Vec3 normal = (nearest.on_first - nearest.on_second) / length;
-        // A cylinder inside a hollow round side does not touch it from outside.
+        // A cylinder inside a bucket does not touch the curved outer side of the bucket.
         if (other_.shape == ColliderShape::bucket && length < radius) return;
         add(of_round_sides, length - own_.size[0] - radius, normal, nearest.on_second + radius * normal);
     }

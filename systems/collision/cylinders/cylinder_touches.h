@@ -9,19 +9,20 @@
 
 namespace skerry {
 
-/// A possible touching point, in the frame of the cylinder.
+/// A possible contact point, in the frame of the cylinder.
 struct CylinderTouch {
-    Index number;                  // identifies the touching point from step to step; ascending in a list
-    Real distance;                 // signed [m]
-    Vec3 normal;                   // unit normal from the other shape to the cylinder
-    Vec3 on_other;                 // touching point on the surface of the other shape [m]
-    std::array<Real, 2> weight{};  // weights of the two ends of a capsule's axis
+    Index number;                  // number that identifies the contact point across steps; ascending in a list
+    Real distance;                 // signed distance between the two shapes at this point [m]
+    Vec3 normal;                   // unit normal, directed from the other shape to the cylinder
+    Vec3 on_other;                 // contact point on the surface of the other shape [m]
+    std::array<Real, 2> weight{};  // weights of the two ends of the axis if the other shape is a capsule
 };
 
-/// List of the touching points of one pair or of one triangle. The capacity suffices for the greatest possible number.
+/// Contact points of one pair of shapes, or of the cylinder and one triangle. The capacity suffices for the greatest
+/// possible number of contact points.
 class CylinderTouches {
 public:
-    static constexpr Index most = 256;  // capacity, and upper limit of the touch numbers
+    static constexpr Index most = 256;  // capacity of the list, and upper limit of CylinderTouch::number
 
     void clear() { count_ = 0; }
     void add(const CylinderTouch& touch) {
@@ -36,15 +37,15 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Points of the rims of a cylinder that can touch a flat side. `normal`: outward unit normal of the side in the frame
-/// of the cylinder. Each rim has the point that reaches furthest towards the side. If an end of the cylinder nearly
-/// faces the side, its rim also has points that support the end on the side. None of these points comes nearer to the
-/// side when the cylinder rotates about its axis by less than a radian per step. For a tilted end, points that rotate
-/// with the cylinder would come nearer.
+/// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
+/// side in the frame of the cylinder. Each rim has the point that reaches furthest towards the side. If an end of the
+/// cylinder nearly faces the side, each rim also has points that support the cylinder on the side. When the cylinder
+/// rotates about its axis by less than a radian per step, none of these points approaches the side. Points that rotate
+/// with the cylinder would approach the side if the end is tilted.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
-        Index number;  // less than 2 * most_of_rim
+        Index number;  // number of the point, below 2 * most_of_rim
         Vec3 at;       // [m]
     };
     std::array<Point, 2 * most_of_rim> point;
@@ -55,28 +56,33 @@ struct RimPoints {
     const Point* end() const { return point.data() + count; }
 };
 
-/// Kind of the cylinder surface nearest to a point, from the gradient of the cylinder's distance at this point.
+/// Part of the cylinder surface nearest to a point. place_of determines the part from the gradient of the distance from
+/// the cylinder at this point.
 enum class CylinderPlace : std::uint8_t { end, side, rim };
 CylinderPlace place_of(const Vec3& gradient);
 
-/// Adds the touching point with the sphere of radius `radius` around `middle`, unless its distance exceeds `near` [m].
+/// Adds the contact point with a sphere if its distance is at most `near` [m]. `middle` and `radius`: centre and radius
+/// of the sphere [m].
 void touch_ball(const ColliderGeometry& cylinder, const Vec3& middle, Real radius, Real near, CylinderTouches& found);
 
-/// Adds the touching points with a capsule whose axis runs from `a` to `b`, if their distance is at most `near` [m].
+/// Adds the contact points with a capsule whose distance is at most `near` [m]. The axis of the capsule runs from `a`
+/// to `b`.
 void touch_capsule(const ColliderGeometry& cylinder, const Vec3& a, const Vec3& b, Real radius, Real near,
                    CylinderTouches& found);
 
-/// Adds the touching points with a part of another shape, which must not be a mesh, if their distance is at most `near`
-/// [m]. `place`: pose of the shape in the frame of the cylinder.
+/// Adds the contact points with a part of another shape whose distance is at most `near` [m]. The other shape must not
+/// be a mesh. `place`: pose of the other shape in the frame of the cylinder.
 void touch_shape(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part, const RigidMotion& place,
                  Real near, CylinderTouches& found);
 
-/// Lower bound of the distance between the cylinder and a triangle, which is given in the frame of the cylinder [m].
+/// Lower bound of the distance between the cylinder and a triangle. The triangle is given in the frame of the cylinder
+/// [m].
 Real distance_bound(const ColliderGeometry& cylinder, const LocalFace& face);
 
-/// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]: the greatest
-/// distance of parallel planes that separate both, along the axes of both shapes and the normals of `touches`, or of
-/// bounding spheres. `place`: pose of the other shape in the frame of the cylinder.
+/// Lower bound of the distance between the cylinder and the convex hull of a part of another shape [m]. It is the
+/// greatest of several bounds: distances between parallel planes that separate the shapes, with normals along the axes
+/// of both shapes or along the normals of `touches`, and the distance from the bounding sphere of the cylinder.
+/// `place`: pose of the other shape in the frame of the cylinder.
 Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeometry& other, Index part,
                           const RigidMotion& place, const CylinderTouches& touches);
 

@@ -32,7 +32,7 @@ Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeomet
         const Vec3 normal = place.rotation.col(2);
         return -normal.dot(place.position) - reach(normal);
     }
-    // Middle of the cylinder in the frame of the other shape.
+    // Centre of the cylinder in the frame of the other shape.
     const Vec3 middle = -(place.rotation.transpose() * place.position);
     Real bound = local_distance(other, middle, part).distance - ball_radius(cylinder);
     const auto test_along = [&](const Vec3& normal) {
@@ -42,7 +42,7 @@ Real shape_distance_bound(const ColliderGeometry& cylinder, const ColliderGeomet
     for (const Vec3& axis :
          {Vec3(Vec3::UnitZ()), Vec3(place.rotation.col(0)), Vec3(place.rotation.col(1)), Vec3(place.rotation.col(2))})
         test_along(axis.dot(place.position) > 0 ? Vec3(-axis) : axis);
-    if (other.shape == ColliderShape::cylinder) {  // each cylinder lies within a capsule around its axis
+    if (other.shape == ColliderShape::cylinder) {  // each cylinder is contained in a capsule around its axis
         const Vec3 own = cylinder.size[1] * Vec3::UnitZ(), half = other.size[1] * place.rotation.col(2);
         const Real apart =
             closest_points_of_segments(-own, own, place.position - half, place.position + half).distance_squared;

@@ -42,7 +42,7 @@ RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& 
     const Vec3 axis = up.cross(up_then);
     const Real sine = axis.norm();
     found.motion.velocity = way / motion.h;
-    // If the axis has rotated by half a turn, the cylinder occupies the same space again, so no rotation is needed.
+    // If the axis has rotated by 180 degrees, the cylinder occupies the same space again, so no rotation is needed.
     if (sine > 0) found.motion.angular_velocity = std::atan2(sine, up.dot(up_then)) / (sine * motion.h) * axis;
     return found;
 }

@@ -1,4 +1,4 @@
-// Poses and motions of rigid cylinders, computed from the nodes of their cores (BodyTable::core_nodes).
+// Poses and motions of rigid cylinders. They are computed from the core nodes of the bodies (BodyTable::core_nodes).
 #pragma once
 
 #include "components/collider_table.h"
@@ -10,12 +10,12 @@
 
 namespace skerry {
 
-/// A rigid cylinder with the geometry and motion of a collider, so that features of other bodies can be tested in its
+/// A rigid cylinder, with the geometry and motion of a collider. Features of other bodies can thus be tested in its
 /// frame.
 struct RigidCylinder {
     ColliderGeometry geometry;
     RigidMotion motion;
-    Index middle;  // row of NodeTable
+    Index middle;  // row of the node at its centre in NodeTable
 
     Vec3 local(const Vec3& point) const { return to_local(motion, point); }
     Vec3 world(const Vec3& point) const { return to_world(motion, point); }
@@ -30,11 +30,12 @@ inline bool has_cylinder(const CollisionInputs& inputs, const PairTable& pairs, 
            (pairs.kind[p] != PairKind::collider && is_cylinder(inputs, pairs.second[p]));
 }
 
-/// The cylinder at the start of the step, with its velocities at this time.
+/// The cylinder at the start of the step, with the velocities that it has at this time.
 RigidCylinder cylinder_at_start(const CollisionInputs& inputs, Index body);
 
 /// The cylinder at the start of the step, with the constant velocities that move it to its position at the end of the
-/// step. Since the cylinder is round, the rotation is the smallest one that rotates its axis to the final direction.
+/// step. The angular velocity describes the smallest rotation that rotates the axis to its final direction; a rotation
+/// about the axis has no effect on the surface.
 RigidCylinder cylinder_in_step(const CollisionInputs& inputs, const StepMotion& motion, Index body);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Approximation of a shape by nodes, edges and triangles, for tests of its motion within a step.
+// Approximation of a shape by nodes, edges and triangles, used to test the motion of the shape within a step.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace skerry {
 
-/// A feature of a shape, in its frame.
+/// A node, edge or triangle of a shape, in the frame of the shape.
 struct Facet {
     TouchingFeature::Kind kind;
-    std::array<Vec3, 3> at;  // as many as the feature has nodes [m]
-    Real radius = 0;         // of the round surface around a node or an edge [m]
+    std::array<Vec3, 3> at;  // positions of the nodes, as many as the kind of feature has [m]
+    Real radius = 0;         // radius of the round surface around a node or an edge [m]
 };
 
-/// Facets of a sphere, capsule, box or cylinder, or of one part of a bucket, in a fixed order. Flat sides within the
-/// solid replace surfaces that are round about an axis.
+/// Facets of a sphere, capsule, box or cylinder, or of one part of a bucket, in a fixed order. Curved sides are
+/// approximated by flat sides that lie within the solid.
 class ShapeFacets {
 public:
     static constexpr int around = 32;
@@ -77,14 +77,14 @@ private:
         for (int k = 0; k < 8; ++k)
             for (int bit = 1; bit < 8; bit *= 2)
                 if (!(k & bit)) visit(Facet{Kind::edge, {corner(k), corner(k | bit)}});
-        for (int bit = 1; bit < 8; bit *= 2) {  // b and c: the other two axes in cyclic order
+        for (int bit = 1; bit < 8; bit *= 2) {  // b and c: bits of the other two axes, in cyclic order
             const int b = bit == 4 ? 1 : 2 * bit, c = b == 4 ? 1 : 2 * b;
             quad(corner(bit), corner(bit | b), corner(bit | b | c), corner(bit | c), visit);
             quad(corner(0), corner(c), corner(b | c), corner(b), visit);
         }
     }
-    /// Visits the facets between four rings, which are counter-clockwise in the half plane of radius and z. `closed`:
-    /// the last ring is joined to the first.
+    /// Visits the facets between four rings around the z axis. In the half plane with coordinates radius and z, the
+    /// rings are counter-clockwise. `closed`: true if facets also connect the last ring with the first ring.
     static void of_rings(const std::array<Ring, 4>& ring, bool closed, auto&& visit) {
         const auto at = [&](std::size_t i, int k) {
             const Real turn = 2 * std::numbers::pi * (k % around) / around;

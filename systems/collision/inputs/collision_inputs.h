@@ -19,22 +19,23 @@ struct CollisionInputs {
     const BodyTable& body;
     const ColliderTable& collider;
     const SurfaceTables& surface;
-    std::span<const Real> inverse_mass;                   // by node
-    std::span<const SurfaceProperties> material_surface;  // by material
+    std::span<const Real> inverse_mass;                   // inverse mass by node [1/kg]
+    std::span<const SurfaceProperties> material_surface;  // surface properties by material
     std::span<const BvhNode> bvh_node;
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const LeafNodes> leaf_nodes;
     std::span<const LeafFeatures> leaf_features;
-    std::span<const Vec3> position;            // by node, at the start of the step [m]
-    std::span<const Vec3> velocity;            // by node, at the start of the step [m/s]
-    std::span<const Vec3> rest_position = {};  // by node [m]; if empty, self-contact has no rest shape to compare with
-    std::span<const std::uint64_t> disabled_pairs = {};  // ContactKey::pair, ascending
+    std::span<const Vec3> position;  // position of each node at the start of the step [m]
+    std::span<const Vec3> velocity;  // velocity of each node at the start of the step [m/s]
+    // Position of each node in the rest shape [m]; empty: self-contact is not compared with the rest shape.
+    std::span<const Vec3> rest_position = {};
+    std::span<const std::uint64_t> disabled_pairs = {};  // keys of the disabled pairs (ContactKey::pair), ascending
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
                                 const BvhLeafTable& bvh_leaf, const NodeTable& node,
                                 const DisabledPairTable& disabled) {
-        // uninverted_until is excluded, because find_inversions writes it in parallel with find_crossings
+        // The column uninverted_until is excluded, because find_inversions writes it while find_crossings runs.
         return {.body = binder.read_but(body, body.uninverted_until),
                 .collider = binder.read(collider),
                 .surface = binder.read(surface),
@@ -51,17 +52,17 @@ struct CollisionInputs {
     }
 };
 
-/// Settings of the collision stages.
 struct CollisionSettings {
-    Real gravity = 0;  // norm of the gravity; bounds how much faster a body can become in a step [m/s^2]
-    // Candidates are kept up to this distance beyond the distance at which they matter, as a fraction of the mean edge
-    // length.
+    // Magnitude of the gravitational acceleration, which bounds the increase of speeds in a step [m/s^2].
+    Real gravity = 0;
+    // Margin of the candidate lists, as a fraction of the mean edge length. Features are listed if their distance
+    // exceeds the test distance by less than this margin.
     Real pair_skin = 0.3125;
-    // Pairs of bodies are kept up to this distance beyond the distance at which they matter, as a fraction of the mean
-    // edge length.
+    // Margin of the list of pairs, as a fraction of the mean edge length. Pairs of bodies are listed if their distance
+    // exceeds the test distance by less than this margin.
     Real broad_skin = 4.0;
-    bool use_budgets = true;  // false: every step searches all pairs and features (reference for tests)
-    bool continuous = true;   // false: the motion of a step is not tested for crossings
+    bool use_budgets = true;  // false: every step searches all pairs and tests all candidates (reference for tests)
+    bool continuous = true;   // false: crossings of surfaces within a step are not detected
 };
 
 }  // namespace skerry

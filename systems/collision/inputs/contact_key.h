@@ -1,4 +1,4 @@
-// Keys that identify pairs and features across steps; see ContactKey.
+// Keys that identify pairs and features across steps (see ContactKey).
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ inline constexpr std::uint64_t second_side_bit = std::uint64_t{1} << 62;
 inline constexpr int local_bits = 31;
 inline constexpr std::uint64_t local_mask = (std::uint64_t{1} << local_bits) - 1;
 
-/// Key of a pair of two bodies. The body with the lower slot comes first. In the key of a body paired with itself, both
+/// Key of a pair of two bodies. The lower of the two handle slots comes first. If a body is paired with itself, both
 /// slots are equal.
 inline std::uint64_t body_pair_key(std::uint32_t first_slot, std::uint32_t second_slot) {
     return std::uint64_t{first_slot} << local_bits | second_slot;
 }
 
-/// Key of a pair of a body and a collider, analytic or mesh.
+/// Key of a pair of a body and a collider. The collider may be analytic or a mesh.
 inline std::uint64_t collider_pair_key(std::uint32_t body_slot, std::uint32_t collider_slot) {
     return std::uint64_t{1} << 62 | std::uint64_t{body_slot} << local_bits | collider_slot;
 }
 
-/// Slots of both partners in a pair key: of two bodies, or of a body and a collider.
+/// Handle slots in the key of a pair. `first` is the slot of a body, `second` the slot of a body or collider.
 struct PairSlots {
     std::uint32_t first, second;
     bool is_collider;
@@ -34,8 +34,8 @@ inline PairSlots slots_of_pair(std::uint64_t key) {
             static_cast<std::uint32_t>(key & local_mask), (key & collider_bit) != 0};
 }
 
-/// Key of a point and a triangle, both numbered within their bodies. `point_of_second`: true if the point belongs to
-/// the second body.
+/// Feature key of a point and a triangle. Both are numbered within their bodies. `point_of_second`: true if the point
+/// belongs to the second body.
 inline std::uint64_t point_triangle_feature(bool point_of_second, Index point, Index triangle) {
     return (point_of_second ? second_side_bit : 0) | static_cast<std::uint64_t>(point) << local_bits |
            static_cast<std::uint64_t>(triangle);
@@ -45,19 +45,19 @@ inline std::uint64_t edge_edge_feature(Index first, Index second) {
     return edge_edge_bit | static_cast<std::uint64_t>(first) << local_bits | static_cast<std::uint64_t>(second);
 }
 
-/// Key of a point of a body and a part of a collider (see collider_part_count).
+/// Feature key of a point of a body and a part of a collider (see collider_part_count).
 inline std::uint64_t point_collider_feature(Index point, Index part) {
     return static_cast<std::uint64_t>(point) << local_bits | static_cast<std::uint64_t>(part);
 }
 
-/// Key of point k of a collider (see collider_point) and a triangle of a body. The point comes first, as in
-/// point_triangle_feature.
+/// Feature key of point k of a collider (see collider_point) and a triangle of a body. The number of the point comes
+/// before the number of the triangle, as in point_triangle_feature.
 inline std::uint64_t face_collider_feature(Index k, Index triangle) {
     return second_side_bit | static_cast<std::uint64_t>(k) << local_bits | static_cast<std::uint64_t>(triangle);
 }
 
-/// Contacts of one edge with one part of a collider have numbers below contacts_of_edge. The last number is for a
-/// crossing, which can exist beside the other contacts.
+/// Contacts of one edge with one part of a collider are numbered from 0 to contacts_of_edge - 1. The last number is for
+/// a crossing, which can exist beside the other contacts.
 inline constexpr Index contacts_of_edge = 9, crossing_of_edge = contacts_of_edge - 1;
 
 inline std::uint64_t edge_collider_feature(Index edge, Index part) {
@@ -65,7 +65,7 @@ inline std::uint64_t edge_collider_feature(Index edge, Index part) {
            static_cast<std::uint64_t>(contacts_of_edge * part);
 }
 
-/// True for two edges, and also for an edge and a collider.
+/// True for a key of two edges, and also for a key of an edge and a collider.
 inline bool is_edge_edge(std::uint64_t feature) {
     return (feature & edge_edge_bit) != 0;
 }
@@ -82,7 +82,7 @@ inline Index second_local(std::uint64_t feature) {
     return static_cast<Index>(feature & local_mask);
 }
 
-/// Part of the feature key that is equal for all triangles near one point.
+/// Part of a feature key that is equal for all triangles paired with the same point.
 inline std::uint64_t point_of_feature(std::uint64_t feature) {
     return feature >> local_bits;
 }

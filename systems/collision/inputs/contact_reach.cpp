@@ -7,7 +7,7 @@ namespace skerry {
 
 namespace {
 
-/// Returns `properties`, where each property that is not negative in `given` is replaced.
+/// Returns `properties` with each property replaced by the one in `given` if that is not negative.
 SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given) {
     if (given.static_friction >= 0) properties.static_friction = given.static_friction;
     if (given.dynamic_friction >= 0) properties.dynamic_friction = given.dynamic_friction;
@@ -27,8 +27,8 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     const Real own_distance = body.contact_distance[first];
     const Real own_edge = body.mean_edge[first];
     if (kind == PairKind::collider) {
-        // The signed distance to a shape is valid at any depth, so the zone need not include depths behind its surface.
-        // Points of the shape may still be behind a face of the body.
+        // The signed distance from a shape is valid at any depth, so the zone need not include depths behind the
+        // surface of the shape. But points of the shape may be behind a face of the body.
         const Real half = own_distance / 2, radius = body.round_radius[first], kept = half + radius;
         return {kept, half, own_edge, face_depth_fraction * own_edge, 0, kept, radius};
     }

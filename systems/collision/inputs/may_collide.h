@@ -1,4 +1,5 @@
-// Test of whether a pair may collide, by the collision filters of both partners and the list of disabled pairs.
+// Test for whether the two partners of a pair may collide, by their collision filters and by the list of disabled
+// pairs.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 
 namespace skerry {
 
-/// Key of a pair. `first`: row of a deformable body in BodyTable. `second`: row of BodyTable, or of ColliderTable if
-/// `kind` is collider.
+/// Key of a pair (ContactKey::pair). `first`: row of a deformable body in BodyTable. `second`: row of BodyTable, or of
+/// ColliderTable if `kind` is collider.
 inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collider, PairKind kind, Index first,
                               Index second) {
     if (kind == PairKind::collider) return collider_pair_key(body.slot[first], collider.slot[second]);
@@ -21,7 +22,7 @@ inline std::uint64_t pair_key(const BodyTable& body, const ColliderTable& collid
     return body_pair_key(std::min(body.slot[first], body.slot[second]), std::max(body.slot[first], body.slot[second]));
 }
 
-/// True if the collision filters of both partners allow contact and the pair is not in `disabled`, the keys of
+/// True if the collision filters of both partners permit a contact and the pair is not disabled. `disabled`: keys of
 /// DisabledPairTable. For a body paired with itself the result is always true, because self-contact is checked
 /// elsewhere.
 inline bool may_collide(const BodyTable& body, const ColliderTable& collider, std::span<const std::uint64_t> disabled,

@@ -1,4 +1,4 @@
-// Motion of all nodes in an attempt at the next step.
+// Motion of all nodes in an attempt at a step.
 #pragma once
 
 #include <span>

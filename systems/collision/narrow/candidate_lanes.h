@@ -1,4 +1,4 @@
-// Distances of eight pairs of features at a time. They show which of the pairs need a closer test.
+// Distances of eight pairs of features at a time. They show which pairs of features must be tested more closely.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace skerry {
 
 inline constexpr std::size_t candidate_lanes = element_lanes;
 
-/// Nodes of a candidate: the point and the three corners of the triangle, or the two ends of the first edge and of the
-/// second edge.
+/// Nodes of a candidate. First the node of the point and then the three corners of the triangle; or first the two ends
+/// of one edge and then the two ends of the other edge.
 using CandidateNodes = std::array<Index, 4>;
 
 /// Nodes of eight candidates.
@@ -25,14 +25,14 @@ inline void set_lane(CandidateNodeLanes& lanes, std::size_t lane, const Candidat
     for (std::size_t i = 0; i < node.size(); ++i) lanes[i][lane] = node[i];
 }
 
-/// Kind of the two features of a candidate between two bodies.
+/// Kind of the two features of a candidate between two surfaces.
 inline FeaturePair features_of(const Candidate& candidate) {
     return is_edge_edge(candidate.feature) ? FeaturePair::edge_edge : FeaturePair::point_triangle;
 }
 void prefetch_nodes(const SurfaceTables& surface, const Candidate& candidate);
 CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate);
 
-/// Distances between the features of eight candidates [m]. A distance is not a number if a position is not a number.
+/// Distances between the two features of each of eight candidates [m]. A distance is NaN if a coordinate is NaN.
 Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> position,
                                        const CandidateNodeLanes& node);
 

@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Vectors shorter than this have no reliable direction due to rounding, so a fixed direction is used instead [m].
+// Vectors shorter than this have no reliable direction because of rounding errors, so a fixed direction is used instead
+// [m].
 constexpr Real min_length = 1e-14;
 
 Vec3 direction_or(const Vec3& v, Real length, const Vec3& otherwise) {
@@ -28,7 +29,8 @@ SurfacePoint distance_to_ball(const Vec3& p, const Vec3& centre, Real radius) {
 
 SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
     const Vec3 beyond = p.cwiseAbs() - half;
-    int face = 0;  // axis of the nearest face, for a point inside; if faces are equally near, the lowest axis
+    // Axis of the nearest face if p is inside the box; if several faces are equally near, the lowest axis.
+    int face = 0;
     for (int i = 1; i < 3; ++i)
         if (beyond[i] > beyond[face]) face = i;
     Vec3 face_normal = Vec3::Zero();
@@ -40,7 +42,7 @@ SurfacePoint distance_to_box(const Vec3& p, const Vec3& half) {
     return {length, direction_or(offset, length, face_normal), nearest};
 }
 
-/// A point in the half plane through the axis of a body of revolution.
+/// A point in a half plane that is bounded by the axis of a body of revolution.
 struct Flat {
     Real r;  // distance from the axis [m]
     Real z;  // height along the axis [m]
@@ -56,8 +58,8 @@ struct FlatDistance {
     Flat nearest;
 };
 
-/// Signed distance to the rectangle r0 <= r <= r1, z0 <= z <= z1. For a solid without a hole, r0 is -infinity. Among
-/// equally near sides, the end faces are preferred.
+/// Signed distance from the rectangle r0 <= r <= r1, z0 <= z <= z1. For a solid without a hole, r0 is -infinity. If
+/// several sides are equally near, an end face is preferred.
 FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Real z1) {
     const bool top = p.z >= 0.5 * (z0 + z1);
     const bool outer = r0 == -infinity || p.r >= 0.5 * (r0 + r1);
@@ -75,9 +77,10 @@ FlatDistance distance_to_rectangle(const Flat& p, Real r0, Real r1, Real z0, Rea
     return {length, length > min_length ? Flat{offset.r / length, offset.z / length} : side, nearest};
 }
 
-/// Half plane through the axis of a body of revolution and the point p. It contains the point of the body nearest to p.
+/// Half plane that is bounded by the axis of a body of revolution and contains the point p. It also contains the point
+/// of the body nearest to p.
 struct AxialFrame {
-    Vec3 radial;  // unit radial direction; +x if p is on the axis
+    Vec3 radial;  // unit vector from the axis to p; +x if p is on the axis
     Flat p;
 
     explicit AxialFrame(const Vec3& point) {
@@ -94,8 +97,9 @@ FlatDistance distance_to_bucket_part(const Vec3& size, Index part, const Flat& p
     return distance_to_rectangle(p, size[0], size[0] + size[2], -size[2], size[1]);
 }
 
-/// Signed distance to the L-shaped profile of a bucket. Outside, it is the distance to the nearer part; inside, to the
-/// nearest side. Among equally near sides, the first one is used.
+/// Signed distance from the L-shaped profile of a bucket. Outside of the profile, this is the distance from the nearer
+/// part; inside, it is the distance from the nearest side. If several sides are equally near, the first one in the list
+/// is used.
 FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
     const FlatDistance floor = distance_to_bucket_part(size, 0, p), wall = distance_to_bucket_part(size, 1, p);
     if (floor.distance > 0 && wall.distance > 0) return floor.distance <= wall.distance ? floor : wall;
@@ -115,7 +119,7 @@ FlatDistance distance_to_bucket(const Vec3& size, const Flat& p) {
                            std::clamp(p.z, std::min(side.from.z, side.to.z), std::max(side.from.z, side.to.z))};
         const Flat offset{nearest.r - p.r, nearest.z - p.z};
         const Real length = norm(offset);
-        if (!(-length <= best.distance))  // written so that a length that is not a number is returned
+        if (!(-length <= best.distance))  // written so that NaN is returned if `length` is NaN
             best = {-length, length > min_length ? Flat{offset.r / length, offset.z / length} : side.normal, nearest};
     }
     return best;

@@ -1,4 +1,4 @@
-// Signed distances to the analytic collider shapes.
+// Signed distances from the analytic collider shapes.
 #pragma once
 
 #include "components/bvh_table.h"
@@ -7,34 +7,34 @@
 namespace skerry {
 
 struct SurfacePoint {
-    Real distance;  // signed distance, positive outside [m]
-    Vec3 normal;    // unit gradient of the distance, in the frame of the queried point
-    Vec3 point;     // nearest point of the surface, in the frame of the queried point [m]
+    Real distance;  // signed distance of the point from the surface, positive outside [m]
+    Vec3 normal;    // unit gradient of the distance, in the coordinate frame of the queried point
+    Vec3 point;     // nearest point of the surface, in the coordinate frame of the queried point [m]
 };
 
-/// Signed distance of a world point to a plane, sphere, box, capsule, cylinder or bucket. It is exact outside and
-/// inside; inside a box or cylinder, the nearest face counts. On a medial axis the nearest point is not unique, and a
-/// fixed rule selects one.
+/// Signed distance of a world point from a plane, sphere, box, capsule, cylinder or bucket. The distance is exact
+/// outside and inside the shape; inside a box or cylinder the nearest face determines it. On a medial axis the nearest
+/// point is not unique, and a fixed rule selects one.
 SurfacePoint distance_to_collider(const ColliderGeometry& geometry, const RigidMotion& motion, const Vec3& world_point);
 
-/// Number of parts of a collider. A bucket has two parts, floor and wall, so that a point in its corner touches both.
-/// Other shapes have one part.
+/// Number of parts of a collider. A bucket has two parts, floor and wall, so that a point in the corner between them
+/// touches both. Other shapes have one part.
 Index collider_part_count(ColliderShape shape);
 
-/// Signed distance of a world point to one part of a collider. Outside of the collider, the distance to the whole
-/// collider is the least distance over its parts.
+/// Signed distance of a world point from one part of a collider. Outside of the collider, the distance from the
+/// complete collider is the least distance from its parts.
 SurfacePoint distance_to_collider_part(const ColliderGeometry& geometry, const RigidMotion& motion, Index part,
                                        const Vec3& world_point);
 
-/// Signed distance of a point in the frame of the collider to one part of the collider, or to the whole collider if
-/// `part` is no_index.
+/// Signed distance of a point from one part of a collider, or from the complete collider if `part` is no_index. The
+/// point is given in the frame of the collider.
 SurfacePoint local_distance(const ColliderGeometry& geometry, const Vec3& local_point, Index part = no_index);
 
-/// Extent of a shape from its origin along a unit direction in its frame [m]. `part`: part of a bucket, whose convex
-/// hull is used, or no_index for all parts.
+/// Largest coordinate of the points of a shape along a unit direction, measured from the origin of the shape [m].
+/// `part`: part of a bucket, whose convex hull is used, or no_index for all parts.
 Real extent_along(const ColliderGeometry& geometry, Index part, const Vec3& direction);
 
-/// World box of a collider; unbounded for a plane or a mesh.
+/// Axis-aligned box of a collider in the world; unbounded for a plane or a mesh.
 Aabb collider_box(const ColliderGeometry& geometry, const RigidMotion& motion);
 
 /// Upper bound of the distance between the collider's origin and any point of the collider [m]; 0 for a plane or a

@@ -9,17 +9,19 @@ namespace skerry {
 
 namespace {
 
-// An edge counts as flat if its faces are bent by less than this angle [rad]. Two edges that are left out for this
-// reason can come nearer than the nodes around them. The difference is at most a quarter of this fraction of the width
-// of the faces, which is an eighth of the default contact distance.
+// An edge counts as flat if the angle between the normals of its two faces is below this value [rad]. Contacts are not
+// tested at flat edges, so two flat edges can come nearer to each other than the nodes around them. The difference is
+// at most a quarter of this fraction of the width of the faces, which is an eighth of the default contact distance.
 constexpr Real min_bend = 0.01;
 
-// Angle beyond the normals of its faces up to which an edge still counts as nearest [rad]. An edge that lies on a face
-// is exactly at this border. An edge that lies on two edges of a face is beyond it, because the flatter edge lets it
-// come nearer: by a hundredth of the width of the face if both are equally long. If the other edge no longer counted,
-// the resting edge would fall onto the face, count again and be pushed out, for ever (docs/methods/collision.md 4.5).
-// The rotation in the step is added. Otherwise an edge could cross another one within the same step after the point in
-// front of it was stopped.
+// Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad].
+// If another edge lies on one of these faces, the contact normal is exactly at the limit of the range. If the other
+// edge lies on two edges of a face, the contact normal is outside of the range, because the flatter one of the two
+// edges permits a smaller distance: by a hundredth of the width of the face if the two edges are equally long. Without
+// this tolerance, the contact at the less flat edge would be lost. The resting edge would then fall onto the face,
+// regain the contact and be pushed out, again and again (docs/methods/collision.md 4.5). The rotation of the features
+// in the step is added to the tolerance. Otherwise an edge could cross another edge in the same step in which the point
+// in front of it was stopped.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -53,7 +55,8 @@ public:
         into_[0] = across(along, position[opposite(first, ends)] - origin);
         border_[0] = border_angle * into_[0].norm() + closing;
         if (around[1] == no_index) {
-            // At the boundary of an open surface, a wall that goes down from the edge is assumed as the second face.
+            // At the boundary of an open surface there is only one face. A wall perpendicular to this face is assumed
+            // as the second face.
             into_[1] = -into_[0].norm() * normal;
             border_[1] = border_[0];
             convex_ = true;
@@ -63,20 +66,21 @@ public:
         into_[1] = across(along, position[opposite(second, ends)] - origin);
         border_[1] = border_angle * into_[1].norm() + closing;
         outward_ += unit_normal(position, second);
-        // `fall`: depth of the second face below the plane of the first face, at the corner opposite to the edge.
+        // `fall`: depth of the second face below the plane of the first face, at the corner of the second face opposite
+        // to the edge.
         const Real width = into_[0].norm(), other_width = into_[1].norm(), fall = -normal.dot(into_[1]);
-        if (against_axis) {  // only the edges of a nearly flat surface support the axis of a capsule
+        if (against_axis) {  // only nearly flat edges can support the axis of a capsule
             convex_ = fall > -min_bend * other_width - closing;
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The bend has the same value when it is measured from the other face.
+        // The bend is the same if it is measured from the second face.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
     }
 
-    /// True if the edge is the core of a round body, which can be touched from all sides.
+    /// True if the edge is the core of a capsule, which can be touched from all sides.
     static bool is_axis(const SurfaceTables& surface, Index edge) {
         return is_core(surface.triangles.node[surface.edges.triangle[edge][0]]);
     }
@@ -84,33 +88,34 @@ public:
     bool convex() const { return is_axis_ || convex_; }
 
     /// Distance by which another edge may come nearer than the contact distance if it crosses this edge at `fraction`
-    /// of its length [m]. Without this slack, an edge with a bend of min_bend would start to count with a negative gap
-    /// when its nodes have left the other body. Stacked blocks would then vibrate for ever. The slack decreases towards
-    /// the ends of the edge, where the faces are narrower.
+    /// of the length [m]. Without this slack, an edge with a bend of min_bend would have a negative gap as soon as its
+    /// nodes have left the other body and the edge is tested. Stacked blocks would then vibrate for ever. The slack
+    /// decreases towards the ends of the edge, where the faces are narrower.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
-    /// True if a point in this direction from the edge is nearer to the edge than to the faces of the edge.
-    /// `direction`: unit vector normal to the edge.
+    /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.
+    /// `direction`: unit vector perpendicular to the edge.
     bool faces(const Vec3& direction) const {
         if (is_axis_) return true;
-        // At a nearly flat edge, the borders do not separate the outside from the inside, so the mean normal is tested,
-        // too.
+        // At a nearly flat edge, the limits `border_` do not distinguish the outside from the inside, so the mean
+        // normal is tested, too.
         return direction.dot(outward_) > 0 && direction.dot(into_[0]) <= border_[0] &&
                direction.dot(into_[1]) <= border_[1];
     }
 
 private:
-    /// Component of `v` normal to the edge. For a vector to the opposite corner, its length is the width of the face.
+    /// Component of `v` perpendicular to the edge. If `v` points to the opposite corner of a face, the length of the
+    /// component is the width of the face.
     static Vec3 across(const Vec3& along, const Vec3& v) {
         const Real squared = along.squaredNorm();
         return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
     }
 
-    std::array<Vec3, 2> into_;    // vectors from the edge across each face, normal to the edge [m]
-    std::array<Real, 2> border_;  // largest component of each `into_` along an accepted direction [m]
+    std::array<Vec3, 2> into_;    // vectors from the edge across each face, perpendicular to the edge [m]
+    std::array<Real, 2> border_;  // for each face: largest accepted component of `into_` along a direction [m]
     Vec3 outward_;                // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;
-    Real slack_ = 0;  // slack at the middle of the edge [m]
+    Real slack_ = 0;  // slack of a crossing at the middle of the edge [m]
 };
 
 }  // namespace
@@ -131,8 +136,8 @@ EdgeEdgeContact edge_edge_contact(const SurfaceTables& surface, std::span<const 
     contact.sleep = distance - scale.edge_depth;
     if (!contact.closest.interior || !(distance <= std::max(near, scale.edge_depth))) return contact;
 
-    // The normal points along the line between the nearest points, but it is computed from the edges, so that it is
-    // defined even if they touch.
+    // The normal is parallel to the line between the nearest points. It is computed from the directions of the edges,
+    // so that it is defined even if the edges touch.
     Vec3 normal = (a1 - a0).cross(b1 - b0).normalized();
     const Real height = normal.dot(contact.closest.on_first - contact.closest.on_second);
     if (height < 0) normal = -normal;

@@ -9,26 +9,27 @@ namespace skerry {
 
 namespace {
 
-// A point belongs to both of two adjacent features if it is within this fraction of its distance (and of the edge
-// length) of their border. A contact that is found twice does no harm, but a contact that is lost by rounding does.
+// Relative tolerance of the border between two adjacent features (face, edge, vertex), as a fraction of the point's
+// distance and of the edge length. A point within this tolerance of the border belongs to both features. A contact that
+// is found twice does no harm, but a contact that is lost by rounding errors does.
 constexpr Real tie_fraction = 1e-6;
 constexpr Real tie_edge_fraction = 1e-12;
 
-// If the point is nearer to an edge or vertex than this fraction of the contact distance (or of the edge length), the
-// direction to the point is too inaccurate to be the normal (docs/methods/collision.md 4.3).
+// If the point is closer to an edge or vertex than this fraction of the contact distance (or of the edge length), the
+// direction to the point is too inaccurate for the contact normal (docs/methods/collision.md 4.3).
 constexpr Real normal_distance_fraction = 0.1;
 constexpr Real normal_edge_fraction = 1e-6;
 
-// A vertex counts as touching the axis of a capsule if it would do so after a tilt of the axis by at most this angle
-// [rad]. So an axis that lies along an edge or on a flat surface touches both ends of this edge, even if the axis is
-// slightly tilted. Edges have a similar angle (docs/methods/collision.md 4.5).
+// A vertex counts as touching the axis of a capsule if it would touch the axis after a tilt of the axis by at most this
+// angle [rad]. An axis that lies along an edge or on a flat surface therefore touches both ends of this edge, even if
+// the axis is slightly tilted. Edges have a similar tolerance (docs/methods/collision.md 4.5).
 constexpr Real axis_tilt = 0.03;
 
 struct Query {
     const SurfaceTables& surface;
     std::span<const Vec3> position;
     const PairScale& scale;
-    Vec3 offset;    // vector from the nearest point of the triangle to the point [m]
+    Vec3 offset;    // vector from the nearest point of the triangle to the queried point [m]
     Real distance;  // length of `offset` [m]
 
     const Vec3& at(Index node) const { return position[node]; }
@@ -44,7 +45,7 @@ struct Query {
     }
 };
 
-/// Sum of the normals of both faces at the nearest edge; zero if the other face is nearer to the point.
+/// Sum of the normals of the two faces at the nearest edge; zero if the other face is nearer to the point.
 Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face_normal) {
     const Index edge = q.surface.triangles.edge[triangle][k];
     const auto& around = q.surface.edges.triangle[edge];
@@ -59,8 +60,9 @@ Vec3 edge_normal(const Query& q, Index triangle, std::size_t k, const Vec3& face
     return face_normal + q.unit_normal(other);
 }
 
-/// Sum of the normals of the faces around a vertex, weighted by their angles. Its sign separates inside from outside
-/// (Baerentzen, Aanaes 2005). The result is zero if the direction of any side of these faces is not `allowed`.
+/// Sum of the unit normals of the faces around a vertex, weighted by the angles of the faces at the vertex. Its scalar
+/// product with the vector to a point is positive outside and negative inside (Baerentzen, Aanaes 2005). The result is
+/// zero if allowed(side) is false for any side of these faces at the vertex.
 Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     const VertexTable& vertices = q.surface.vertices;
     const Index self = vertices.node[vertex];
@@ -78,7 +80,7 @@ Vec3 vertex_normal(const Query& q, Index vertex, auto&& allowed) {
     return sum;
 }
 
-/// Sets the contact with an edge or vertex. `mean_normal`: mean normal of the adjacent faces.
+/// Sets the contact with an edge or vertex. `mean_normal`: sum of the normals of the adjacent faces.
 void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind, Surfaces surfaces,
                   PointTriangleContact& contact) {
     const Real length = mean_normal.norm();
@@ -90,7 +92,7 @@ void touch_border(const Query& q, const Vec3& mean_normal, bool straight_behind,
         contact.normal = q.offset / q.distance;
         return;
     }
-    // For a point straight behind an edge within a flat surface, the depth limit is that of a face.
+    // A point straight behind an edge may lie behind a flat surface, so the depth limit of a face applies.
     if (!outside && q.distance > (straight_behind ? q.scale.face_depth : q.scale.edge_depth)) return;
     contact.side = outside ? Side::outside : Side::behind;
     contact.distance = outside ? q.distance : -q.distance;
@@ -120,16 +122,16 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Vec3 face_normal = q.unit_normal(triangle);
     const Real height = q.offset.dot(face_normal);  // height of the point above the plane of the face
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
-    contact.sleep = distance - scale.edge_depth;  // this limit is not less than the contact distance
+    contact.sleep = distance - scale.edge_depth;  // this limit is at least the contact distance
     if (height < 0 && surfaces == Surfaces::may_overlap) {
-        // The point can also become a contact behind the face, at a depth of at most face_depth.
+        // The point can become a contact behind the face, at a depth of at most face_depth.
         const Real below = std::max(Real(0), -height - scale.face_depth);
         contact.sleep = std::min(contact.sleep, std::sqrt(aside_squared + below * below));
     }
     const std::size_t region = static_cast<std::size_t>(contact.closest.region);
     if (contact.closest.region == TriangleRegion::face) {
         const bool turned = height < 0 && surfaces == Surfaces::apart;
-        // The core of a round body can be behind an inverted face by the same distance as it can be in front of a
+        // The core of a round body may be behind an inverted face by the distance that is also allowed in front of a
         // regular face.
         if (height < -scale.face_depth && !(turned && scale.radii > 0)) return contact;
         contact.side = height >= 0 ? Side::outside : Side::behind;
@@ -156,7 +158,7 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
 bool vertex_holds_axis(const SurfaceTables& surface, std::span<const Vec3> position, Index vertex, const Vec3& offset,
                        const Vec3& axis, const PairScale& scale) {
     const Query q{surface, position, scale, offset, offset.norm()};
-    // If the axis rotates by the angle t, its nearest point moves to offset + t * along.
+    // If the axis rotates by the small angle t, its point nearest to the vertex moves to offset + t * along.
     const Vec3 along = q.distance * axis.normalized();
     Real low = -axis_tilt, high = axis_tilt;
     const Vec3 normal = vertex_normal(q, vertex, [&](const Vec3& side) {

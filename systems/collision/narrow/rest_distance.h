@@ -1,4 +1,4 @@
-// Distances between features of one body in its rest shape.
+// Distances between features of one body, measured in the rest shape of the body.
 #pragma once
 
 #include "systems/collision/inputs/collision_inputs.h"
@@ -17,9 +17,10 @@ inline Real rest_distance_squared(const CollisionInputs& inputs, const std::arra
     return closest_points_of_segments(rest[a[0]], rest[a[1]], rest[b[0]], rest[b[1]]).distance_squared;
 }
 
-/// True if two features of one body, a point and a triangle or two edges, are far from each other in the rest shape.
-/// The limit is half of the mean edge length. Nearer features belong to the same piece of the body, such as the two
-/// sides of a thin part. They may pass each other when an element inverts, which the material has to undo.
+/// True if two features of one body are far from each other in the rest shape. The features are a point and a triangle,
+/// or two edges. The limit is half of the mean edge length. Features at a smaller distance belong to the same piece of
+/// the body, for example to the two sides of a thin part. They may pass each other when an element inverts, and the
+/// material then has to restore the element.
 bool was_far_at_rest(const CollisionInputs& inputs, const PairScale& scale, const auto& first, const auto& second) {
     return !inputs.rest_position.empty() &&
            rest_distance_squared(inputs, first, second) > 4 * scale.face_depth * scale.face_depth;

@@ -1,16 +1,16 @@
-// Test of whether a point is inside a body.
+// Test for whether a point is inside a body.
 #pragma once
 
 #include "systems/collision/inputs/collision_inputs.h"
 
 namespace skerry {
 
-/// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 where the body overlaps itself. It is
-/// the sum of the solid angles of all triangles, divided by 4 pi (Jacobson, Kavan, Sorkine-Hornung 2013, Robust
-/// inside-outside segmentation using generalized winding numbers, equation 5).
+/// Winding number of the surface of a body around a point: 1 inside, 0 outside, 2 in regions where the body overlaps
+/// itself. The winding number is the sum of the solid angles of all triangles divided by 4 pi (Jacobson, Kavan,
+/// Sorkine-Hornung 2013, Robust inside-outside segmentation using generalized winding numbers, equation 5).
 Real winding_number(const CollisionInputs& inputs, Index body, const Vec3& point);
 
-/// True if the point is in no part of the body, even if the body is folded.
+/// True if no part of the body contains the point. The result is also correct for a folded body.
 bool is_outside(const CollisionInputs& inputs, Index body, const Vec3& point);
 
 }  // namespace skerry

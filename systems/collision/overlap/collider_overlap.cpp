@@ -14,14 +14,14 @@ namespace skerry {
 
 namespace {
 
-/// Returns a point inside a collider, in the frame of the collider.
+/// Returns a point inside a collider, in the coordinate frame of the collider.
 Vec3 inner_point(const ColliderGeometry& geometry) {
-    // the middle of a bucket is empty, but the middle of its floor is solid
+    // The centre of a bucket is empty, but the centre of its floor is solid.
     if (geometry.shape == ColliderShape::bucket) return {0, 0, -geometry.size[2] / 2};
     return Vec3::Zero();
 }
 
-/// Vector from a point to the nearest point of a surface [m].
+/// Vector from a point to the nearest point on the surface of a solid [m].
 Vec3 to_surface(const Solid& solid, const Vec3& point) {
     Real least = infinity;
     Vec3 way = Vec3::Zero();
@@ -42,11 +42,11 @@ struct ColliderAndBody {
     const RigidMotion& motion;
     const PlacedSolid& body;
 
-    /// Position of a node of the body in the frame of the collider.
+    /// Position of a node of the body in the coordinate frame of the collider.
     Vec3 local(Index node) const {
         return to_local(motion, body.solid.point[static_cast<std::size_t>(node)] + body.shift);
     }
-    /// Position of a point of the collider in the world.
+    /// Position of a point of the collider in world coordinates.
     Vec3 world(const Vec3& point) const { return to_world(motion, point); }
 };
 
@@ -64,7 +64,7 @@ public:
         }
         for (const SolidTriangle& t : solid.surface)
             for (std::size_t k = 0; k < 3; ++k)
-                // A closed surface contains each edge twice, once in each direction, and one of them is tested. In
+                // A closed surface contains each edge twice, once in each direction; only one direction is tested. In
                 // other surfaces, some edges are tested twice.
                 if (!solid.closed || t.node[k] < t.node[(k + 1) % 3])
                     add_edge(pair_.local(t.node[k]), pair_.local(t.node[(k + 1) % 3]));
@@ -100,7 +100,7 @@ private:
     Overlap overlap_{OverlapKind::crossing, 0, Vec3::UnitZ(), Vec3::Zero()};
 };
 
-/// Corners, ends and rims of a collider that are inside a body.
+/// Finds corners, ends and rims of a collider that are inside a body.
 class PointsInside {
 public:
     PointsInside(const ColliderAndBody& pair, Real tolerance)
@@ -130,7 +130,7 @@ private:
         overlap_.direction = (within ? -way : way) / length;
         overlap_.place = at + body.shift;
     }
-    /// Adds the deepest rim point behind each face of the body.
+    /// Adds, for each face of the body, the point of the rim that is deepest behind the face.
     void add_rim(Index k) {
         for (const SolidTriangle& t : pair_.body.solid.surface) {
             const FaceContact face = face_contact(
@@ -157,8 +157,8 @@ std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, co
     if (!contains(body.solid, point - body.shift, 0)) return PointsInside({geometry, motion, body}, tolerance).find();
     Vec3 way = to_surface(body.solid, point - body.shift);
     const Real length = way.norm();
-    // The body moves away along the direction from its nearest surface point to the collider, past the far side of the
-    // collider.
+    // The body moves in the direction from its nearest surface point to the collider. The distance takes it past the
+    // far side of the collider.
     return Overlap{OverlapKind::around, length + collider_radius(geometry),
                    length > 0 ? Vec3(-way / length) : Vec3(Vec3::UnitZ()), point};
 }

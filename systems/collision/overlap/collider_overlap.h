@@ -9,21 +9,21 @@
 
 namespace skerry {
 
-/// Overlap of a collider with those nodes and edges of a body's surface that are inside the collider by more than
-/// `tolerance` [m]. `depth` and `direction` belong to the deepest point. The kind is `inside` if all nodes are in the
-/// collider, otherwise `crossing`.
+/// Overlap of a collider with the nodes and edges of a body's surface. Nodes and points of edges count if they are
+/// inside the collider by more than `tolerance` [m]. Overlap::depth and direction belong to the deepest point. The kind
+/// is `inside` if all nodes are in the collider, otherwise `crossing`.
 std::optional<Overlap> find_surface_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                            const PlacedSolid& body, Real tolerance);
 
-/// Overlap of a body with a collider that contains no node or edge of the body. The kind is `around` if the whole
-/// collider is inside the body. It is `crossing` if a corner, an end or a rim of the collider has entered a face
-/// between its edges by more than `tolerance` [m].
+/// Overlap of a body and a collider, if no node or edge of the body is inside the collider. The kind is `around` if the
+/// body contains the complete collider. It is `crossing` if a corner, an end or a rim of the collider has entered the
+/// interior of a face by more than `tolerance` [m].
 std::optional<Overlap> find_collider_inside(const ColliderGeometry& geometry, const RigidMotion& motion,
                                             const PlacedSolid& body, Real tolerance);
 
 /// A round body: all points within `radius` of a core, which is a point or a segment.
 struct RoundSolid {
-    std::array<Vec3, 2> end;  // ends of the core; equal if the core is a point [m]
+    std::array<Vec3, 2> end;  // ends of the core; equal for a point [m]
     bool is_segment;
     Real radius;  // [m]
 };

@@ -54,13 +54,14 @@ SimplexOverlap::SimplexOverlap(const Simplex& first, const Simplex& second, Real
     overlapping_ = count_ > 0;
 }
 
-/// True if two simplices overlap along an axis by no more than `tolerance` [m]. For two nearly parallel edges, the
-/// direction of the axis is arbitrary. The overlap along this axis is still correct.
+/// True if the two simplices overlap along an axis by at most `tolerance` [m]. For two nearly parallel edges, the
+/// direction of their cross product is arbitrary, but the computed overlap along this direction is still correct.
 bool SimplexOverlap::separates(const Simplex& first, const Simplex& second, const Vec3& along, Real tolerance) {
     const Real length = along.norm();
     if (!(length > 0)) return false;
     const Vec3 axis = along / length;
-    // This origin is near both simplices. So their distance from the world's origin causes no rounding.
+    // Coordinates are measured from a point near both simplices, so that a large distance from the world's origin
+    // causes no rounding errors.
     const Vec3& origin = first.point[0];
     const auto [lower, upper] = interval(first, origin, axis);
     const auto [other_lower, other_upper] = interval(second, origin, axis);

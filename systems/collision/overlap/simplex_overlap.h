@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// The convex hull of four points, or of the first three points. In each pair of simplices, at least one has four
-/// points.
+/// A simplex: the convex hull of four points (tetrahedron), or of the first three points (triangle). In each pair of
+/// simplices, at least one is a tetrahedron.
 struct Simplex {
     std::array<Vec3, 4> point;  // [m]
     std::size_t count;
@@ -16,17 +16,19 @@ struct Simplex {
     Simplex moved(const Vec3& shift) const;
 };
 
-/// Separating axis test of two simplices. For each axis normal to a face or to an edge of each simplex, it stores the
-/// distance that the first simplex would have to move to be apart. The interiors of the simplices overlap if, and only
-/// if, no axis separates them.
+/// Separating axis test of two simplices. The axes are the normals of all faces, and the cross products of an edge of
+/// the first and an edge of the second simplex. The test stores for each axis the distance by which the first simplex
+/// would have to move to be separated. The interiors of the simplices overlap if and only if no axis separates the
+/// simplices.
 class SimplexOverlap {
 public:
-    /// Tests one axis after another, until the simplices overlap along an axis by no more than `tolerance` [m].
+    /// Tests the axes one after another. The test ends at the first axis along which the simplices overlap by at most
+    /// `tolerance` [m].
     SimplexOverlap(const Simplex& first, const Simplex& second, Real tolerance);
 
     bool overlapping() const { return overlapping_; }
-    /// Distance by which the first simplex has to move along a unit direction to be apart from the second [m]. Valid
-    /// only if the simplices overlap.
+    /// Distance by which the first simplex has to move along a unit direction to be separated from the second simplex
+    /// [m]. Valid only if the simplices overlap.
     Real way_out(const Vec3& direction) const;
 
 private:
@@ -35,7 +37,7 @@ private:
     // Greatest number of axes: 4 + 4 face normals, and 6 x 6 cross products of an edge of each simplex.
     static constexpr std::size_t most_axes = 44;
     std::array<Vec3, most_axes> axis_;
-    // Distances to move the first simplex along each axis and against it [m]
+    // Distances by which the first simplex has to move along the axis, or against the axis, to be separated [m].
     std::array<Real, most_axes> forward_, backward_;
     std::size_t count_ = 0;
     bool overlapping_ = true;

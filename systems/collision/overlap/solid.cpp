@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// True if every edge of the surface is traversed equally often in both directions.
+/// True if every edge of the surface occurs equally often in both directions.
 bool is_closed(std::span<const SolidTriangle> surface) {
     struct Side {
         std::array<Index, 2> node;  // ascending
@@ -50,8 +50,8 @@ void finish(Solid& solid) {
 }
 
 /// Side of the line from a to b on which a point lies, seen along z: 1 is left, -1 is right. A point exactly on the
-/// line is shifted by an infinitesimal vector (e, e^2). So it lies on one side of the line, and on the opposite side of
-/// the reversed line.
+/// line is shifted by an infinitesimal vector (e, e^2), so that it lies on one side of the line, and on the opposite
+/// side of the line from b to a.
 int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     const Real x = b.x() - a.x(), y = b.y() - a.y();
     const Real area = x * (point.y() - a.y()) - y * (point.x() - a.x());
@@ -60,21 +60,21 @@ int side_of(const Vec3& point, const Vec3& a, const Vec3& b) {
     return x > 0 ? 1 : -1;
 }
 
-/// Returns 1 if a ray from the point along z leaves the surface through a triangle, -1 if it enters, and 0 if it misses
-/// the triangle.
+/// Returns 1 if a ray from the point in the direction z leaves the solid through the triangle, -1 if the ray enters the
+/// solid, and 0 if the ray misses the triangle.
 int passage(const Solid& solid, const std::array<Index, 4>& triangle, const Vec3& point) {
     const auto at = [&](std::size_t k) -> const Vec3& { return solid.point[static_cast<std::size_t>(triangle[k])]; };
     int side = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = (k + 1) % 3;
-        // The lower node comes first, so that both triangles at an edge find the same side.
+        // The lower node comes first, so that the computation gives the same side for both triangles at an edge.
         const int own =
             triangle[k] < triangle[next] ? side_of(point, at(k), at(next)) : -side_of(point, at(next), at(k));
         if (side != 0 && own != side) return 0;
         side = own;
     }
     const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
-    // true if the triangle is above the point, independent of the direction of its normal
+    // true if the triangle is above the point, whatever the direction of its normal
     return normal.dot(at(0) - point) * normal.z() > 0 ? side : 0;
 }
 

@@ -10,10 +10,10 @@ namespace skerry {
 
 namespace {
 
-/// Two simplices that overlap, and the position of their overlap.
+/// Two simplices that overlap, and the position of the overlap.
 struct Meeting {
     Index first, second;
-    Vec3 place;  // middle of the region that both bounding boxes share [m]
+    Vec3 place;  // centre of the intersection of the two bounding boxes [m]
 };
 
 Aabb box_of(const Simplex& s) {
@@ -30,13 +30,13 @@ Vec3 middle(const Aabb& box) {
     return (box.lower + box.upper) / 2;
 }
 
-/// Calls `meet` for each pair of overlapping simplices of two solids, with the indices of both, both simplices in the
-/// frame of the second solid, and their overlap.
+/// Calls `meet` for each pair of overlapping simplices of two solids. The arguments are the indices of both simplices,
+/// the two simplices in the frame of the second solid, and their SimplexOverlap.
 template <class Meet>
 void for_each_meeting(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, Meet&& meet) {
     // shift of the first solid relative to the second solid
     const Vec3 shift = first.shift - second.shift;
-    // The margin is needed because the box of a triangle in an axis-aligned plane has no thickness.
+    // The boxes are enlarged, because the box of a triangle in an axis-aligned plane has no thickness.
     const Vec3 skin = Vec3::Constant(tolerance);
     const Aabb of_second{second.solid.box.lower - shift - skin, second.solid.box.upper - shift + skin};
     first.solid.tree.for_each_overlap(of_second, [&](Index f) {
@@ -61,8 +61,8 @@ std::vector<Meeting> find_meetings(const PlacedSolid& first, const PlacedSolid& 
     return found;
 }
 
-/// For each direction: distance that the first solid has to move to leave all simplices of the second solid that it
-/// overlaps now [m].
+/// Returns one distance for each direction: the distance by which the first solid has to move to leave all simplices of
+/// the second solid that it overlaps now [m].
 std::vector<Real> ways_out(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                            std::span<const Vec3> direction) {
     std::vector<Real> way(direction.size(), 0);
@@ -88,8 +88,8 @@ OverlapKind kind_of(const PlacedSolid& first, const PlacedSolid& second, Real to
     return inside ? OverlapKind::inside : around ? OverlapKind::around : OverlapKind::crossing;
 }
 
-/// Distance that the first solid has to move along a unit direction until all its points are beyond the second solid
-/// [m].
+/// Distance by which the first solid has to move along a unit direction until all points of the first solid are beyond
+/// all points of the second solid [m].
 Real way_out_of_points(const PlacedSolid& first, const PlacedSolid& second, const Vec3& direction) {
     Real lowest = infinity, highest = -infinity;
     for (const Index n : first.solid.surface_point)
@@ -105,11 +105,12 @@ Vec3 middle_of_points(const PlacedSolid& placed) {
     return sum / static_cast<Real>(placed.solid.surface_point.size()) + placed.shift;
 }
 
-/// List of candidate directions. Each direction differs from all others by at least some degrees.
+/// List of candidate directions. The angle between any two directions in the list is at least 6 degrees.
 class Directions {
 public:
     void add(const Vec3& along) {
-        constexpr Real nearly_same = 0.995;  // cosine of 6 degrees; such an angle makes a way out 0.5 % longer
+        // Cosine of 6 degrees; a direction that is wrong by this angle makes the separating distance 0.5 % longer.
+        constexpr Real nearly_same = 0.995;
         constexpr std::size_t most = 48;
         const Real length = along.norm();
         if (!(length > 0) || found_.size() == most) return;
@@ -134,8 +135,8 @@ void add_normals(const Solid& solid, const std::vector<char>& met, Real sign, Di
     }
 }
 
-/// Directions along which the first solid may leave the second: the line between their middles, and the normals of
-/// overlapping faces.
+/// Directions along which the first solid may leave the second solid: the direction between their centres, and the
+/// normals of overlapping faces.
 Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second, std::span<const Meeting> meetings) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));
@@ -147,7 +148,7 @@ Directions likely_directions(const PlacedSolid& first, const PlacedSolid& second
     return directions;
 }
 
-/// Extent of the overlap positions along a direction [m].
+/// Extent of the positions of all overlaps along a direction [m].
 Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     Real lowest = infinity, highest = -infinity;
     for (const Meeting& m : meetings) {
@@ -157,13 +158,15 @@ Real extent(std::span<const Meeting> meetings, const Vec3& direction) {
     return highest - lowest;
 }
 
-/// The direction along which the overlap region is thinnest. For solids that overlap slightly, it is the direction of
-/// the shortest way out.
+/// The direction along which the region of overlap is thinnest. If the solids overlap only slightly, this is the
+/// direction of the shortest separating motion.
 Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real tolerance,
                     std::span<const Meeting> meetings) {
     const Directions directions = likely_directions(first, second, meetings);
     const std::vector<Real> way = ways_out(first, second, tolerance, directions.span());
-    constexpr Real shorter = 1 - 1e-6;  // shorter by more than rounding, so that the first of equal ways is used
+    // A distance must be smaller by more than rounding errors to replace an earlier one, so that the first of equal
+    // distances is used.
+    constexpr Real shorter = 1 - 1e-6;
     Vec3 best = Vec3::UnitZ();
     Real least = infinity;
     for (std::size_t d = 0; d < way.size(); ++d)
@@ -174,8 +177,8 @@ Vec3 best_direction(const PlacedSolid& first, const PlacedSolid& second, Real to
     return best;
 }
 
-/// Distance that the first solid has to move along `direction` until it overlaps no simplex of the second [m]. Each
-/// iteration leaves the simplices that are overlapped at the current position.
+/// Distance by which the first solid has to move along `direction` until it overlaps no simplex of the second solid
+/// [m]. Each iteration moves it out of the simplices that it overlaps at its current position.
 Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tolerance, const Vec3& direction) {
     constexpr int most_tries = 16;
     Real gone = 0;
@@ -188,7 +191,8 @@ Real way_out_along(const PlacedSolid& first, const PlacedSolid& second, Real tol
     return way_out_of_points(first, second, direction);
 }
 
-/// Finds the way out of a solid that contains the first solid or is contained in it: past the end of the second solid.
+/// Finds the separating motion if one of the solids contains the other: the first solid moves past the end of the
+/// second solid.
 void go_past(const PlacedSolid& first, const PlacedSolid& second, Overlap& overlap) {
     Directions directions;
     directions.add(middle_of_points(first) - middle_of_points(second));

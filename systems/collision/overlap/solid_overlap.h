@@ -1,4 +1,4 @@
-// Overlap of two solids, and the direction and distance that separate them (docs/methods/collision.md 9).
+// Overlap of two solids, and the direction and distance of a motion that separates them (docs/methods/collision.md 9).
 #pragma once
 
 #include <optional>
@@ -10,12 +10,13 @@ namespace skerry {
 
 struct Overlap {
     OverlapKind kind;
-    Real depth;      // distance along `direction` by which the first solid has to move to be apart [m]
-    Vec3 direction;  // unit
-    Vec3 place;      // middle of the overlap region [m]
+    // Distance by which the first solid has to move along `direction` to be separated from the second [m].
+    Real depth;
+    Vec3 direction;  // unit vector
+    Vec3 place;      // centre of the region of overlap [m]
 };
 
-/// A solid, and its translation since the solid was made.
+/// A solid, and the translation of the solid since it was made.
 struct PlacedSolid {
     const Solid& solid;
     Vec3 shift;  // [m]
@@ -23,10 +24,11 @@ struct PlacedSolid {
     Aabb box() const { return {solid.box.lower + shift, solid.box.upper + shift}; }
 };
 
-/// Overlap of two solids, of which the first consists of tetrahedra. They overlap if a tetrahedron of the first and a
-/// simplex of the second overlap by more than `tolerance` [m], or if the first is inside a closed surface that is the
-/// second. If their surfaces cross, `direction` is close to the direction of the shortest way out. If one contains the
-/// other, it is the best of a few directions, and `depth` moves the first beyond the end of the second.
+/// Overlap of two solids. The first solid must consist of tetrahedra. The solids overlap if a tetrahedron of the first
+/// solid and a simplex of the second overlap by more than `tolerance` [m], or if the first solid is inside the closed
+/// surface of the second. If the two surfaces cross, `direction` is close to the direction of the shortest separating
+/// motion. If one solid contains the other, `direction` is the best of a few directions, and a motion by `depth` takes
+/// the first solid past the end of the second.
 std::optional<Overlap> find_overlap(const PlacedSolid& first, const PlacedSolid& second, Real tolerance);
 
 }  // namespace skerry

@@ -8,26 +8,28 @@ namespace skerry {
 
 namespace {
 
-/// Intersects a ray with the pieces of a shape's surface, in the frame of the shape, and keeps the nearest hit.
+/// Intersects a ray with the pieces of a shape's surface, in the coordinate frame of the shape, and stores the nearest
+/// hit.
 class Pieces {
 public:
     Pieces(const Ray& ray, Real limit) : ray_(ray), limit_(limit) {}
 
-    /// Intersects the ray with the ring z = height, inner <= r <= outer.
+    /// Intersects the ray with the flat ring z = height, inner <= r <= outer, where r is the distance from the z axis.
     void ring(Real height, Real inner, Real outer, Real up) {
         flat(2, height, up, [&](const Vec3& p) {
             const Real squared = p.x() * p.x() + p.y() * p.y();
             return squared <= outer * outer && squared >= inner * inner;
         });
     }
-    /// Intersects the ray with a plane in which the coordinate `axis` is `at`. A hit counts if belongs(point) is true.
+    /// Intersects the ray with the plane in which the coordinate `axis` has the value `at`. A hit counts only if
+    /// belongs(point) is true. `side`: sign of the outward normal.
     void flat(int axis, Real at, Real side, auto&& belongs) {
         if (ray_.direction[axis] == 0) return;
         const Real t = (at - ray_.origin[axis]) / ray_.direction[axis];
         if (belongs(Vec3(ray_.origin + t * ray_.direction))) take(t, side * Vec3::Unit(axis));
     }
-    /// Intersects the ray with the round side of a cylinder around z for z0 <= z <= z1. `side` is -1 if the outward
-    /// normal points to the axis, otherwise 1.
+    /// Intersects the ray with the curved side of a cylinder around the z axis, for z0 <= z <= z1. `side`: -1 if the
+    /// outward normal points to the axis, otherwise 1.
     void tube(Real radius, Real z0, Real z1, Real side) {
         const Vec3 across(ray_.direction.x(), ray_.direction.y(), 0);
         roots(Vec3(ray_.origin.x(), ray_.origin.y(), 0), across, radius, [&](Real t) {
@@ -35,8 +37,8 @@ public:
             if (p.z() >= z0 && p.z() <= z1) take(t, side * Vec3(p.x(), p.y(), 0) / radius);
         });
     }
-    /// Intersects the ray with a sphere around (0, 0, height). `up` is 1 or -1 for the upper or lower half of the
-    /// sphere, and 0 for the whole sphere.
+    /// Intersects the ray with a sphere around (0, 0, height). `up`: 1 for the upper half of the sphere, -1 for the
+    /// lower half, 0 for the complete sphere.
     void ball(Real height, Real radius, Real up) {
         const Vec3 centre(0, 0, height);
         roots(ray_.origin - centre, ray_.direction, radius, [&](Real t) {
@@ -52,8 +54,8 @@ private:
         if (!(t >= 0 && t <= limit_) || (nearest_ && !(t < nearest_->distance))) return;
         nearest_ = {t, normal};
     }
-    /// Calls `found` for each t with |origin + t direction| = radius. The computation starts at the point of the ray
-    /// nearest to the centre. So it is also exact for rays that start far away.
+    /// Calls found(t) for each t with |origin + t direction| = radius. The computation starts at the point of the ray
+    /// nearest to the centre, so it is also exact for rays that start far away.
     static void roots(const Vec3& origin, const Vec3& direction, Real radius, auto&& found) {
         const Real squared = direction.squaredNorm();
         if (squared == 0) return;
@@ -119,7 +121,7 @@ std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const Rigid
             add_bucket(size[0], size[1], size[2], pieces);
             break;
         case ColliderShape::mesh:
-            SKERRY_CHECK(false);  // a mesh is intersected by its triangles
+            SKERRY_CHECK(false);  // triangles are used to intersect a ray with a mesh
             break;
     }
     if (!pieces.nearest()) return std::nullopt;

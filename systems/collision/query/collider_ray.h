@@ -14,7 +14,8 @@ struct ShapePoint {
 };
 
 /// First intersection of a ray with the surface of a plane, sphere, box, capsule, cylinder or bucket, at a distance of
-/// at most `limit` [m]. The surface is hit from either side. A ray within a flat side does not hit this side.
+/// at most `limit` [m]. The ray may hit the surface from either side. A ray that lies in a flat side does not hit this
+/// side.
 std::optional<ShapePoint> cast_ray(const ColliderGeometry& geometry, const RigidMotion& motion, const Ray& ray,
                                    Real limit);
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr Real rounding = 16 * std::numeric_limits<Real>::epsilon();
 
-/// A ray, sheared so that it runs along the axis of its largest component. Then the sign of one 2x2 determinant shows
-/// on which side the ray passes an edge. The rounding is equal for both triangles at this edge.
+/// A ray, sheared so that it is parallel to the axis of its largest component. The sign of one 2x2 determinant then
+/// tells on which side of an edge the ray passes. The rounding errors are equal for both triangles at this edge.
 class ShearedRay {
 public:
     explicit ShearedRay(const Ray& ray) : ray_(ray) {
@@ -24,7 +24,8 @@ public:
         shear_ = Vec3(ray.direction[x_], ray.direction[y_], 1) / ray.direction[z_];
     }
 
-    /// Returns nothing if the ray misses the triangle or lies in the plane of the triangle.
+    /// Intersection of the ray with a triangle. No value if the ray misses the triangle or lies in the plane of the
+    /// triangle.
     std::optional<TrianglePoint> meet(Index triangle, const Vec3& a, const Vec3& b, const Vec3& c) const {
         const Vec3 A = sheared(a), B = sheared(b), C = sheared(c);
         const Real u = C.x() * B.y() - C.y() * B.x(), v = A.x() * C.y() - A.y() * C.x(),
@@ -37,8 +38,8 @@ public:
         return TrianglePoint{triangle, {u / sum, v / sum, w / sum}, distance};
     }
 
-    /// True if the ray may hit something inside a box at a distance of at most `limit` [m], with a tolerance for
-    /// rounding.
+    /// True if the ray may hit an object inside a box at a distance of at most `limit` [m]. The test has a tolerance
+    /// for rounding errors.
     bool may_meet(const Aabb& box, Real limit) const {
         Real near = 0, far = limit;
         for (int i = 0; i < 3; ++i) {
@@ -66,7 +67,8 @@ private:
     Vec3 shear_;
 };
 
-/// Keeps the nearest point. Among equally near points, it keeps the one on the triangle with the lowest row.
+/// Stores the nearest point found so far. If several points are equally near, the point on the triangle with the lowest
+/// row is stored.
 class Nearest {
 public:
     explicit Nearest(Real limit) : limit_(limit) {}
@@ -85,7 +87,8 @@ private:
     std::optional<TrianglePoint> best_;
 };
 
-/// Calls visit(triangle) for every triangle in the leaves of a tree, except in boxes for which worth(box) is false.
+/// Calls visit(triangle) for the triangles in all leaves of a tree, except for leaves below a node whose box does not
+/// satisfy worth(box).
 void for_each_triangle(const SurfaceTree& surface, auto&& worth, auto&& visit) {
     for (Index row = surface.tree.begin; row < surface.tree.end;) {
         const auto r = static_cast<std::size_t>(row);

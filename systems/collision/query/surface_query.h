@@ -10,19 +10,19 @@
 
 namespace skerry {
 
-/// The points origin + t direction of a ray, with t >= 0.
+/// A ray: the points origin + t direction with t >= 0.
 struct Ray {
     Vec3 origin;     // [m]
-    Vec3 direction;  // unit
+    Vec3 direction;  // unit vector
 };
 
-/// A surface and its bounding volume hierarchy, whose boxes fit the present positions.
+/// A surface and its bounding volume hierarchy. The boxes must have been computed from the present positions.
 struct SurfaceTree {
-    Range tree;  // rows of `node` and `box` of this surface
+    Range tree;  // rows of `node` and `box` that belong to this surface
     std::span<const BvhNode> node;
     std::span<const LeafTriangles> leaf_triangle;
     std::span<const Aabb> box;                            // [m]
-    std::span<const std::array<Index, 3>> triangle_node;  // rows of `position`
+    std::span<const std::array<Index, 3>> triangle_node;  // corners of each triangle: rows of `position`
     std::span<const Vec3> position;                       // [m]
 };
 
@@ -32,13 +32,13 @@ struct TrianglePoint {
     Real distance;  // [m]
 };
 
-/// The first triangle that a ray hits from either side, at a distance of at most `limit` [m], which may be infinite.
-/// Among equally near triangles, it is the one with the lowest row. The test is watertight: a ray through an edge or
-/// corner of several triangles hits one of them (Woop, Benthin and Wald 2013).
+/// The first triangle that a ray hits from either side, at a distance of at most `limit` [m], which may be infinite. If
+/// several triangles are equally near, the triangle with the lowest row is returned. The test is watertight: a ray
+/// through an edge or corner of several triangles hits one of the triangles (Woop, Benthin and Wald 2013).
 std::optional<TrianglePoint> cast_ray(const SurfaceTree& surface, const Ray& ray, Real limit);
 
-/// The point of the surface nearest to `point` within a distance of `limit` [m]. Among equally near points, it is the
-/// one on the triangle with the lowest row.
+/// The point of the surface that is nearest to `point`, if its distance is at most `limit` [m]. If several points are
+/// equally near, the point on the triangle with the lowest row is returned.
 std::optional<TrianglePoint> nearest_point(const SurfaceTree& surface, const Vec3& point, Real limit);
 
 }  // namespace skerry

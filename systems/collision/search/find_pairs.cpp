@@ -16,7 +16,7 @@ namespace skerry {
 namespace {
 
 constexpr std::size_t bodies_per_block = 16;
-// A block of this many rows, groups or pairs takes some microseconds.
+// The work for one block of this many rows, groups or pairs takes some microseconds.
 constexpr std::size_t rows_per_block = 64, groups_per_block = 256, pairs_per_block = 256;
 
 bool is_movable(const BodyTable& body, Index b) {
@@ -39,7 +39,7 @@ Real mean_body_edge(const BodyTable& body) {
     return count > 0 ? sum / count : 0;
 }
 
-/// Computes the boxes of the bodies, and the travel up to which these boxes are valid.
+/// Computes the boxes of the bodies, and the travel up to which each box is valid.
 void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                     Real common_travel, SearchState& search) {
     const BodyTable& body = inputs.body;
@@ -57,8 +57,8 @@ void fit_body_boxes(Executor& executor, const CollisionInputs& inputs, const Col
     });
 }
 
-/// Largest distance from the origin of a collider to a point of the collider that may touch a body [m]. For a plane, it
-/// is the distance to the furthest corner of any body's box.
+/// Distance from the origin of a collider to its furthest point that may touch a body [m]. For a plane, this is the
+/// distance from the origin to the furthest corner of any body's box.
 Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<const Aabb> body_box) {
     const ColliderGeometry& geometry = inputs.collider.geometry[collider];
     if (geometry.shape != ColliderShape::plane) return collider_radius(geometry);
@@ -71,7 +71,7 @@ Real collider_extent(const CollisionInputs& inputs, Index collider, std::span<co
     return extent;
 }
 
-/// Computes the boxes of the colliders. They are stored after the boxes of the bodies.
+/// Computes the boxes of the colliders, which are stored after the boxes of the bodies.
 void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_travel, SearchState& search) {
     const ColliderTable& collider = inputs.collider;
     const std::size_t body_count = inputs.body.slot.size();
@@ -79,8 +79,8 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     for (std::size_t c = 0; c < collider.slot.size(); ++c) {
         const Index row = static_cast<Index>(c);
         memory.collider_extent[c] = collider_extent(inputs, row, memory.box.span().first(body_count));
-        // The reach of the collider is computed again. It is not the difference of bound and travel, because the travel
-        // of a rotating shape grows without limit, so that this difference would be inexact.
+        // The reach of the collider is computed again instead of as the difference travel_bound - travel. The travel of
+        // a rotating shape grows without limit, so the difference would have a large rounding error.
         memory.collider_margin[c] = collider_reach(inputs, row, memory.collider_extent[c], h) + common_travel;
         search.collider_valid_until[c] = collider.travel[c] + memory.collider_margin[c];
         memory.box[body_count + c] = collider_box(collider.geometry[c], collider.motion[c]);
@@ -88,14 +88,14 @@ void fit_collider_boxes(const CollisionInputs& inputs, Real h, Real common_trave
     }
 }
 
-/// Least signed distance of a box to a plane; negative if the box reaches behind the plane [m].
+/// Least signed distance of a box from a plane; negative if a part of the box is behind the plane [m].
 Real distance_to_plane(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
     return normal.dot(lowest - plane.position);
 }
 
-/// Search for pairs of overlapping boxes. The pairs are stored in memory.pairs, in key order.
+/// Search for pairs of overlapping boxes. The result is memory.pairs, in key order.
 class BroadSearch {
 public:
     BroadSearch(Executor& executor, const CollisionInputs& inputs, SearchMemory& memory)
@@ -119,8 +119,8 @@ public:
 private:
     Index body_count() const { return static_cast<Index>(inputs_.body.slot.size()); }
 
-    /// Lists the boxes of finite size that can be part of a pair. A body with a position that is not finite has no such
-    /// box.
+    /// Lists the boxes that can be part of a pair. Mesh colliders and boxes that are not finite are left out, for
+    /// example the box of a body with an infinite position.
     void list_entries() {
         memory_.entry.clear();
         memory_.has_box.assign(memory_.box.size(), 0);
@@ -188,8 +188,8 @@ private:
                 collider, found);
     }
 
-    /// Adds a pair with an expired candidate list, so that the pair is searched at once. Only a search shows how far
-    /// apart the two partners are.
+    /// Adds a pair with an expired candidate list, so that the pair is searched in this step. Only a search shows how
+    /// far apart the two partners are.
     void add_row(std::uint64_t key, PairKind kind, Index first, Index second, Column<FoundPair>& found) const {
         if (!may_collide(inputs_.body, inputs_.collider, inputs_.disabled_pairs, kind, first, second)) return;
         const Vec3 apart = kind == PairKind::collider
@@ -198,7 +198,7 @@ private:
         found.push_back({key, kind, first, second, -infinity, PairState::unknown, apart, 0});
     }
 
-    /// Groups the pairs by kind and first body, then sorts each group.
+    /// Groups the pairs by kind and slot of the first body, then sorts each group.
     void sort_pairs() {
         const std::size_t slots = 1 + greatest_slot(), groups = 2 * slots;
         const auto group_of = [&](const FoundPair& pair) {
@@ -240,7 +240,8 @@ bool is_forgotten(const SearchMemory& memory, const FoundPair& pair) {
     return memory.body_forgotten[pair.first] || of_second[pair.second];
 }
 
-/// Copies values of pairs that existed before from their old rows. It stores these old rows in memory.old_row.
+/// Copies the values of pairs that existed before from their previous rows in PairTable. Stores the previous rows in
+/// memory.old_row.
 void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pairs) {
     memory.old_row.assign(memory.pairs.size(), no_index);
     parallel_for(executor, memory.pairs.size(), pairs_per_block, [&](std::size_t begin, std::size_t end) {
@@ -258,7 +259,8 @@ void recall_pairs(Executor& executor, SearchMemory& memory, const PairTable& pai
     });
 }
 
-/// Moves the candidate lists of pairs that existed before. New pairs reuse the memory of removed pairs.
+/// Moves the candidate lists of pairs that existed before to their new rows. New pairs reuse the memory of removed
+/// pairs.
 void move_lists(Executor& executor, SearchMemory& memory, PairTable& pairs) {
     const std::size_t count = memory.pairs.size();
     const std::size_t lists = std::max({count, pairs.candidates.size(), memory.candidates.size()});
@@ -348,7 +350,8 @@ void find_pairs(Executor& executor, const CollisionInputs& inputs, const Collisi
     search.memory.sphere.resize(body_count);
     search.memory.collider_extent.resize(collider_count);
     search.memory.collider_margin.resize(collider_count);
-    // Bodies and colliders moved by a script may travel as far as an average body before the next broad search.
+    // Travel that is allowed before the next broad search, for bodies and colliders that a script moves. It is the
+    // allowed travel of an average body.
     const Real common_travel = settings.broad_skin / 2 * mean_body_edge(inputs.body);
     fit_body_boxes(executor, inputs, settings, common_travel, search);
     fit_collider_boxes(inputs, h, common_travel, search);

@@ -1,4 +1,4 @@
-// Broad search for pairs of two bodies, or of a body and a collider, that are near each other.
+// Broad search for pairs of two bodies, or of a body and a collider, that are close to each other.
 #pragma once
 
 #include "components/pair_table.h"
@@ -7,17 +7,17 @@
 
 namespace skerry {
 
-/// Lists all pairs whose partners could come near each other before the next broad search. This search is due when a
-/// travel bound reaches body_valid_until or collider_valid_until, which are set here. The boxes of all partners are
-/// grown accordingly, and pairs of overlapping boxes are listed in key order. A pair that existed before keeps its
-/// candidates, unless one of the partners is forgotten. Bodies without a surface and pairs without a deformable body
-/// are left out. Overlapping boxes are found in a grid (BoxGrid); planes are compared with every body. Requires
-/// memory.body_travel_bound, body_forgotten and collider_forgotten of this step. Runs in parallel over blocks of
-/// bodies, then of pairs.
+/// Lists all pairs of objects that could come close to each other before the next broad search. The next broad search
+/// is due when a travel bound reaches body_valid_until or collider_valid_until, which this function sets. The boxes of
+/// all objects are enlarged accordingly, and pairs of overlapping boxes are listed in key order. A pair that existed
+/// before keeps its candidates, unless one of its partners is forgotten. Bodies without a surface and pairs without a
+/// deformable body are not listed. Overlapping boxes are found in a grid (BoxGrid); planes are compared with every
+/// body. Requires memory.body_travel_bound, body_forgotten and collider_forgotten of this step. Runs in parallel over
+/// blocks of bodies, then over blocks of pairs.
 void find_pairs(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                 SearchState& search, PairTable& pairs);
 
-/// Fits the box and the bounding sphere of a body to its present positions.
+/// Computes the box and the bounding sphere of a body from its present node positions.
 void fit_bounds(const CollisionInputs& inputs, Index body, Aabb& box, BoundingSphere& sphere);
 
 }  // namespace skerry

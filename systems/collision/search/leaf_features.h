@@ -1,5 +1,5 @@
-// Features of a leaf of a bounding volume hierarchy, stored side by side, so that one feature is compared with eight at
-// once.
+// Features of a leaf of a bounding volume hierarchy, stored in vectors of eight, so that one feature is compared with
+// eight features at once.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Coordinates of eight points [m], in the order of the axes.
+/// Coordinates of eight points: vectors of the x, y and z coordinates [m].
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
 inline LaneVec3<Real8> load(const PointLanes& points) {
@@ -41,11 +41,11 @@ inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::arr
     return lanes;
 }
 
-/// Corners of the triangles of a leaf. Lanes without a triangle repeat the first triangle.
+/// Corners of the triangles in a leaf. Unused lanes repeat the first triangle.
 struct LeafCorners {
     Index leaf = no_index;  // row of BvhLeafTable
     std::array<PointLanes, 3> corner;
-    LeafBoxes box;  // of the triangles
+    LeafBoxes box;  // boxes of the triangles
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
@@ -72,7 +72,7 @@ inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
     return sum;
 }
 
-/// Number of groups of eight features. The last group may contain fewer features.
+/// Number of groups of eight features that `count` features need. The last group may have unused lanes.
 inline std::size_t groups_of(Index count) {
     return (static_cast<std::size_t>(count) + leaf_lanes - 1) / leaf_lanes;
 }
@@ -81,11 +81,11 @@ inline unsigned used_lanes(Index count, std::size_t group) {
     return left < leaf_lanes ? (1U << left) - 1 : (1U << leaf_lanes) - 1;
 }
 
-/// The points that are owned by the triangles of a leaf.
+/// The points that the triangles of a leaf own.
 struct LeafPoints {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<PointLanes, 3> at;  // groups of eight; lanes after the last point repeat the last point
+    std::array<PointLanes, 3> at;  // groups of eight points; lanes after the last point repeat the last point
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
@@ -102,11 +102,11 @@ struct LeafPoints {
     unsigned used(std::size_t group) const { return used_lanes(list->point_count, group); }
 };
 
-/// The edges that are owned by the triangles of a leaf.
+/// The edges that the triangles of a leaf own.
 struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
-    std::array<LeafBoxes, 3> box;  // groups of eight; lanes after the last edge repeat the last edge
+    std::array<LeafBoxes, 3> box;  // groups of eight edges; lanes after the last edge repeat the last edge
     std::array<std::array<PointLanes, 2>, 3> end;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {

@@ -29,7 +29,7 @@ public:
         const Real points = add_points();
         const Real between = distance_between_nodes();
         if (between < face_zone_ + pair_.margin) {
-            // A round body has no faces. The axis of a capsule is an edge.
+            // A round body has no faces, but the axis of a capsule is an edge.
             if (inputs_.body.core_nodes[pair_.first] == 0) add_faces();
             add_edges();
         }
@@ -41,7 +41,8 @@ private:
     Vec3 local(Index node) const { return to_local(motion_, position(node)); }
     Range vertices() const { return inputs_.body.vertices[pair_.first]; }
 
-    /// Adds the nodes near the collider as candidates. Returns the least signed distance of a node [m].
+    /// Adds the nodes close to the collider as candidates. Returns the least signed distance of any node from the
+    /// collider [m].
     Real add_points() {
         const Real radius = pair_.scale.zone + pair_.margin;
         Real nearest = infinity;
@@ -61,13 +62,14 @@ private:
         return nearest;
     }
 
-    /// Lower bound of the distance that the body has to move before an edge or face can touch between its nodes [m].
+    /// Lower bound of the distance that the body has to move before the interior of an edge or face can touch [m].
     Real distance_between_nodes() const {
         const bool has_edges = inputs_.body.edges[pair_.first].size() > 0;
         if (!has_edges || nearest_node_ == no_index || collider_point_count(geometry_.shape) == 0) return infinity;
         const Vec3 middle = local(nearest_node_);
-        // Two bounds for the whole body: `hull` uses the tangent plane of the collider at the nearest node. `flat` is
-        // the motion during which all nodes stay over one flat region.
+        // Two lower bounds for the complete body. `hull`: distance of the body from the tangent plane of the collider's
+        // hull at the nearest node. `flat`: distance of a motion during which all nodes stay in one flat region of the
+        // collider.
         Real hull = infinity, flat = infinity;
         const Index place = flat_place(geometry_, middle);
         const HullTangent tangent = hull_tangent(geometry_, middle);

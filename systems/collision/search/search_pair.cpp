@@ -19,12 +19,12 @@ namespace skerry {
 
 namespace {
 
-// Number of leaves whose data is cached. Two bodies that lie on each other touch with some ten leaves.
+// Number of leaves whose data is cached. Two bodies that lie on each other touch with about ten leaves.
 constexpr std::size_t kept_leaves = 16;
 template <class Features>
 using KeptLeaves = std::array<Features, kept_leaves>;
 
-// Number of pairs of leaves that are collected before they are compared.
+// Number of pairs of leaves that are collected before their features are compared.
 constexpr std::size_t most_near = 32;
 
 constexpr unsigned all_lanes = (1U << leaf_lanes) - 1;
@@ -67,10 +67,11 @@ private:
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
 
-    /// Prefetches the data of a leaf, which is spread too widely in memory to be cached. Leaves are prefetched when
-    /// they are found, and compared when several pairs have been found.
+    /// Prefetches the data of a leaf, which is too scattered in memory to be in the cache. Leaves are prefetched when
+    /// they are found, and compared after several pairs of leaves have been found.
     void prefetch_leaf(Index a) const {
-        constexpr std::size_t owned_edges = 12, owned_points = 4;  // average numbers for eight triangles
+        // Average numbers of edges and points that eight triangles own.
+        constexpr std::size_t owned_edges = 12, owned_points = 4;
         const LeafFeatures& features = inputs_.leaf_features[node(a).leaf];
         const LeafNodes& nodes = inputs_.leaf_nodes[node(a).leaf];
         ask_for_lines(features.edge.data(), owned_edges);
@@ -99,9 +100,9 @@ private:
     }
 
     void compare_leaves(Index a, Index b) {
-        // The core of a sphere, or of the sphere around a cylinder, is a point that is tested against faces and axes.
-        // This test also finds the case that a node is nearest. A node within a flat surface then does not obstruct the
-        // sphere. For two spheres, the first is tested against the second.
+        // The core of a sphere or cylinder is a point in this search. It is tested against faces and axes of the other
+        // body. A test of the point against the faces also covers the case that a node is nearest, so that a node
+        // inside a flat surface does not obstruct the sphere. For two spheres, the first is tested against the second.
         if (!second_is_point_ || first_is_point_) compare_points(a, b, false);
         if (!first_is_point_) compare_points(b, a, true);
         const LeafEdges &own = features_of(a, edges_[0]), &other = features_of(b, edges_[1]);
@@ -113,7 +114,7 @@ private:
                 [&](std::size_t lane) { compare_edge(own, leaf_lanes * group + lane, other, near); });
     }
 
-    /// Compares the features of a leaf with each other: points against all triangles, and every pair of edges once.
+    /// Compares the features of a leaf with each other: all points with all triangles, and each pair of edges once.
     void compare_within(Index a) {
         compare_points(a, a, false);
         const LeafEdges& own = features_of(a, edges_[0]);
@@ -136,7 +137,7 @@ private:
         return features;
     }
 
-    /// Marks the edges that are near a box. Returns true if there is any.
+    /// Sets the bits of the edges that are close to a box. Returns true if there is any such edge.
     bool any_near(const LeafEdges& edges, const Aabb& box, std::array<unsigned, 3>& near) const {
         unsigned any = 0;
         for (std::size_t group = 0; group < edges.groups(); ++group)
@@ -179,7 +180,7 @@ private:
         });
     }
 
-    /// Compares edge i of one leaf with the marked edges of another leaf.
+    /// Compares edge i of one leaf with those edges of another leaf whose bits are set in `with`.
     void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
         const LaneVec3<Real8> a0 = spread(position(a.node(i)[0])), a1 = spread(position(a.node(i)[1]));
@@ -217,8 +218,8 @@ private:
                                                      pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
-    /// Adds a candidate. It sleeps until the features may have come within `zone`, the distance at which they get a
-    /// closer test.
+    /// Adds a candidate. It needs no test until the distance of its features may be below `zone`. `squared`: squared
+    /// distance of the features [m^2].
     void add(const Candidate& candidate, Real squared, Real zone) {
         found_.push_back({candidate, pair_.travel_base + std::sqrt(squared) - zone});
     }
@@ -230,15 +231,18 @@ private:
     Column<FoundCandidate>& found_;
     const Real radius_;
     const Real radius_squared_;
-    const Real edge_radius_squared_;  // edges are tested to a smaller depth than points
+    // Squared search distance of edges, which is smaller than the search distance of points [m^2].
+    const Real edge_radius_squared_;
     const bool self_;
-    const bool first_is_point_, second_is_point_;  // true for a sphere or a cylinder, whose core is a point here
-    // Cached data of recent leaves of the first and of the second tree, because each leaf is compared with several
-    // leaves of the other tree.
+    // True for a sphere or a cylinder, whose core is a point in this search.
+    const bool first_is_point_, second_is_point_;
+    // Cached data of leaves that were recently read, for the first and the second tree. Each leaf is compared with
+    // several leaves of the other tree.
     std::array<KeptLeaves<LeafPoints>, 2> points_;
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
     std::array<KeptLeaves<LeafCorners>, 2> corners_;
-    std::array<std::array<Index, 2>, most_near> near_;  // pairs of leaves that are still to be compared
+    // Collected pairs of leaves whose features are not compared yet.
+    std::array<std::array<Index, 2>, most_near> near_;
     std::size_t near_count_ = 0;
 };
 

@@ -11,9 +11,9 @@
 
 namespace skerry {
 
-/// Up to this number, candidates are sorted by their rank. The rank is the number of candidates of one kind that come
-/// before. A pair of bodies has some hundreds of candidates. To compare all of them, eight at a time, is faster than
-/// the mispredicted branches of a usual sort.
+/// Up to this number of candidates, each candidate is sorted by its rank among the candidates of one kind. The rank is
+/// the number of candidates with a lower key. A pair of bodies has some hundreds of candidates. Comparing all of them
+/// with each other, eight at a time, takes less time than the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
@@ -22,7 +22,8 @@ inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
 
 namespace sort_found_detail {
 
-/// The two highest bits of a feature key are the kind. The bits below are in the order of features of one kind.
+/// The two highest bits of a feature key are the kind of the features. The lower bits give the order of candidates of
+/// the same kind.
 inline constexpr int kind_shift = 62;
 inline std::size_t kind_of(const FoundCandidate& found) {
     return static_cast<std::size_t>(found.candidate.feature >> kind_shift);
@@ -44,12 +45,12 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
     std::size_t first = 0;
     for (std::size_t kind = 0; kind < kinds; ++kind) {
         const std::size_t blocks = (count[kind] + lanes - 1) / lanes;
-        for (std::size_t i = 0; i < lanes * blocks; ++i)  // padding sorts last
+        for (std::size_t i = 0; i < lanes * blocks; ++i)  // padding is sorted to the end
             order[i / lanes][i % lanes] =
                 i < count[kind] ? order_of(found[row[kind][i]]) : std::numeric_limits<std::int64_t>::max();
         for (std::size_t i = 0; i < count[kind]; ++i) {
             const LaneBits own = LaneBits{} + order[i / lanes][i % lanes];
-            LaneBits less{};  // -1 for each candidate that comes before
+            LaneBits less{};  // -1 for each candidate with a lower key
             for (std::size_t b = 0; b < blocks; ++b) less += order[b] < own;
             std::int64_t rank = 0;
             for (std::size_t l = 0; l < lanes; ++l) rank -= less[l];
@@ -62,7 +63,7 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
 
 }  // namespace sort_found_detail
 
-/// Sorts candidates into feature order. No feature may occur twice.
+/// Sorts candidates in feature order. No feature key may occur twice.
 inline void sort_by_feature(Column<FoundCandidate>& found) {
     if (found.size() <= counted_at_most)
         sort_found_detail::sort_by_counting(found);

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Greatest speed of the surface of a body relative to a frame with the velocity `frame` [m/s].
+/// Greatest speed of a point on the surface of a body, relative to a frame with the velocity `frame` [m/s].
 Real surface_speed(const CollisionInputs& inputs, Index body, const Vec3& frame) {
     Real squared = 0;
     const Range vertices = inputs.body.vertices[body];
@@ -30,7 +30,8 @@ BodyReach body_reach(const CollisionInputs& inputs, const CollisionSettings& set
         in_frame = std::max(in_frame, surface_speed(inputs, body, inputs.body.frame[body].velocity));
         in_world = std::max(in_world, surface_speed(inputs, body, Vec3::Zero()));
     }
-    // Gravity accelerates both bodies equally, but one of them may be held. So each body counts gravity in full.
+    // Gravity accelerates both bodies equally unless one of them is held in place. The full gravity is therefore used
+    // for each body.
     const auto of = [&](Real speed) {
         return reach(h, speed, settings.gravity, inputs.body.contact_distance[body] / 2);
     };

@@ -26,13 +26,13 @@ public:
 
 private:
     bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
-        // The squared distance of overlapping boxes is below this limit. Denormal numbers may count as 0.
+        // Upper limit of the squared distance of overlapping boxes. Denormal numbers may count as 0.
         constexpr Real overlap = std::numeric_limits<Real>::min();
         const LeafBoxes first = boxes_of(own), second = boxes_of(other);
         bool crossing = false;
         for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
             unsigned lanes = lanes_below(distance_squared(second, lane_of(first, i)), overlap);
-            if (same) lanes &= ~0U << (i + 1);  // each pair once
+            if (same) lanes &= ~0U << (i + 1);  // each pair is tested once
             for_each_lane(lanes, [&](std::size_t j) {
                 crossing = crossing ||
                            triangles_cross(inputs_.leaf_triangle[own.leaf][i], inputs_.leaf_triangle[other.leaf][j]);

@@ -1,4 +1,4 @@
-// Axis-aligned boxes. Coordinates that are not numbers do not extend a box. An empty box is far from everything.
+// Axis-aligned boxes. NaN coordinates do not extend a box. An empty box has an infinite distance from all other boxes.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ inline void grow(Aabb& box, const Aabb& other) {
     }
 }
 
-/// Squared distance of two boxes; 0 if they overlap [m^2]. Half of the time of a search is spent here. The function is
-/// written without a loop, because -O2 does not unroll loops.
+/// Squared distance of two boxes; 0 if the boxes overlap [m^2]. A search spends half of its time in this function.
+/// There is no loop, because -O2 does not unroll loops.
 inline Real distance_squared(const Aabb& a, const Aabb& b) {
     const auto gap = [&](int i) {
         return std::max(Real(0), std::max(a.lower[i] - b.upper[i], b.lower[i] - a.upper[i]));
@@ -37,12 +37,13 @@ inline Real distance_squared(const Aabb& a, const Aabb& b) {
     return x * x + y * y + z * z;
 }
 
-/// Squared distance of a point from a box; 0 if the point is inside [m^2].
+/// Squared distance of a point from a box; 0 if the point is inside the box [m^2].
 inline Real distance_squared(const Aabb& box, const Vec3& point) {
     return distance_squared(box, Aabb{point, point});
 }
 
-/// Sphere around points, centred in the middle of the box of these points. Points that are not numbers are ignored.
+/// Sphere that contains the given points. Its centre is the centre of the box of these points. Points with NaN
+/// coordinates are ignored.
 template <class PointOf>
 BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& point_of) {
     const Vec3 centre = 0.5 * (box.lower + box.upper);
@@ -54,7 +55,7 @@ BoundingSphere sphere_around(const Aabb& box, Index begin, Index end, PointOf&& 
     return {centre, std::sqrt(squared)};
 }
 
-/// Lower bound of the distance between the contents of two spheres [m]; 0 if the spheres overlap or are not finite.
+/// Lower bound of the distance between objects inside two spheres [m]; 0 if the spheres overlap or are not finite.
 inline Real gap_between(const BoundingSphere& a, const BoundingSphere& b) {
     const Real gap = (a.centre - b.centre).norm() - a.radius - b.radius;
     return gap > 0 && gap < infinity ? gap : 0;

@@ -10,7 +10,8 @@ namespace skerry {
 BoxTree::BoxTree(std::span<const Aabb> boxes) {
     std::vector<Index> items(boxes.size());
     std::iota(items.begin(), items.end(), 0);
-    // Boxes that are not finite are left out, because they have no middle to be sorted by. They overlap nothing.
+    // Boxes that are not finite are left out, because they have no centre by which they could be sorted. They overlap
+    // nothing.
     std::erase_if(items, [&](Index i) {
         const Aabb& box = boxes[static_cast<std::size_t>(i)];
         return !box.lower.allFinite() || !box.upper.allFinite();
@@ -19,10 +20,11 @@ BoxTree::BoxTree(std::span<const Aabb> boxes) {
     if (!items.empty()) append(boxes, items);
 }
 
-/// Splits the items in half at the median along the axis on which the middles of their boxes are spread widest.
+/// Splits the items in half at the median of the centres of their boxes. The split is along the axis on which the
+/// centres are spread widest.
 void BoxTree::append(std::span<const Aabb> boxes, std::span<Index> items) {
     const auto box_of = [&](Index i) -> const Aabb& { return boxes[static_cast<std::size_t>(i)]; };
-    const auto middle_of = [&](Index i) -> Vec3 { return box_of(i).lower + box_of(i).upper; };  // times two
+    const auto middle_of = [&](Index i) -> Vec3 { return box_of(i).lower + box_of(i).upper; };  // centre times two
     const std::size_t row = nodes_.size();
     nodes_.push_back({empty_box(), row + 1, no_index});
     Aabb all = empty_box(), middles = empty_box();

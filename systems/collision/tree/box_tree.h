@@ -1,5 +1,5 @@
-// Tree over the boxes of arbitrary items, for sets that are searched once. For sets that are searched in every step see
-// tree/bvh.h.
+// Tree over the boxes of arbitrary items, for sets that are searched only once. For sets that are searched in every
+// step see tree/bvh.h.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// True if two boxes share a volume, and not just a face. A box with a coordinate that is not a number overlaps
-/// nothing.
+/// True if the intersection of two boxes has a volume. Boxes that only share a face do not overlap. A box with a NaN
+/// coordinate overlaps nothing.
 inline bool boxes_overlap(const Aabb& a, const Aabb& b) {
     for (int i = 0; i < 3; ++i)
         if (!(a.lower[i] < b.upper[i] && b.lower[i] < a.upper[i])) return false;
@@ -22,8 +22,8 @@ public:
     BoxTree() = default;
     explicit BoxTree(std::span<const Aabb> boxes);
 
-    /// Calls visit(item) for every item whose box satisfies touches(box). If a box satisfies touches, every box around
-    /// it must do so, too. The order of the calls depends on the boxes alone.
+    /// Calls visit(item) for every item for whose box touches(box) is true. If touches(box) is true for a box, it must
+    /// be true for every box that contains this box. The order of the calls depends only on the boxes.
     template <class Touches, class Visit>
     void for_each(Touches&& touches, Visit&& visit) const {
         for (std::size_t row = 0; row < nodes_.size();) {
@@ -43,12 +43,12 @@ public:
     }
 
 private:
-    /// Node of the tree. The nodes are stored depth-first, like BvhNode: children follow their parent, and `skip` is
-    /// one past the last descendant.
+    /// Node of the tree. The nodes are stored in depth-first order, as in BvhNode: children follow their parent, and
+    /// `skip` is one past the last descendant.
     struct Node {
         Aabb box;
         std::size_t skip;
-        Index item;  // no_index for an inner node
+        Index item;  // the item of a leaf; no_index for an inner node
     };
 
     void append(std::span<const Aabb> boxes, std::span<Index> items);

@@ -13,17 +13,18 @@ namespace {
 struct Build {
     std::span<const std::array<Index, 3>> triangle_node;
     std::span<const Vec3> position;
-    std::vector<Index> order;  // triangles
+    std::vector<Index> order;  // triangles in the order of the leaves
     BvhTable& bvh;
     BvhLeafTable& leaves;
 
-    Vec3 centre(Index triangle) const {  // times three
+    Vec3 centre(Index triangle) const {  // centre of a triangle, times three
         const auto& node = triangle_node[triangle];
         return position[node[0]] + position[node[1]] + position[node[2]];
     }
 
-    /// Splits the triangles first .. end - 1 of `order` near the median along their longest axis. The left half gets
-    /// full leaves only. The depth of the tree is logarithmic for all shapes.
+    /// Splits the triangles order[first .. end - 1] near the median of their centres, along the axis on which the
+    /// centres are spread widest. The left half is a multiple of the leaf size. The depth of the tree is logarithmic
+    /// for all shapes.
     void append(Index first, Index end) {
         const Index row = static_cast<Index>(bvh.node.size());
         bvh.node.push_back({row + 1, no_index, no_index, 0});
@@ -37,8 +38,8 @@ struct Build {
         const Vec3 size = box.upper - box.lower;
         const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
         const Index half = (end - first) / 2, middle = first + std::max(leaf_lanes, half - half % leaf_lanes);
-        // Equal coordinates are ordered by row, so that the tree depends on the mesh alone. All positions are finite
-        // here, because the scene builder has checked them.
+        // Triangles with equal coordinates are sorted by row, so that the tree depends only on the mesh. All positions
+        // are finite here, because the scene builder has checked them.
         std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + end, [&](Index a, Index b) {
             const Real ca = centre(a)[axis], cb = centre(b)[axis];
             return ca != cb ? ca < cb : a < b;
@@ -141,7 +142,7 @@ BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std:
 
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box) {
-    // Children follow their parent, so a backward loop visits them first.
+    // Children follow their parent, so a backward loop visits the children first.
     for (Index row = bvh_nodes.end - 1; row >= bvh_nodes.begin; --row) {
         const BvhNode& own = node[row];
         Aabb around = own.count > 0 ? empty_box() : box[row + 1];

@@ -11,25 +11,26 @@
 namespace skerry {
 
 struct BvhRanges {
-    Range nodes;   // of BvhTable
-    Range leaves;  // of BvhLeafTable
+    Range nodes;   // rows of BvhTable
+    Range leaves;  // rows of BvhLeafTable
 };
 
-/// Appends a tree over the triangles of one body, built from their present positions. A leaf contains up to eight
-/// triangles, because a search compares a feature with eight triangles at once.
+/// Appends a tree over the triangles of one body. The tree is built from the present positions. A leaf contains at most
+/// eight triangles, because a search compares a feature with eight triangles at once.
 BvhRanges append_bvh(Range triangles, std::span<const std::array<Index, 3>> triangle_node,
                      std::span<const Vec3> position, BvhTable& bvh, BvhLeafTable& leaves);
 
-/// Lists the features that are owned by the triangles of the given leaves. These leaves must be the last rows.
+/// Lists the features that the triangles in each of the given leaves own. These leaves must be the last rows of
+/// BvhLeafTable.
 void append_leaf_features(Range bvh_leaves, const TriangleTable& triangles, BvhLeafTable& leaves);
 
 /// Appends the tree and the leaf features of a body by copying those of an earlier body with the same mesh. `like`:
-/// rows of the earlier body. `behind`: new row minus earlier row. The result equals that of append_bvh and
-/// append_leaf_features.
+/// rows of the earlier body. `behind`: offsets from rows of the earlier body to rows of the new body. The appended rows
+/// equal those of append_bvh and append_leaf_features.
 BvhRanges append_bvh_again(const BvhRanges& like, const RowsBehind& behind, std::span<const Vec3> position,
                            BvhTable& bvh, BvhLeafTable& leaves);
 
-/// Fits the boxes of one tree to the present positions, from the leaves upwards.
+/// Computes the boxes of one tree from the present positions, from the leaves upwards.
 void refit_bvh(Range bvh_nodes, std::span<const BvhNode> node, std::span<const LeafNodes> leaf_nodes,
                std::span<const Vec3> position, std::span<Aabb> box);
 

@@ -1,4 +1,4 @@
-// Eight boxes that are compared with one box at once. Coordinates that are not numbers are ignored, as in box.h.
+// Eight boxes that are compared with one box at once. NaN coordinates are ignored, as in box.h.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace skerry {
 
 static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
 
-/// Eight boxes side by side, so that one box is compared with all of them at once [m]. Empty boxes are far from
-/// everything.
+/// Eight boxes, stored by coordinate, so that one box is compared with all of them at once [m]. An empty box has an
+/// infinite distance from all other boxes.
 struct LeafBoxes {
-    std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // by axis
+    std::array<Lanes<Real, leaf_lanes>, 3> lower, upper;  // coordinates by axis
 };
 
 inline void set_lane(LeafBoxes& boxes, std::size_t lane, const Aabb& box) {
@@ -36,7 +36,7 @@ inline LeafBoxes empty_leaf() {
     return boxes;
 }
 
-/// Boxes of the first `count` triangles of a leaf. The remaining boxes are empty.
+/// Boxes of the first `count` triangles of a leaf. The boxes in the other lanes are empty.
 inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::span<const Vec3> position) {
     LeafBoxes boxes = empty_leaf();
     for (std::size_t l = 0; l < static_cast<std::size_t>(count); ++l) {
@@ -47,7 +47,7 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// Squared distances of eight boxes from a box, by lane; 0 where the boxes overlap [m^2].
+/// Squared distances of eight boxes from one box, by lane; 0 for boxes that overlap the box [m^2].
 inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     const Real8 none{};
     Real8 sum{};
@@ -60,7 +60,7 @@ inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
     return sum;
 }
 
-/// Bit mask of the lanes whose value is below the limit.
+/// Bit mask of the lanes whose value is below `limit`.
 inline unsigned lanes_below(const Real8& value, Real limit) {
     return bits_of(value < Real8{} + limit);
 }

@@ -7,9 +7,10 @@
 
 namespace skerry {
 
-/// Visits pairs of leaves below the nodes a and b of two trees, until a visit returns true. Returns true if a visit
-/// did. `self`: both nodes belong to one tree that is paired with itself; then each leaf is also visited with itself. A
-/// pair of leaves is visited if near(a, b) is true for the leaves and for all pairs of nodes above them.
+/// Visits pairs of leaves, one below node a of a tree and one below node b of another tree, until visit returns true.
+/// Returns true if a visit returned true. A pair of leaves is visited if near(c, d) is true for the two leaves and for
+/// all pairs of nodes c and d above them. `self`: a and b belong to the same tree, which is paired with itself; each
+/// leaf is then also visited with itself.
 template <class Near, class Visit>
 bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, const Near& near, const Visit& visit) {
     const bool same = self && a == b;
@@ -18,7 +19,7 @@ bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, c
     if (own.count > 0 && other.count > 0) return visit(a, b);
     const auto below = [&](Index c, Index d) { return any_leaf_pair(node, c, d, self, near, visit); };
     if (same) return below(a + 1, a + 1) || below(own.right, own.right) || below(a + 1, own.right);
-    // the node with more descendants is split
+    // The node with more descendants is split.
     if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b))
         return below(a + 1, b) || below(own.right, b);
     return below(a, b + 1) || below(a, other.right);
