@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// The number of contacts in a lane is padded to the next of these sizes.
+/// Possible sizes of a lane problem. The number of contacts of a region is padded to the next of these sizes.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 

@@ -80,7 +80,7 @@ T lane_error(const LaneProblem<T, K>& problem) {
     return square_root(sum) / problem.scale;
 }
 
-/// Does one sweep. Lanes outside the mask `swept` keep their impulses.
+/// Does one sweep. Lanes outside the mask `swept` keep their impulses unchanged.
 template <class T, int K>
 SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
                              Real relaxation) {

@@ -16,7 +16,8 @@ inline Real sweep_cost(Index contacts, Index couplings) {
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
-    // Costs per step, per pair of contacts (to fill the equations), and per triple of contacts (to factor them) [ns]
+    // Costs of a Newton step: fixed cost, cost per pair of contacts (to fill the equations), and cost per triple of
+    // contacts (to factor them) [ns]
     constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;
     const Real count = static_cast<Real>(contacts);
     return step_cost + count * count * (pair_cost + triple_cost * count);
@@ -87,9 +88,9 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
     return result(test.result());
 }
 
-/// Starts with sweeps, which end after about the cost of two Newton steps. The convergence rate of the last sweeps then
-/// predicts whether as many sweeps again, or the remaining ones, would converge. If not, Newton steps are tried. If the
-/// Newton steps fail, the next stretch of sweeps is twice as long.
+/// Starts with sweeps for about the cost of two Newton steps. The convergence rate of the last sweeps then predicts
+/// whether as many sweeps again, or the remaining allowed sweeps, would converge. If not, Newton steps are taken. If
+/// the Newton steps fail, the next group of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // Newton steps support only the friction cone.
@@ -110,7 +111,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;
-        if (looks_later && trial > 0) {  // measure the rate in the later half: the first sweeps are always fast
+        // Measure the convergence rate in the later half of the sweeps, because the first sweeps are always fast.
+        if (looks_later && trial > 0) {
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();
@@ -122,7 +124,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (looks_later && trial == 0) {
             trial = newton_trial(op);
-            // Try Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
+            // Take Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);

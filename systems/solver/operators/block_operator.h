@@ -32,7 +32,7 @@ struct BlockMemory {
     struct Contact {
         Vec4 q;
         std::array<Vec4, 3> diagonal;  // columns of W_ii
-        std::array<Vec4, 3> skew;      // half of W_ii - W_ii^T, which solve_block ignores
+        std::array<Vec4, 3> skew;  // half of W_ii - W_ii^T: skew part of the diagonal block, which solve_block ignores
         LocalBlock local;
         Real mu;
     };

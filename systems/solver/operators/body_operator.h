@@ -111,7 +111,7 @@ private:
     Real squared_residual(Index i) const;  // uses a third of the trace of W_ii as D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
     /// An impulse on an implicit body moves all touched nodes of the body. Impulses are therefore summed by node before
-    /// they are applied.
+    /// the velocities are updated.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
@@ -152,7 +152,7 @@ private:
     /// Calls `of` for all contacts in their order.
     void for_each_in_sweep(auto&& of);
     void list_runs() const;
-    /// Applies an impulse of contact i within a sweep. On implicit bodies it moves only the nodes of the present run
+    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move
     /// (ContactRuns).
     void apply(Index i, const Vec4& impulse);
 

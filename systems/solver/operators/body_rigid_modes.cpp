@@ -75,7 +75,8 @@ SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index 
     constexpr Real softness = 0.3;
     // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
     constexpr Real enough = 0.01;
-    constexpr Real gain = 0.5;           // another round follows if a round reduces the error below this fraction
+    // Another round follows if the error after a round is below this fraction of the error before the round.
+    constexpr Real gain = 0.5;
     constexpr Index most_in_round = 14;  // limit of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();

@@ -25,8 +25,10 @@ struct SolveResult {
 /// Change of the impulses in one sweep. T is Real, or Real8 for eight regions in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
-    T size{};     // sum of change . W_ii change
-    T against{};  // minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the motion
+    T size{};  // sum of change . W_ii change
+    // Minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the previous change of the
+    // impulses.
+    T against{};
 
     SweepChangeOf& operator+=(const SweepChangeOf& other) {
         size += other.size;

@@ -47,7 +47,8 @@ public:
     }
     void refresh_all() {
         refresh();
-        refresh(memory_.workspace[1], memory_.scratch);  // refreshing only one would let their difference grow
+        // Refreshing only one of the two velocity arrays would let rounding errors in their difference grow.
+        refresh(memory_.workspace[1], memory_.scratch);
     }
     void remember() {
         own().settle();
