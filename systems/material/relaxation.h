@@ -87,7 +87,7 @@ inline Real relaxing_share(Real loss_factor, Real span) {
     return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
 }
 
-/// Relaxation time of the bulk viscosity times the highest frequency of the element by itself.
+/// Relaxation time of the bulk viscosity times the highest frequency of the element at rest (own_frequency).
 inline constexpr Real bulk_time = 0.5;
 
 inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {

@@ -20,7 +20,7 @@ namespace skerry {
 }
 
 /// Positions of the nodes of a patch, or forces on these nodes. A slot is the offset of the first number of a row
-/// (ElementNodeTable), not the index of the row. Processors scale addresses by at most eight bytes, and a row is
+/// (ElementNodeTable), not the index of the row: processors scale addresses by at most eight bytes, and a row is
 /// longer.
 template <class Number>
 struct PatchRows {
@@ -33,8 +33,8 @@ struct PatchRows {
 };
 
 /// Corner: positions of one corner of several elements, as many as a kernel computes at once, in the order that the
-/// transposes below need. One full-width load per position and a few shuffles replace three gathers, which cost one
-/// load per lane each.
+/// transposes below need. A full-width load per position and a few shuffles replace three gathers, each of which costs
+/// one load per lane.
 #ifdef __AVX512VL__
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
@@ -127,8 +127,8 @@ template <class Part>
     }
 }
 
-/// True if no node of the block is the last of `position`, so that a number follows every position. Lanes are compared
-/// side by side: finding the highest node first would take a quarter of the time of a block.
+/// True if no node of the block is the last of `position`, so that another number follows every position in memory.
+/// Lanes are compared side by side: finding the highest node first would take a quarter of the time of a block.
 [[gnu::always_inline]] inline bool clear_of_end(const NodeLane* node, Index count, std::span<const Vec3> position) {
     typedef Index Index8 __attribute__((vector_size(sizeof(NodeLane)), may_alias));
     typedef std::int64_t Bits __attribute__((vector_size(sizeof(NodeLane))));
@@ -217,7 +217,7 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
-/// Copies matrices number by number. A rare call gets the copy, so that the original need not be in memory.
+/// Copies matrices number by number. A rare call gets the copy, so that the original can stay in registers.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
