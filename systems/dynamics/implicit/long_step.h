@@ -12,8 +12,9 @@ namespace skerry {
 /// True if a body takes long steps: long steps are in use, no attachment holds the body, and its strain is small.
 bool takes_long_steps(const ImplicitBodies& bodies, const ImplicitTimes& times, std::size_t r);
 
-/// Computes the node velocities in this short step without its contacts, by position in the elimination order. Begins a
-/// long step if the body is in none. Returns false if the matrix of the long step cannot be factored.
+/// Computes the velocities with which the node displacements change in this short step without its contacts, by
+/// position in the elimination order. Begins a long step if the body is in none. Returns false if the matrix of the
+/// long step cannot be factored.
 bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);

@@ -146,10 +146,10 @@ struct ImplicitKicks {
     }
 };
 
-/// Computes out.velocity_next, the node velocities of the step in the frame of the mesh: A^-1 P (M w + theta h (Q^T f -
-/// K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2), or the result of Newton's method at large
-/// strain. Adds these velocities to the node velocities that kick_rigid_bodies has computed from the motion of the
-/// frames. Computes missing matrix factors for the step length.
+/// Computes out.velocity_next, the velocities with which the node displacements change in the step, in the frame of the
+/// mesh. They are A^-1 P (M w + theta h (Q^T f - K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2),
+/// or the result of Newton's method at large strain. Adds these velocities to the node velocities that
+/// kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix factors for the step length.
 ///
 /// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
 /// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body

@@ -69,9 +69,9 @@ inline constexpr Real sliver_volume = 0.05;
 /// For each tetrahedron: 1 if the tetrahedron is a sliver, else 0.
 std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
 
-/// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of the
-/// tetrahedra. A tetrahedron below this limit has little effect on the smoothed F around its edges and nodes
-/// (docs/methods/elasticity.md 7.7).
+/// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of all
+/// tetrahedra of the mesh. A tetrahedron below this limit has little effect on the smoothed F around its edges and
+/// nodes (docs/methods/elasticity.md 7.7).
 inline constexpr Real guarded_volume = 0.5;
 
 /// Adds an inversion barrier (guard) for every small tetrahedron in the zones of smoothed elements, except slivers.

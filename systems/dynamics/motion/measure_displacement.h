@@ -43,7 +43,7 @@ struct DisplacementInputs {
 
 struct DisplacementOutputs {
     std::span<Vec3> origin;  // by node: position when the displacement of its body was last reset to zero [m]
-    // By body, or empty; 1: set the displacement of the body to zero and clear this flag.
+    // Flag of each body, or empty; 1: set the displacement of the body to zero and clear the flag.
     std::span<std::uint8_t> rebase;
     std::span<MovingFrame> frame;  // BodyTable
     std::span<Real> frame_speed, displacement, travel;

@@ -35,7 +35,7 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    if (!bodies.held(static_cast<Index>(r))) {  // the attachment of a held body moves the body, not the contact
+    if (!bodies.held(static_cast<Index>(r))) {  // a held body moves with its attachment, so its energy does not count
         taken.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
         taken.momentum += state.momentum[r];

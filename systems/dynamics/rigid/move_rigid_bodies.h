@@ -146,7 +146,7 @@ struct RigidImpulses {
 struct RigidTurns {
     std::span<Vec3> center_next;
     std::span<Mat3> rotation_next;
-    // By node: constant velocity that leads to the end position, including push-out [m/s]
+    // For each node: constant velocity that leads to the end position, including push-out [m/s]
     std::span<Vec3> velocity_next;
 
     static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {

@@ -62,7 +62,8 @@ constexpr Real longer_by_forms = 1.5;
 /// Group of elements. The group's share of the mass of its nodes is divided among the elements of this group alone.
 struct ElementGroup {
     Range blocks;
-    std::vector<Index> node{};     // nodes by position along the group, counted from the first node of the body
+    // Nodes in the order of their positions along the group; numbers begin at the first node of the body.
+    std::vector<Index> node{};
     std::size_t width = 0;         // bandwidth: greatest difference of the numbers of two nodes of an element, plus 1
     std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
     std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T

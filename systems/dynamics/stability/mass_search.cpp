@@ -27,7 +27,7 @@ Real8 RestModuli::of_explicit(std::size_t block) const {
 }
 
 RestModuli::Moduli RestModuli::of(std::size_t block) const {
-    // Share of elements without stiffness, as a fraction of the greatest modulus, so that they get some mass.
+    // Least shear modulus over the greatest modulus; even elements without stiffness get some mass.
     constexpr Real least = 1e-9;
     const MaterialConstants material = elements_.material_of(block);
     Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),

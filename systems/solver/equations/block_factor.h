@@ -53,11 +53,11 @@ private:
     void place_blocks();
 
     Column<Index> size_;  // by part: number of unknowns
-    // By pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
+    // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
     Column<std::uint8_t> coupled_;
     Column<Index> beside_;        // by part: total size of the coupled parts that are not yet eliminated
     Column<Index> order_, rank_;  // elimination order, and the position of each part in it
-    // By position in the elimination order: parts whose blocks change when the part at this position is eliminated.
+    // For each position in the elimination order: parts whose blocks change when the part there is eliminated.
     Ragged<Index> later_;
     Column<std::size_t> first_;   // by pair of parts: index of the block's first entry in `number_`
     Column<Index> stride_below_;  // by part: column stride of the part's blocks below the diagonal

@@ -73,7 +73,7 @@ struct RegionMemory {
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
     // Data of regions that touch clusters of nodes or rigid bodies.
-    // By region: list of the touched clusters, list of the touched bodies; may be empty.
+    // For each region: list of the touched clusters, list of the touched bodies; may be empty.
     Ragged<Index> region_clusters, region_rigid;
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
     // For each cluster and for each body: last region that touched the cluster or body.
