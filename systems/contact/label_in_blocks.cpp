@@ -90,7 +90,7 @@ template <class Leader>
 void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
                std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
                std::span<Index> contact_node) {
-    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
+    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         const auto fetch = [&](const Stencil& next) {
             for (const Index node : next.node) {

@@ -30,8 +30,8 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
                       Friction friction) {
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. Rotation by the
-    // warm start keeps the ratio of tangential to normal impulse.
+    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. The rotation of
+    // impulses in the warm start does not change the ratio of tangential to normal impulse.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, friction);
     const Real limit = dynamic_friction * along;

@@ -38,7 +38,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     for (const JointBlock& joint : joints)
         if (joint.first_node != no_index && joint.second_node != no_index)
             sets.join(joint.first_node, joint.second_node);
-    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
+    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
             sets.fetch(node);

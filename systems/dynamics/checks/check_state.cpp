@@ -75,7 +75,8 @@ Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job,
     return highest.load();
 }
 
-/// True if exceeds(row) holds for any row below `count`. The result does not depend on the order in which the jobs run.
+/// True if exceeds(row) is true for any row below `count`. The result does not depend on the order in which the jobs
+/// run.
 template <class Exceeds>
 bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job, Exceeds&& exceeds) {
     std::atomic<bool> found{false};
@@ -333,7 +334,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         const Real rate =
             deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
         if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
-        // only the first fault is reported
+        // only the first fault of the step is reported
         if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;
         const Fastest fastest = fastest_of(state, body);
         verdict.fault = StepFault::too_fast;

@@ -220,7 +220,8 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // unstable even with the full masses of its nodes
+        // The element would be unstable even with the full masses of its nodes.
+        if (need(b, l, goal.stands) > 1) share(b, l) = 0;
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;

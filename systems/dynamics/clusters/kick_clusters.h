@@ -15,8 +15,8 @@ namespace skerry {
 struct ClusterKickInputs {
     const NodeClusters& clusters;
     std::span<const Real> mass;                           // kg, by node
-    std::span<const std::uint8_t> body_asleep;            // empty: no body is asleep
-    std::span<const std::uint16_t> body_unstrained = {};  // empty: no body is unstrained
+    std::span<const std::uint8_t> body_asleep;            // empty if no body is asleep
+    std::span<const std::uint16_t> body_unstrained = {};  // empty if no body is unstrained
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {

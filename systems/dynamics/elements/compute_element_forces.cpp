@@ -145,8 +145,8 @@ struct Run {
         return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
-    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for the whole block at once, so that the
-    /// number of iterations does not depend on the register width.
+    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for all lanes of a block at once, so that
+    /// the number of iterations does not depend on the register width.
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                const Parts<KernelReal>& scale) const {
@@ -347,7 +347,7 @@ struct Run {
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) {
                 F = run.fetch(block + 1);
-                kept = run.kept_of(block + 1);  // computed early, because a division takes long
+                kept = run.kept_of(block + 1);  // computed early, because the division in kept_of() takes long
             }
             run.add(block, Q);
             if (!ahead && goes_on) {

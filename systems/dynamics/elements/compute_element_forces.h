@@ -100,7 +100,7 @@ struct PatchForces {
     std::span<const Range> blocks, slots;
     std::span<const Index> node;                            // by slot
     std::span<const NodeLane> slot;                         // slot of each element node, times slot_width
-    std::span<PaddedVec3> position;                         // m, by slot; scratch
+    std::span<PaddedVec3> position;                         // by slot [m]; work memory
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<ElementViscousImpulse> viscous_impulse = {};  // viscous impulse by block; empty if no element is viscous
     std::span<std::uint8_t> viscous = {};                   // 1 if the block has a viscous impulse in this step

@@ -18,7 +18,7 @@ namespace skerry {
 inline constexpr Real unstrained_within = 1e-11;
 
 /// Number of steps until the strains of an unstrained body are checked again. In n steps rounding moves a node by at
-/// most n half units in the last place of its position.
+/// most n / 2 units in the last digit of its position.
 inline constexpr std::uint16_t unstrained_steps = 1024;
 
 struct UnstrainedInputs {

@@ -373,7 +373,7 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     if (tangent_) {
         factor_.solve(impulse);
         take_rigid_answer(impulse);
-        take_momenta_of(impulse);  // this removes only rounding errors
+        take_momenta_of(impulse);  // this call removes only rounding errors
         return;
     }
     take_rigid_part(impulse);
@@ -441,7 +441,7 @@ void StiffBody::find_responses() {
             used_at_[static_cast<std::size_t>(slot)] = uses_;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
-        // Each column fills both triangles, so the matrix is bitwise symmetric.
+        // Each column is written to both triangles, so the matrix is bitwise symmetric.
         for (std::size_t j = i; j < count; ++j) {
             const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
             for (std::size_t c = 0; c < 3; ++c)

@@ -24,7 +24,7 @@ namespace skerry {
 
 struct SleepSettings {
     Real speed = 0;           // speed limit: a body is still while all of its nodes are slower [m/s]
-    bool own_limits = false;  // true: own_sleep_limits replace `speed` (stillness.h)
+    bool own_limits = false;  // true: the engine uses own_sleep_limits (stillness.h) instead of `speed`
     Real time = 0.5;          // time for which a body and all bodies that it touches must be still [s]
     Real gravity = 0;         // [m/s^2]
 
@@ -50,7 +50,7 @@ struct TouchInputs {
     }
 };
 
-/// Contacts of this step before the solve.
+/// Inputs of the wake-up test: contacts of this step before the solve.
 struct PressInputs {
     std::span<const Index> first_body, second_body;
     std::span<const Vec3> warm_impulse;    // impulses of earlier steps; empty if none are stored [N s]
@@ -176,7 +176,7 @@ struct TakenByRest {
 };
 
 struct SleepMemory {
-    UnionFind touching;             // groups of touching bodies
+    UnionFind touching;             // sets of bodies that touch each other
     Column<std::uint8_t> restless;  // by body
 };
 

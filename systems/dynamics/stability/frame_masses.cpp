@@ -219,7 +219,7 @@ private:
     struct Factors {
         struct Element {
             Real shear, volumetric;
-            std::size_t end;  // end of the element's range in `corner`
+            std::size_t end;  // end of the range of the element's corners in `corner`
         };
         struct Corner {
             Real4 gradient;  // gradient over the square root of the node's mass; a zero pads the register

@@ -7,8 +7,8 @@
 
 namespace skerry {
 
-/// Greatest number of multiplications for the decomposition of the matrix of a body. They take about 0.1 s, enough for
-/// some 4,000 tetrahedra of a block-shaped body.
+/// Limit on the number of multiplications for the decomposition of the matrix of a body. So many multiplications take
+/// about 0.1 s, enough for some 4,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_frame = 4e8;
 
 /// Finds the masses that the explicit elements of a body get from its nodes. The masses are proportional to a stiffness

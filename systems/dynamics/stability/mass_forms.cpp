@@ -214,7 +214,7 @@ private:
     /// Moves Z by the fraction `part` towards the square root of the sum of grad v grad v^T over the iterated vectors v
     /// (estimates of the highest modes). Z and the square root are scaled to trace 1.
     void follow(Real part) {
-        constexpr Real even = 0.03;  // isotropic fraction of the target
+        constexpr Real even = 0.03;  // fraction of the isotropic part in the target
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const std::size_t b = first_block() + i;
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -391,7 +391,7 @@ private:
     std::vector<ElementForm> weight_;      // weights V W [Pa m^3]
     std::vector<Real4> vector_, product_;  // by node
     RestModuli moduli_;
-    std::vector<Index> place_;  // number of each node along its group
+    std::vector<Index> place_;  // number of each node in the order along its group
     BandDecomposition decomposition_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// Greatest number of multiplications for the decomposition of the matrix of a group. They take about 0.1 s, enough for
-/// some 15,000 tetrahedra of a block-shaped body.
+/// Limit on the number of multiplications for the decomposition of the matrix of a group. So many multiplications take
+/// about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
 /// Diagonal entries of Q for an element that a cluster carries. This element gets no mass and bounds no step [1/(kg

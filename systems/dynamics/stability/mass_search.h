@@ -55,8 +55,9 @@ struct ElementCorner {
     Index corner;
 };
 
-/// Lists the element corners at each of `places` nodes, in the order of elements. for_each_corner(visit) must call
-/// visit(place, corner) for all corners, in the order of elements.
+/// Lists the element corners at each node, in the order of elements. `places` is the number of nodes.
+/// for_each_corner(visit) must call visit(place, corner) for all corners, in the order of elements, with the number
+/// `place` of the node.
 inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
     corners.offset.resize(places + 1);
@@ -76,8 +77,8 @@ struct BandMatrix {
     std::size_t size;   // rows; whole groups
     std::size_t width;  // numbers stored per row
     std::size_t group;  // number of rows per group
-    /// Adds the entries of the rows of a group to `rows`, which holds zeros. Each row begins `stride` numbers after the
-    /// row before.
+    /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after
+    /// the row before.
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 

@@ -40,7 +40,7 @@ struct WatchPart {
 };
 
 /// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape is stored. A
-/// second call for the same step does nothing. `parts` is scratch whose memory is reused between steps.
+/// second call for the same step does nothing. `parts` is work memory that is reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

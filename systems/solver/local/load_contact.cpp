@@ -6,8 +6,8 @@
 namespace skerry {
 namespace {
 
-/// Contact velocity at the start of the step, and predicted velocity after the kick. The predicted velocity excludes
-/// the kick of the deformations of implicit bodies [m/s]
+/// Contact velocity at the start of the step, and predicted velocity after the kick (the velocity change by forces).
+/// The predicted velocity excludes the kick of the deformations of implicit bodies [m/s]
 struct AroundKick {
     Vec3 before, now;
 };

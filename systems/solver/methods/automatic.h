@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. They decide when Newton steps are tried;
-/// only their ratio matters [ns]
+/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. The ratio of the costs decides when the
+/// method changes to Newton steps [ns]
 inline Real sweep_cost(Index contacts, Index couplings) {
     constexpr Real contact_cost = 40, coupling_cost = 2;
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
@@ -31,7 +31,8 @@ concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
     { constant.couplings() } -> std::convertible_to<Index>;  // number of off-diagonal blocks of W
 };
-/// Operators with their own Newton steps. To estimate the cost of a step [ns], they must inspect the whole region.
+/// Operators with their own Newton steps. To estimate the cost of a step [ns], such an operator must inspect the
+/// complete region.
 template <class Op>
 concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;

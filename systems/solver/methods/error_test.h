@@ -112,11 +112,11 @@ public:
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
-    /// Restores the best impulse.
+    /// Restores the best impulse, which is the measured impulse with the smallest error.
     void go_back() { best_.restore(); }
     /// Stores the present impulse, found by another method, if its error is the smallest so far.
     void offer(Real error) { best_.offer(error); }
-    /// Result of the last measurement.
+    /// Result of the last error measurement.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
     /// Ends the method without convergence. Restores the best impulse, or keeps the last one if no error was measured.
     SolveResult give_up(Index iterations) {

@@ -128,7 +128,7 @@ private:
         memory_.rest = factors.solve(memory_.rest);
     }
 
-    /// Returns the merit, which is the sum of D |F|^2. Writes -u to `pull_` [J]
+    /// Returns the merit function, which is the sum of D |F|^2 over the contacts. Writes -u to `pull_` [J]
     Real merit() {
         op_.residual(pull_);
         Real sum = 0;
@@ -150,7 +150,7 @@ private:
     /// there is none, takes the length with the smallest merit.
     void search_along_change() {
         constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // the merit must fall below this fraction of its start value
+        constexpr Real enough = 0.9;  // the merit function must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
         Real least = infinity, best_length = 1;

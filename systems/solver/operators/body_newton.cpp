@@ -101,7 +101,8 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            // The body is held, or it deforms. The velocities of a deforming body's nodes include its rigid motion.
+            // A held body has no unknown. If the body deforms, its nodes are the unknowns, and their velocities include
+            // the rigid motion.
             if (!moves_rigidly(equations, term)) continue;
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
@@ -376,10 +377,10 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 
 namespace {
 
-// Softness is the compliance of contacts within a round, as a fraction of D. A smaller value needs fewer rounds, but
-// more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a
-// light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to the number
-// of steps of the last round.
+// Softness is the compliance of contacts within a round, as a fraction of the mobility D. A smaller value needs fewer
+// rounds, but more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth
+// of it, and a light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to
+// the number of steps of the last round.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
 // Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
 // reverse are stopped.
@@ -395,7 +396,8 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
+    // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
+    // start of the round.
     constexpr Real enough = 0.1;
     // A round also ends, even if the error has not decreased, when the square root of the merit falls below this
     // fraction of the limit given by `enough`.

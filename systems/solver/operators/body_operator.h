@@ -50,7 +50,7 @@ public:
     SweepChange accelerated_sweep(Real relaxation);
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     Vec4 project(Index i, const Vec4& impulse) const {
-        if (joint(i) != nullptr) return impulse;  // joint impulses are not projected
+        if (joint(i) != nullptr) return impulse;  // joint impulses have no friction law and are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     void assemble(Eigen::MatrixXd& matrix) const;

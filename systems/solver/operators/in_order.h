@@ -52,7 +52,7 @@ struct OneThread {
 
 static_assert(RegionOrder<OneThread>);
 
-/// Walk with one thread in ascending order, for regions in which every node has its own mass.
+/// Traversal (walk) by one thread in ascending order, for regions in which every node has its own mass.
 struct InOrder : OneThread {
     static constexpr bool own_masses = true;
 

@@ -14,7 +14,7 @@ struct LumpedMemory : ContactMemory {
 };
 
 /// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
-/// on the walk, but the bits of sums do.
+/// on the type Walk of the traversal, but the bits of sums do.
 template <RegionWalk Walk>
 class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory> {
     using Base = RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory>;

@@ -18,7 +18,7 @@ namespace skerry {
 struct ContactMemory {
     std::span<const LumpedContact> contact;
     std::span<Vec4> impulse;      // [N s]
-    std::span<Vec4> velocity;     // includes the effect of the impulse [m/s, rad/s]
+    std::span<Vec4> velocity;     // velocities that include the effect of the impulse [m/s, rad/s]
     std::span<const Index> node;  // by velocity row: row of NodeTable, or no_index for rigid bodies
     std::span<Vec4> scratch;      // by velocity row: velocities of the previous impulses, or temporary in multiply()
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact

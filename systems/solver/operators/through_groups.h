@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Walk with one thread, in ascending order of the contacts. The touched nodes of an implicit body must be consecutive
-/// rows of the region, in the order of ImplicitCoupling.
+/// Traversal (walk) by one thread, in ascending order of the contacts. The touched nodes of an implicit body must be
+/// consecutive rows of the region, in the order of ImplicitCoupling.
 class ThroughGroups : public OneThread {
 public:
     /// `node` lists the rows of NodeTable of the region's nodes.

@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-/// Motion of one body at the point of a joint, after the kick.
+/// Motion of one body at the point of a joint, after the kick (the velocity change by forces).
 struct BodyMotion {
     Vec3 arm = Vec3::Zero();  // vector from the centre to the joint point [m]
     // linear and angular velocity [m/s, rad/s]
@@ -82,7 +82,7 @@ struct BodyEnd {
         const RigidInputs& rigid = stage.inputs.rigid;
         const auto r = static_cast<std::size_t>(body);
         center = rigid.center[r];
-        if (slot == no_index) {  // impulses cannot move this body
+        if (slot == no_index) {  // the body has no velocity rows, because impulses cannot move it
             center_next = center + stage.h * rigid.velocity(r);
             turn = rotation_matrix(stage.h * rigid.spins.kicked(r));
             return;

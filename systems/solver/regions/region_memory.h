@@ -78,14 +78,14 @@ struct RegionMemory {
     Column<std::size_t> node_base;  // by region: index of the first node row of the region
     // For each cluster and for each body: last region that touched the cluster or body.
     Column<Index> region_of_cluster, region_of_rigid;
-    Column<RigidPart> rigid_part;  // by contact; empty without rigid bodies
+    Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
     Column<JointLaw> joint_law;    // by joint row; entry 0 belongs to the row number contact_rows
     // For regions with joints: index of the first row of the region. The contacts of the region come first, then the
     // joints.
     Column<std::size_t> joint_base;
     // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints.
     std::size_t contact_rows = 0, rows = 0;
-    Column<Vec4> free_velocity;  // by row of `velocity`; empty without rigid bodies [m/s]
+    Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
     // For each row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
     // there.
     Column<Index> place;
