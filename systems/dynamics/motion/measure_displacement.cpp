@@ -71,7 +71,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // The contact search of the next step uses this frame (step_reach.cpp).
+            // The contact search of the next step uses the frame updated here (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

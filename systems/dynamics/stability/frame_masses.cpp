@@ -25,7 +25,7 @@ namespace {
 // Estimated ratio of the step with frame masses to the step that the bounds of single elements allow.
 constexpr Real longer_in_frame = 2;
 
-// The sum is written out, so that the bits do not depend on how a library vectorises it.
+// The sum is written out term by term, so that the bits do not depend on how a library vectorises it.
 Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

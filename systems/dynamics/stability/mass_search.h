@@ -75,7 +75,7 @@ inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corn
 /// the end of the band. Groups of rows are computed when they are needed.
 struct BandMatrix {
     std::size_t size;   // rows; whole groups
-    std::size_t width;  // numbers stored per row
+    std::size_t width;  // number of entries stored per row
     std::size_t group;  // number of rows per group
     /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after
     /// the row before.
@@ -115,7 +115,7 @@ private:
     /// rows.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
-    std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and numbers per row
+    std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and number of entries per row
     Column<Real> window_;
     std::vector<Real> rows_of_group_;
     std::vector<std::size_t> used_;  // number of used entries in each row of the window; zeros follow

@@ -32,7 +32,7 @@ struct LaneProblem {
     T diagonal[K];                 // mobility D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
     T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
-    T scale;      // scale of e_nat [sqrt(J)]
+    T scale;      // number by which the error e_nat is divided [sqrt(J)]
     T tolerance;  // tolerance of e_nat
 };
 

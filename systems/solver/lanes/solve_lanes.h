@@ -64,7 +64,7 @@ LaneVec3<T> project_lanes_onto_cone(const LaneVec3<T>& z, const LaneVec3<T>& nor
     return select<T>(mu * length <= -along, {zero, zero, zero}, inside);
 }
 
-/// Error e_nat of docs/methods/errors.md 2.
+/// Relative error e_nat of the present impulses in each lane (docs/methods/errors.md 2).
 template <class T, int K>
 T lane_error(const LaneProblem<T, K>& problem) {
     T sum{};

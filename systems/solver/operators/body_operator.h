@@ -24,7 +24,7 @@ namespace skerry {
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
     std::span<const JointLaw> joint;      // laws of the joint rows, which follow the contacts
-    std::span<const Vec4> free_velocity;  // by velocity row: value without impulses [m/s, rad/s]
+    std::span<const Vec4> free_velocity;  // by velocity row: velocity without impulses [m/s, rad/s]
 };
 
 using NewtonPool = Pool<NewtonEquations>;
@@ -35,8 +35,8 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
     friend Base;
 
 public:
-    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses. `pool` provides
-    /// memory for Newton steps.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses. `pool`
+    /// provides memory for Newton steps.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
                  RunPool& runs)
         : Base(memory, friction, scale, walk), pool_(&pool) {
@@ -125,8 +125,8 @@ private:
     void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
-    /// moves_rigidly(): the rigid motion of the term's body is an unknown. is_unknown(): the velocity of the node is an
-    /// unknown.
+    /// moves_rigidly(): true if the rigid motion of the body of `term` is an unknown. is_unknown(): true if the
+    /// velocity of the node is an unknown.
     bool moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const;
     bool is_unknown(const BodyEquations& equations, Index node) const;
     BodyEquations* rigid_mode_memory();

@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// True if the rigid motion of the term's body is an unknown. A held body has no rigid motion.
+/// True if the rigid motion of the body of `term` is an unknown. A held body has no rigid motion.
 bool BodyOperator::moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const {
     if (!walk_.deforms(term.row)) return true;
     return equations.rigid_modes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;

@@ -23,7 +23,7 @@ class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk,
 public:
     using Base::size;
 
-    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses.
     LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
         : Base(memory, friction, scale, walk) {}
 

@@ -42,7 +42,7 @@ public:
         return sum;
     }
 
-    /// Error e_nat of docs/methods/errors.md 2.
+    /// Relative error e_nat of the present impulses (docs/methods/errors.md 2).
     Real error() const {
         Real sum = 0;
         for (std::size_t i = 0; i < region_.contact.size(); ++i) {

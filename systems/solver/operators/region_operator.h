@@ -59,7 +59,7 @@ public:
             for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
         });
     }
-    /// Error e_nat of docs/methods/errors.md 2 over all contacts.
+    /// Relative error e_nat of the present impulses over all contacts (docs/methods/errors.md 2).
     Real error() {
         own().settle();
         const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
@@ -117,7 +117,7 @@ protected:
 
     Memory memory_;
     Friction friction_;
-    Real scale_;  // scale of e_nat [sqrt(J)]
+    Real scale_;  // number by which the error e_nat is divided [sqrt(J)]
     Walk walk_;
 
 private:

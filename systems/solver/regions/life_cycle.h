@@ -22,7 +22,7 @@ struct LoadedRegion {
     Walk walk{};
     Memory memory{};
     LoadSums sums{};
-    Real scale = 0;      // scale of e_nat [sqrt(J)]
+    Real scale = 0;      // number by which the error e_nat is divided [sqrt(J)]
     Real tolerance = 0;  // tolerance of the relative error for this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
