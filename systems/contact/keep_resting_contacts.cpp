@@ -15,14 +15,14 @@ public:
 
     bool any_body() const { return std::ranges::find(inputs_.asleep, 1) != inputs_.asleep.end(); }
 
-    /// Whether neither partner of a contact moves after this step.
+    /// True if neither partner of a contact moves after this step.
     bool rests(const ContactTable& contacts, std::size_t c) const {
         return body_rests(contacts.first_body[c]) && body_rests(contacts.second_body[c]) &&
                stands_still(contacts.collider[c]);
     }
 
-    /// Calls take(begin, end, idle) for the kept rows begin .. end - 1 of each pair. `idle`: this step left the pair
-    /// out. Kept rows and pairs are both in key order.
+    /// Calls take(begin, end, idle) for the stored contacts of each pair: rows begin .. end - 1 of `kept`. `idle`: this
+    /// step left the pair out because neither partner moves. Stored contacts and pairs are both in key order.
     void for_each_kept(const RestingContactTable& kept, auto&& take) const {
         const std::span<const ContactKey> key = kept.contact.key.span();
         std::size_t p = 0;
@@ -52,14 +52,15 @@ private:
     const RestingInputs& inputs_;
 };
 
-/// Calls `visit` with the corresponding columns of three tables. Only columns of the first table may be written.
+/// Calls `visit` with each column of table a and the corresponding columns of tables b and c. Only columns of table a
+/// may be written.
 void for_each_column_of(ContactTable& a, const ContactTable& b, const ContactTable& c, auto&& visit) {
     constexpr std::size_t most = 32;
     using Places = std::array<const void*, most>;
     const auto places_of = [](const ContactTable& table) {
         Places places{};
         std::size_t count = 0;
-        // for_each_column needs a mutable table; only the addresses of the columns are taken here
+        // for_each_column needs a mutable table, but this code only takes the addresses of the columns
         const_cast<ContactTable&>(table).for_each_column(
             [&](const char*, auto& column, ColumnRole) { places.at(count++) = &column; });
         return places;
@@ -73,7 +74,7 @@ void for_each_column_of(ContactTable& a, const ContactTable& b, const ContactTab
     });
 }
 
-/// Lists for each row of the new table the row from which it is copied (RestingMemory::source).
+/// Fills RestingMemory::source: for each row of the new table of stored contacts, the row from which it is copied.
 void list_sources(const ContactTable& contacts, const RestingPairs& pairs, const RestingContactTable& kept,
                   Column<Index>& source) {
     source.clear();

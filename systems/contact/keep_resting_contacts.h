@@ -1,4 +1,5 @@
-// Keeps the contacts between bodies that have fallen asleep, as long as they sleep (docs/methods/skipping.md 3.2).
+// Stores the contacts between bodies that have fallen asleep, for as long as the bodies sleep (docs/methods/skipping.md
+// 3.2).
 #pragma once
 
 #include <cstdint>
@@ -33,20 +34,19 @@ struct RestingInputs {
 
 /// Working memory.
 struct RestingMemory {
-    // Source of each row of `next`: a kept row, or the complement of a row of this step's contacts.
+    // Source of each row of `next`: r for row r of the stored contacts, or ~r for row r of this step's contacts.
     Column<Index> source;
     RestingContactTable next;
 };
 
-/// Updates the contacts between sleeping bodies after a step in which forces acted for the time `kick` [s]. Keeps the
-/// contacts of this step whose partners both are asleep or stand still, and the previously kept contacts of pairs that
+/// Updates the stored contacts between sleeping bodies after a step in which forces acted for the time `kick` [s]. Adds
+/// the contacts of this step whose partners both are asleep or stand still. Retains the stored contacts of pairs that
 /// this step left out. Returns false if nothing changes; this costs one pass over the contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 
-/// Lists the rows of both tables to display, in key order. An entry is a row of `contacts`, or the complement of a row
-/// of `kept`. If a contact is in both tables, because its bodies have just fallen asleep, the row of `contacts` is
-/// listed.
+/// Lists the contacts to display, in key order. An entry is r for row r of `contacts`, or ~r for row r of `kept`. If a
+/// contact is in both tables, because its bodies have just fallen asleep, the row of `contacts` is listed.
 void merge_contacts(const ContactTable& contacts, const RestingContactTable& kept, Column<Index>& rows);
 
 }  // namespace skerry

@@ -32,19 +32,19 @@ struct Blocks {
     }
 };
 
-/// Table over pairs of blocks (a, b): the number of contacts of block a whose region begins in block b, later their
-/// position. A region begins at its first contact.
+/// Table over pairs of blocks (a, b). It first counts the contacts of block a whose region begins in block b, and later
+/// holds positions for these contacts in a sorted list. A region begins at its first contact.
 class Places {
 public:
     Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {
         place_.assign(blocks * blocks, 0);
     }
-    /// Entries for the contacts of `block`, by the block in which their region begins. Entries beyond `block` itself
-    /// are unused, because no region begins after its contacts.
+    /// Table entries for the contacts of `block`, indexed by the block in which the region of a contact begins. Entries
+    /// for later blocks are unused, because no region begins after its contacts.
     Index* of(std::size_t block) { return place_.data() + block * blocks_; }
 
-    /// Converts the counts to positions in a list that is sorted by the block in which the region begins, then by
-    /// contact. Returns the first position for each block, and the end of the list.
+    /// Converts the counts to positions in a list of all contacts, sorted by the block in which the region of a contact
+    /// begins, then by contact. Returns the first position for each block, and the end of the list.
     std::array<Index, most_blocks + 1> cut() {
         std::array<Index, most_blocks + 1> begin;
         Index sum = 0;
@@ -72,8 +72,8 @@ void join_all(Executor& executor, std::span<const JointBlock> joints, SharedUnio
     });
 }
 
-/// Joins the groups of all moving nodes of a contact. `leader(node)`: the node that represents the group of `node`.
-/// Returns a node of the joined set, or no_index if no node can move.
+/// Joins the sets of all moving nodes of a contact. `leader(node)`: the node that represents the group (rigid body or
+/// cluster) of `node`. Returns a node of the joined set, or no_index if no node can move.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets) {
     Index one = no_index;
@@ -90,7 +90,7 @@ template <class Leader>
 void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil> stencil,
                std::span<const Real> inverse_mass, const Leader& leader, SharedUnionFind& sets,
                std::span<Index> contact_node) {
-    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
+    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     blocks.run(executor, [&](std::size_t, std::size_t begin, std::size_t end) {
         const auto fetch = [&](const Stencil& next) {
             for (const Index node : next.node) {
@@ -106,9 +106,9 @@ void unite_all(Executor& executor, const Blocks& blocks, std::span<const Stencil
     });
 }
 
-/// Numbers the regions first .. last - 1 and sorts their contacts by region. `contact`: the contacts of these regions,
-/// in order; contact_region still holds the first contact of the region of each. `begin`: position of `contact` in the
-/// list of all contacts.
+/// Numbers the regions first .. last - 1 and sorts the contacts of these regions by region. `contact`: all contacts of
+/// these regions in ascending order; contact_region still holds, for each contact, the first contact of its region.
+/// `begin`: position of `contact` in the list of all contacts.
 void collect(std::span<const Index> contact, Index begin, Index first, Index last, std::span<Index> contact_region,
              Ragged<Index>& list) {
     Index* const offset = list.offset.data();
@@ -123,7 +123,7 @@ void collect(std::span<const Index> contact, Index begin, Index first, Index las
     }
     for (Index r = first; r < last; ++r) offset[r] = std::exchange(begin, begin + offset[r]);
     for (const Index c : contact) list.item[offset[contact_region[static_cast<std::size_t>(c)]]++] = c;
-    // filling has moved each offset to the start of the next region; move the offsets back
+    // filling has moved each offset to the start of the next region, so move the offsets back
     for (Index r = last - 1; r > first; --r) offset[r] = offset[r - 1];
     if (first < last) offset[first] = start;
 }
@@ -151,7 +151,7 @@ Index label_in_blocks(Executor& executor, std::span<const Stencil> stencil, std:
             sets.begin_with(contact_region[i], static_cast<Index>(i));
         }
     });
-    // From here on contact_region holds the first contact of the region of each contact.
+    // From here on contact_region holds, for each contact, the first contact of its region.
     Places places(blocks.count(), memory.place);
     std::array<Index, most_blocks + 1> first_region{};  // by block: number of the first region that begins in the block
     blocks.run(executor, [&](std::size_t block, std::size_t begin, std::size_t end) {

@@ -12,10 +12,10 @@
 
 namespace skerry {
 
-/// Working memory, kept between steps.
+/// Working memory that is reused in later steps.
 struct BlockLabels {
     SharedUnionFind sets;
-    Column<Index> by_block;  // contacts, sorted by the block in which their region begins
+    Column<Index> by_block;  // contacts, sorted by the block in which the region of a contact begins
     // Entry for each pair of blocks (a, b): next position of a contact of block a whose region begins in block b.
     Column<Index> place;
 };

@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t contact_block = 512;  // number of contacts that are merged in about 5 us
+constexpr std::size_t contact_block = 512;  // number of contacts for which the old impulses are found in about 5 us
 // Number of contacts that are copied in about 5 us if other cores wrote them.
 constexpr std::size_t stored_block = 512;
 
@@ -18,7 +18,8 @@ constexpr std::size_t stored_block = 512;
 /// result is zero.
 Vec3 turn(const Vec3& impulse, const Vec3& from, const Vec3& to) {
     const Real cosine = from.dot(to);
-    constexpr Real flipped = -0.999;  // cosine of the rotation angle; below it rounding decides the axis
+    // Least cosine of the rotation angle; below it rounding errors would determine the axis.
+    constexpr Real flipped = -0.999;
     if (!(cosine > flipped)) return Vec3::Zero();
     const Vec3 axis = from.cross(to);  // length sin(angle)
     return cosine * impulse + axis.cross(impulse) + (axis.dot(impulse) / (1 + cosine)) * axis;
@@ -30,7 +31,7 @@ public:
     SearchPlace(std::span<const ContactKey> keys, const ContactKey& first)
         : keys_(keys), row_(static_cast<std::size_t>(std::ranges::lower_bound(keys, first) - keys.begin())) {}
 
-    /// Whether the table has a row with this key. If so, row() returns the row.
+    /// True if the table has a row with this key. In this case row() returns the row.
     bool find(const ContactKey& key) {
         while (row_ < keys_.size() && keys_[row_] < key) ++row_;
         return row_ < keys_.size() && keys_[row_] == key;
@@ -42,12 +43,12 @@ private:
     std::size_t row_;
 };
 
-/// Contacts of one pair: rows begin .. end - 1.
+/// Contacts of one pair of partners: rows begin .. end - 1.
 struct Rows {
     std::size_t begin, end;
 };
 
-/// The first row, from `row` on, at which the contacts of a pair begin.
+/// First row, from `row` on, at which the contacts of a new pair begin.
 std::size_t start_of_pair(std::span<const ContactKey> key, std::size_t row) {
     while (row > 0 && row < key.size() && key[row].pair == key[row - 1].pair) ++row;
     return row;
@@ -85,7 +86,7 @@ bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::
     SKERRY_CHECK(last.key.empty() || (last.step.size() == 1 && last.step[0] > 0));
     const Real scale = last.key.empty() ? 0 : kick / last.step[0];
     parallel_for(executor, key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
-        // each block finds its start in the two tables of old impulses, then merges the three tables
+        // each block of contacts finds its first key in both tables of old impulses, then advances in all three tables
         SearchPlace of_last(last.key, key[begin]), of_resting(resting.contact.key, key[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             impulse[i] = Vec3::Zero();
@@ -120,7 +121,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
         if (nearest != rows.end)
             impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
     };
-    // each block consists of whole pairs, because impulses stay within their pair
+    // a block never splits a pair, because impulses are moved only between contacts of one pair
     parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         end = start_of_pair(last.key, end);
         for (std::size_t row = start_of_pair(last.key, begin); row < end;) {

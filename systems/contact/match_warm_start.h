@@ -13,10 +13,11 @@
 
 namespace skerry {
 
-/// Sets each impulse to the last impulse of the same key, from the last step or from the step in which its bodies fell
-/// asleep. The impulse is rotated with the contact normal. It is also scaled by the ratio of `kick`, the time for which
-/// forces act in this step [s], to that of the old step. New contacts get zero. All tables are in key order, so they
-/// are merged. Parallel over blocks of contacts. Returns false if there is nothing to do (skipped).
+/// Sets each impulse to the last impulse with the same contact key, from the last step or from the step in which the
+/// bodies fell asleep. The impulse is rotated with the contact normal. It is also scaled by the ratio of `kick`, the
+/// time for which forces act in this step [s], to that time in the old step. New contacts get zero. All tables are in
+/// key order, so they are read side by side. Parallel over blocks of contacts. Returns false if there is nothing to do
+/// (skipped).
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
                       const WarmStartTable& last, const RestingContactTable& resting, Real kick,
                       std::span<Vec3> impulse);

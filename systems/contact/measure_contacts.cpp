@@ -18,8 +18,8 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// Size of the tangential impulse, which friction limits. For the friction cone it is the length, for the pyramid the
-/// larger of the two components.
+/// Size of the tangential impulse, which friction limits: the length for the friction cone, the larger of the two
+/// tangential components for the friction pyramid.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
     if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);
@@ -30,8 +30,8 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
                       Friction friction) {
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
-    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. Rotation by the
-    // warm start keeps the ratio of tangential to normal impulse.
+    // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. The rotation of
+    // impulses in the warm start does not change the ratio of tangential to normal impulse.
     constexpr Real rounding = 1e-9;
     const Real load = tangential_load(impulse - along * normal, normal, friction);
     const Real limit = dynamic_friction * along;
@@ -40,8 +40,8 @@ ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_frict
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
-/// Adds the impulse and work that the moving nodes of a contact receive from outside: from the surface of a collider,
-/// and from nodes that no impulse can move.
+/// Adds the impulse and work that the moving nodes of a contact receive from the surface of a collider and from nodes
+/// that no impulse can move.
 void add_outer(const Stencil& stencil, const Vec3& surface_velocity, const Vec3& impulse,
                std::span<const Real> inverse_mass, std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                ContactMeasures& sum) {
@@ -78,8 +78,8 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
     const std::size_t count = contacts.size();
     const TouchPlaces places{contacts.point.span(), contacts.distance.span()};
     SKERRY_CHECK(slip.size() == count && state.size() == count);
-    // The number of parts is bounded, so that their sums need no allocation. The borders of the parts depend only on
-    // the number of contacts.
+    // The contacts are divided into a limited number of parts, so that the sums over each part need no allocation. The
+    // borders of the parts depend only on the number of contacts.
     constexpr std::size_t part_limit = 64, smallest_part = 128;
     const std::size_t part_size = std::max(smallest_part, (count + part_limit - 1) / part_limit);
     std::array<ContactMeasures, part_limit> parts{};

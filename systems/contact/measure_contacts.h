@@ -21,8 +21,8 @@ struct ContactMeasures {
     Index slide_count = 0;
 };
 
-/// Spins of round bodies before and after the solve. The spin adds a velocity to the surface of a round body at a
-/// contact that its core does not have.
+/// Spins of round bodies before and after the solve. At a contact of a round body, the spin adds a velocity of the
+/// surface that the velocity of the core does not contain.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};

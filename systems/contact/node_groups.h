@@ -26,7 +26,7 @@ struct TouchPlaces {
         return {.point = binder.read(contact.point), .distance = binder.read(contact.distance)};
     }
 
-    /// Contact point on the surface of the first partner (`weight` > 0) or of the second [m].
+    /// Contact point on the surface of the first partner (`weight` > 0) or of the second partner [m].
     Vec3 on(Real weight, std::size_t contact, const Vec3& normal) const {
         return weight > 0 ? Vec3(point[contact] + distance[contact] * normal) : point[contact];
     }
@@ -52,7 +52,7 @@ struct RigidNodes {
     }
 
     bool any() const { return !body_rigid.empty(); }
-    /// Row of the rigid body that a node moves with, or no_index.
+    /// Row of RigidBodyTable of the rigid body that a node moves with, or no_index.
     Index row(Index node) const {
         if (!any()) return no_index;
         const Range rows = body_rigid[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])];
@@ -67,9 +67,9 @@ struct RigidNodes {
         return !core_nodes.empty() &&
                core_nodes[static_cast<std::size_t>(node_body[static_cast<std::size_t>(node)])] == cylinder_core_nodes;
     }
-    /// Vector from a point on the core of a round body to the contact point [m], times the sum of the weights of its
-    /// nodes, which is 1 or -1. For a sphere or capsule this is -radius normal. For a cylinder the vector starts at the
-    /// centre.
+    /// Vector from a point on the core of a round body to the contact point, times the sum of the weights of the body's
+    /// nodes, which is 1 or -1 [m]. For a sphere or capsule this is -radius normal. For a cylinder the vector starts at
+    /// the centre.
     Vec3 beside_core(Index node, Real weight, std::size_t contact, const Vec3& normal,
                      const TouchPlaces& places) const {
         if (!is_cylinder(node)) return -radius(node) * normal;
@@ -126,7 +126,7 @@ struct NodeGroups {
 
     static NodeGroups bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                            const BodyTable& body, const RigidBodyTable& rigid, const JointBlockTable& joints) {
-        // the matrices of clusters are not declared, because they may still change in a step
+        // the matrices of the clusters are not declared as read, because they may still change in a step
         binder.value(clusters.nodes);
         binder.value(clusters.body);
         binder.value(clusters.cluster_of);

@@ -7,15 +7,15 @@
 namespace skerry {
 namespace {
 
-/// Whether an impulse at this contact can move any node.
+/// True if an impulse at this contact can move any node.
 bool has_moving_node(const Stencil& stencil, std::span<const Real> inverse_mass) {
     for (std::size_t a = 0; a < 4; ++a)
         if (stencil.weight[a] != 0 && inverse_mass[stencil.node[a]] > 0) return true;
     return false;
 }
 
-/// Joins the groups of all moving nodes of a contact. `leader(node)`: the node that represents the group of `node`.
-/// Returns the root of the joined set, or no_index if no node can move.
+/// Joins the sets of all moving nodes of a contact. `leader(node)`: the node that represents the group (rigid body or
+/// cluster) of `node`. Returns the root of the joined set, or no_index if no node can move.
 template <class Leader>
 Index unite(const Stencil& stencil, std::span<const Real> inverse_mass, const Leader& leader, UnionFind& sets) {
     Index root = no_index;
@@ -38,7 +38,7 @@ Index label_by_union_find(std::span<const Stencil> stencil, std::span<const Real
     for (const JointBlock& joint : joints)
         if (joint.first_node != no_index && joint.second_node != no_index)
             sets.join(joint.first_node, joint.second_node);
-    constexpr std::size_t ahead = 12;  // prefetch distance: number of contacts
+    constexpr std::size_t ahead = 12;  // number of contacts by which prefetching is ahead
     const auto fetch = [&](const Stencil& next) {
         for (const Index node : next.node) {
             sets.fetch(node);
@@ -68,7 +68,8 @@ Index label_all_as_one(std::span<const Stencil> stencil, std::span<const Real> i
     return any ? 1 : 0;
 }
 
-/// Counting sort of `count` contacts or joints by region. The sort is stable, so each region lists them in their order.
+/// Counting sort of `count` contacts or joints by region. The sort is stable, so the contacts or joints of a region
+/// stay in ascending order.
 template <class RegionOf>
 void collect(std::size_t count, const RegionOf& region_of, Index region_count, Ragged<Index>& list) {
     Column<Index>& offset = list.offset;
@@ -79,7 +80,7 @@ void collect(std::size_t count, const RegionOf& region_of, Index region_count, R
     list.item.resize(static_cast<std::size_t>(offset[region_count]));
     for (std::size_t i = 0; i < count; ++i)
         if (region_of(i) != no_index) list.item[offset[region_of(i)]++] = static_cast<Index>(i);
-    // filling has moved each offset to the start of the next region; move the offsets back
+    // filling has moved each offset to the start of the next region, so move the offsets back
     for (Index r = region_count; r > 0; --r) offset[r] = offset[r - 1];
     offset[0] = 0;
 }
@@ -90,7 +91,7 @@ void collect_contacts(std::span<const Index> contact_region, Index region_count,
 }
 
 /// Sorts the joints by region. `number(node)`: the region of a joint that acts on `node`. Returns the number of
-/// regions, including regions of joints whose bodies no contact touches.
+/// regions, including regions that have joints but no contacts.
 template <class Number>
 Index collect_joints(std::span<const JointBlock> joints, const Number& number, Index region_count,
                      Ragged<Index>& list) {
@@ -125,7 +126,8 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // A set without contacts gets an item number beyond the contacts, which determines the number of its region.
+    // A set of nodes without contacts gets the next number after the contact numbers as its first item. The number of
+    // its region follows from this item.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -11,9 +11,9 @@
 
 namespace skerry {
 
-/// Working memory, kept between steps.
+/// Working memory that is reused in later steps.
 struct SeparationMemory {
-    UnionFind sets;  // used for few contacts or few workers; otherwise `labels` is used
+    UnionFind sets;  // used for few contacts or few workers; in other cases `labels` is used
     BlockLabels labels;
 };
 

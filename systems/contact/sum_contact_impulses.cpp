@@ -7,7 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// The partners of a contact, and whether they are swapped: the first body of the contact is then the second partner.
+/// The partners of a contact, and true if they are swapped, so that the first body of the contact is the second
+/// partner.
 std::pair<ContactPartners, bool> partners_of(const ContactSumInputs& contacts, std::size_t c) {
     const Index first = contacts.first_body[c], second = contacts.second_body[c];
     const auto deforms = [&](Index body) {
@@ -43,7 +44,7 @@ void sum_contact_impulses(const ContactSumInputs& contacts, const Vec3& moment_p
         const Vec3& impulse = contacts.impulse[c];
         const Vec3& normal = contacts.normal[c];
         const auto [partners, turned] = partners_of(contacts, c);
-        // contacts of the same pair are adjacent
+        // contacts of one pair are adjacent, so only the last row is compared
         if (pairs.empty() || pairs.back().partners != partners) pairs.push_back({.partners = partners});
         const bool analytic = contacts.second_body[c] == no_index;
         const auto arm_of = [&](Index body, Real sign) -> Vec3 {

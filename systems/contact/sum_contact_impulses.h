@@ -51,7 +51,7 @@ struct ContactSums {
 struct PairSums {
     ContactPartners partners;
     ContactSums sums{};
-    Index contacts = 0;  // number of contacts with a nonzero impulse
+    Index contacts = 0;  // number of contacts of the pair with a nonzero impulse
 };
 
 struct ContactSumInputs {

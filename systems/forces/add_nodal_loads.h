@@ -12,7 +12,8 @@ namespace skerry {
 /// `applied_force`: by node [N]. Parallel over nodes.
 void add_nodal_loads(Executor& executor, std::span<const Vec3> load, std::span<Vec3> applied_force);
 
-/// After a step: copies the applied forces, by node, for the balance of the next step [N]. Parallel over nodes.
+/// After a step: copies the applied forces, by node, because the energy balance of the next step needs them [N].
+/// Parallel over nodes.
 void keep_applied_forces(Executor& executor, std::span<const Vec3> applied_force, std::span<Vec3> applied_before);
 
 }  // namespace skerry

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// The members of a law are described in systems/material/with_law.h.
+/// systems/material/with_law.h describes the members of a material law.
 struct Corotational {
     static constexpr bool has_frame = true;
     static constexpr bool stiffness_varies = false;
@@ -21,14 +21,14 @@ struct Corotational {
     /// (docs/methods/elasticity.md 2.2) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with S = R^T
-    /// F and the singular values s of F, the smallest with the sign of det F (docs/methods/stable_step.md 4.2) [Pa].
-    /// Infinite if the nearest rotation R is not unique.
+    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with the
+    /// rotation R nearest to F, S = R^T F, and the singular values s of F, the smallest with the sign of det F
+    /// (docs/methods/stable_step.md 4.2) [Pa]. Infinite if R is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]: `normal` is 2 mu I + lambda 1 1^T and `flip` is 2 mu. `twist` is 2 mu +
-    /// (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j), with S = R^T F and the stretches s; the second term comes from the
-    /// rotation of R.
+    /// dP/dF in the form of Tangent [Pa], with the rotation R nearest to F, S = R^T F, and the stretches s: `normal` is
+    /// 2 mu I + lambda 1 1^T and `flip` is 2 mu. `twist` is 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j); the second
+    /// term arises because R rotates with F.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane, for the given rotation R nearest to F [J/m^3].
@@ -48,14 +48,14 @@ struct Corotational {
     template <class T>
     [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& R,
                                                         const T& trace) {
-        // near rest, 2 mu F and 2 mu R cancel; only the rounding errors of F and R are left
+        // near the rest shape 2 mu F and 2 mu R cancel; only their rounding errors are left
         const Real two_mu = 2 * material.shear_modulus;
         const T pressure = material.lame_lambda * (trace - 3.0);
         return {T{} + two_mu, pressure - two_mu, R};
     }
 
-    /// Adds an upper bound of dP/dF to H. A change X of F is mapped to 2 mu X + lambda (R : X) R + kappa (X - R X^T R);
-    /// the term with kappa bounds the effect of the rotation of R.
+    /// Adds an upper bound of dP/dF to H. With the rotation R nearest to F, a change X of F is mapped to 2 mu X +
+    /// lambda (R : X) R + kappa (X - R X^T R). The term with kappa bounds the effect of the rotation of R.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R, Terms& H) {
         const T kappa = frame_stiffness(material, F, R);
@@ -65,11 +65,11 @@ struct Corotational {
     }
 
 private:
-    /// Returns kappa such that kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes X of F
-    /// that rotate R, with S = R^T F and G = tr(S) I - S. Under compression the stiffness for these changes decreases,
-    /// but it is kept non-negative: a negative eigenvalue deflects the motion and does not limit the step. The
-    /// eigenvalues of G lie between mean - 2 spread and mean + 2 spread. They are sums s_i + s_j of stretches, bounded
-    /// below by 1e-3, where the rotation R is about to jump.
+    /// Returns kappa for the upper bound of dP/dF. With the rotation R nearest to F, S = R^T F and G = tr(S) I - S,
+    /// kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes X of F that rotate R. Under
+    /// compression the stiffness for these changes decreases, but is kept non-negative: a negative eigenvalue deflects
+    /// the motion and does not limit the step. The eigenvalues of G lie between mean - 2 spread and mean + 2 spread.
+    /// They are sums s_i + s_j of stretches, bounded below by 1e-3, where R is about to jump.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

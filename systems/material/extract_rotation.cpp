@@ -9,8 +9,8 @@ namespace {
 
 using Vector4 = std::array<Real, 4>;
 
-/// Eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan, 8.5). It uses
-/// plain loops, so that the result does not depend on how a library vectorises them.
+/// Computes the eigenvalues and eigenvectors of a symmetric 4x4 matrix by cyclic Jacobi rotations (Golub, Van Loan,
+/// 8.5). Plain loops make the result independent of the way in which a library vectorises them.
 struct Eigen4 {
     Vector4 value;
     std::array<Vector4, 4> vector;  // vector[i] is the eigenvector of value[i]
@@ -70,8 +70,8 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
                                     {wz, zx, yz, zz - xx - yy}}});
     const auto top =
         static_cast<std::size_t>(std::max_element(eigen.value.begin(), eigen.value.end()) - eigen.value.begin());
-    // Projects `start` onto the eigenvectors of (nearly) the largest eigenvalue, so that a degenerate element does not
-    // spin.
+    // Projects `start` onto the eigenvectors whose eigenvalues are (nearly) the largest, so that the rotation of a
+    // degenerate element does not jump.
     constexpr Real tie = 1e-6;  // tolerance for equal eigenvalues, relative to the largest entry of F
     Vector4 q{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -79,7 +79,7 @@ std::array<Real, 4> nearest_rotation(const Mat3& F, const std::array<Real, 4>& s
         const Real share = dot4(eigen.vector[i], start);
         for (std::size_t k = 0; k < 4; ++k) q[k] += share * eigen.vector[i][k];
     }
-    // `start` is orthogonal to all these eigenvectors: take any of them.
+    // `start` is orthogonal to all these eigenvectors, so any of the eigenvectors will do.
     if (!(dot4(q, q) > 1e-12)) q = eigen.vector[top];
     const Real length = std::sqrt(dot4(q, q));
     return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};

@@ -1,5 +1,5 @@
-// Extraction of the rotation nearest to a deformation gradient. The iteration starts from the rotation of the last step
-// (the idea of Mueller 2016) and takes Newton steps.
+// Extraction of the rotation nearest to a deformation gradient, by Newton's method. The iteration starts from the
+// rotation of the last step (the idea of Mueller 2016).
 #pragma once
 
 #include "components/element_table.h"
@@ -24,15 +24,16 @@ template <class T>
 }
 
 /// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and the axial
-/// vector a of R^T F, it rotates R by the rotation vector G^-1 a. Mueller's step a / tr(S) leaves a third of the error
-/// in every pass; this step leaves the cube of the error. Returns for each lane whether no further pass is needed: the
-/// step started safely inside the basin of the maximum and rotated R by less than 2e-5 rad. `trace`: tr(R^T F) for the
-/// new R, correct to fourth order in the rotation angle.
+/// vector a of R^T F, the step changes R by the rotation vector G^-1 a. Mueller's step a / tr(S) leaves a third of the
+/// error in every pass; this step leaves the cube of the error. Returns for each lane whether no further pass is
+/// needed: the step started safely inside the basin of the maximum, and its angle was less than 2e-5 rad. `trace`:
+/// tr(R^T F) for the new R, correct to fourth order in the rotation angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
-    // Square of a rotation angle whose cube is below the rounding error of F [rad^2].
+    // Square of a small rotation angle. The error after a step, the cube of this angle, is below the rounding error of
+    // F [rad^2].
     constexpr Real settled_turn_squared = 4e-10;
-    constexpr Real least_curvature = 1e-3;  // lower bound of det G / (tr S / 3)^3, which is 8 at rest
+    constexpr Real least_curvature = 1e-3;  // lower bound of det G / (tr S / 3)^3, which is 8 in the rest shape
     const LaneMat3<T> R = rotation_of(q);
     const T a00 = dot(R.c0, F.c0), a11 = dot(R.c1, F.c1), a22 = dot(R.c2, F.c2);
     const T a01 = dot(R.c0, F.c1), a10 = dot(R.c1, F.c0);
@@ -51,12 +52,12 @@ template <class T>
     const LaneVec3<T> o{half_inverse * (h00 * axial.x + h01 * axial.y + h20 * axial.z),
                         half_inverse * (h01 * axial.x + h11 * axial.y + h12 * axial.z),
                         half_inverse * (h20 * axial.x + h12 * axial.y + h22 * axial.z)};
-    // A Newton step of a quadratic function changes its value by half of slope times step. Here the slope is `axial`
-    // and the step is 2 o.
+    // A Newton step changes the value of a quadratic function by half of the slope times the step. Here the slope is
+    // `axial` and the step is the rotation vector 2 o.
     trace = before + dot(o, axial);
-    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. The new length |q| sqrt(1 +
-    // |o|^2) is known before the product, so root and division are off the critical path. The first factor corrects the
-    // length that |q| has lost to rounding.
+    // Updates the quaternion by q <- q (1, o), where o is half of the rotation vector. The length |q| sqrt(1 + |o|^2)
+    // of the product is known before the product, so that root and division do not delay the result. The factor 1.5 -
+    // |q|^2 / 2 corrects the length of q, which rounding has changed.
     const T o_squared = dot(o, o);
     const T scale = (1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z)) / square_root(1.0 + o_squared);
     const LaneQuaternion<T> p = q;
@@ -78,12 +79,13 @@ extern template void solve_rotations(const LaneMat3<Real4>& F, const Real4& volu
 extern template void solve_rotations(const LaneMat3<Real8>& F, const Real8& volume, LaneQuaternion<Real8>& start);
 
 /// Finds the rotations R nearest to F in all lanes of all parts, starting from q. Lanes without volume keep their
-/// rotation. All lanes take as many passes as the slowest lane. Returns tr(R^T F).
+/// rotation. All lanes take as many passes (Newton steps) as the slowest lane. Returns tr(R^T F).
 template <class T, std::size_t N>
 [[gnu::always_inline]] inline std::array<T, N> extract_rotations(const std::array<LaneMat3<T>, N>& F,
                                                                  const std::array<T, N>& volume,
                                                                  std::array<LaneQuaternion<T>, N>& q) {
-    // Two passes are enough from a warm start; after four, all lanes are solved one by one.
+    // Two passes (Newton steps) are enough from a warm start. If four passes are not enough, all lanes are solved one
+    // by one.
     constexpr int max_passes = 4;
     const std::array<LaneQuaternion<T>, N> start = q;
     std::array<T, N> trace;

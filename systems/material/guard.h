@@ -8,14 +8,14 @@
 
 namespace skerry {
 
-/// The members of a law are described in systems/material/with_law.h. The stiffness k of the barrier is stored as the
+/// systems/material/with_law.h describes the members of a material law. The stiffness k of the barrier is stored as the
 /// Lame constant lambda.
 struct Guard {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
     static constexpr int stress_flops = 36;
 
-    static constexpr Real intact = 0.5;  // J0: ratio of volume to rest volume below which the barrier acts
+    static constexpr Real intact = 0.5;  // J0: ratio of present volume to rest volume below which the barrier acts
 
     /// Elastic energy per rest volume: k/2 (J0 - J)^2 if J = det F is below J0, else zero [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
@@ -27,8 +27,9 @@ struct Guard {
     /// |F| (docs/methods/stable_step.md 4.3) [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]. With p = -k (J0 - J), the stretches s of F and c of cof F: `normal` is k c
-    /// c^T, plus p s_k in the entries of the two axes i, j other than k. `flip` is -p s_k and `twist` is p s_k.
+    /// dP/dF in the form of Tangent [Pa]. With p = -k (J0 - J), the stretches s of F and the stretches c of cof F:
+    /// `normal` is k c c^T, plus p s_k in the entries of the two axes i, j other than k. `flip` is -p s_k and `twist`
+    /// is p s_k.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane [J/m^3].
@@ -53,8 +54,8 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone by |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <=
-    /// |F|^2/3 + 1.
+    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone. It uses the inequalities |cof F|^2 <=
+    /// |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const T missing = missing_of(J);
@@ -62,8 +63,8 @@ struct Guard {
         return missing > 0.0 ? T(material.lame_lambda * bound) : T{};
     }
 
-    /// Adds dP/dF to H. A change X of F is mapped to k (cof F : X) cof F - k (J0 - J) d(cof F), with the change d(cof
-    /// F) of cof F.
+    /// Adds dP/dF to H. With J = det F, a change X of F is mapped to k (cof F : X) cof F - k (J0 - J) d(cof F), where
+    /// d(cof F) is the change of cof F.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const LaneMat3<T> cof = cofactor(F);
@@ -76,7 +77,7 @@ private:
     template <class T>
     static T missing_of(const T& J) {
         const T missing = intact - J;
-        return missing < 0.0 ? T{} : missing;  // the result is NaN if J is NaN
+        return missing < 0.0 ? T{} : missing;  // with this form of the comparison the result is NaN if J is NaN
     }
 };
 

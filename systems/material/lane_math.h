@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// log(1 + x), computed lane by lane, so that each lane gets the same bits as a single element. Speed does not matter:
-/// energies are reported, but a step does not use them.
+/// log(1 + x), computed lane by lane, so that each lane gets the same bits as a single element. Speed does not matter,
+/// because only reports use energies, not the step.
 inline Real log_of_one_plus(Real x) {
     return std::log1p(x);
 }
@@ -23,7 +23,7 @@ inline Real8 log_of_one_plus(const Real8& x) {
     return log;
 }
 
-/// Whether a comparison holds in all lanes.
+/// True if a comparison holds in all lanes.
 inline bool all(bool mask) {
     return mask;
 }
@@ -37,8 +37,8 @@ bool all(const Mask& mask) {
     return both != 0;
 }
 
-/// A 3x3 matrix of T, stored by columns. Functions used by the force kernel are forced inline: gcc does not inline them
-/// by itself, and nine registers would go through memory.
+/// A 3x3 matrix of T, stored by columns. Functions that the force kernel uses are forced inline. gcc does not inline
+/// them by itself, and then the nine entries would go through memory.
 template <class T>
 struct LaneMat3 {
     LaneVec3<T> c0, c1, c2;
@@ -78,8 +78,8 @@ template <class T>
     return {cross(a.c1, a.c2), cross(a.c2, a.c0), cross(a.c0, a.c1)};
 }
 
-/// A stress of the form of_F F + of_other other [Pa]. With this form a caller can add multiples of F, or scale the
-/// stress, cheaply. Laws whose stress has another form return a matrix.
+/// A stress as the sum of_F F + of_other other, with the deformation gradient F [Pa]. With this form a caller can add
+/// multiples of F, or scale the stress, cheaply. Laws whose stress has another form return a matrix.
 template <class T>
 struct SplitStress {
     T of_F, of_other;
@@ -101,7 +101,7 @@ template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> scaled(const T& scale, const LaneMat3<T>& P) {
     return scale * P;
 }
-/// The part of a stress that remains without the multiple of F: of_other other.
+/// The part of a stress other than the multiple of the deformation gradient F: of_other other.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> rest_of(const SplitStress<T>& P) {
     return P.of_other * P.other;
@@ -127,7 +127,7 @@ template <class T>
     return b;
 }
 
-/// Converts lane l of a matrix to a plain matrix.
+/// Converts lane l of a matrix of lanes to a plain matrix.
 template <class T>
 Mat3 lane_of(const LaneMat3<T>& a, int l) {
     Mat3 m;

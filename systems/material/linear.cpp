@@ -16,7 +16,7 @@ Mat3 Linear::stress(const MaterialConstants& material, const Mat3& F) {
 }
 
 Real Linear::stiffness_bound(const MaterialConstants& material, const Mat3&) {
-    // Lambda is negative for auxetic materials.
+    // The Lame constant lambda is negative for auxetic materials.
     return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);
 }
 

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// The members of a law are described in systems/material/with_law.h.
+/// systems/material/with_law.h describes the members of a material law.
 struct Linear {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = false;

@@ -32,8 +32,8 @@ template <class T>
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
 }
 
-/// Twice Green's strain: F^T F - I. Rotations do not change it. All viscous strains are stored doubled, which saves
-/// halving them.
+/// Twice Green's strain: F^T F - I. Rotations do not change this strain. All viscous strains are stored doubled, so
+/// that no strain has to be halved.
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> twice_green_strain(const LaneMat3<T>& F) {
     return {dot(F.c0, F.c0) - 1.0, dot(F.c1, F.c1) - 1.0, dot(F.c2, F.c2) - 1.0,
@@ -46,7 +46,7 @@ template <class T>
             S.zx * F.c0 + S.yz * F.c1 + S.zz * F.c2};
 }
 
-/// First Piola-Kirchhoff stress F S + P, where S is a second Piola-Kirchhoff stress and P the stress of a law.
+/// First Piola-Kirchhoff stress F S + P, where S is a second Piola-Kirchhoff stress and P the stress of a material law.
 template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> multiply_and_add(const LaneMat3<T>& F, const LaneSymmetric<T>& S,
                                                            const LaneMat3<T>& P) {
@@ -69,25 +69,25 @@ struct ViscousStretch {
     T volume;
 };
 
-/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are the Lame constants of the law times a
-/// share; `bulk` acts on the change of volume alone.
+/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are the Lame constants of the material, times
+/// the ratio relaxing_share; `bulk` acts on the change of volume alone.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// Ratio of the lowest frequency of a body, if it were free, to its lowest relaxation rate. The ratio allows for held
-/// bodies: a held end makes a beam six times slower.
+/// Ratio of the lowest frequency of a free body to the lowest relaxation rate. The ratio allows for held bodies: a held
+/// end makes the lowest frequency of a beam six times lower.
 inline constexpr Real rates_below = 20;
 
-/// Ratio s of the stiffness of the relaxing part to the stiffness of the law, chosen for a given loss factor at the
-/// lowest frequency of a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is `span`
-/// times the lowest. At the lowest frequency a ratio s adds a loss modulus of (pi / 2) s / log(span) and a storage
-/// modulus of s log(rates_below) / log(span), both relative to the stiffness of the law.
+/// Ratio s of the stiffness of the relaxing part to the stiffness of the material law, chosen for a given loss factor
+/// at the lowest frequency of a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is
+/// `span` times the lowest. At the lowest frequency the relaxing part adds a loss modulus of (pi / 2) s / log(span) and
+/// a storage modulus of s log(rates_below) / log(span), both relative to the stiffness of the law.
 inline Real relaxing_share(Real loss_factor, Real span) {
     return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
 }
 
-/// Relaxation time of the bulk viscosity times the own frequency of the element.
+/// Relaxation time of the bulk viscosity times the highest frequency of the element at rest (own_frequency).
 inline constexpr Real bulk_time = 0.5;
 
 inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real relaxing_share) {

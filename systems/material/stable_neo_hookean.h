@@ -1,6 +1,6 @@
-// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018): finite for every F, even inverted or flat. Psi = mu/2 (Ic -
-// 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value at rest, with Ic = |F|^2, J = det F and alpha = 1 + 3 mu
-// / (4 la).
+// Stable neo-Hookean elasticity (Smith, de Goes, Kim 2018). The energy is finite for every F, even inverted or flat:
+// Psi = mu/2 (Ic - 3) + la/2 (J - alpha)^2 - mu/2 log(Ic + 1), minus its value in the rest shape, with Ic = |F|^2, J =
+// det F and alpha = 1 + 3 mu / (4 la).
 #pragma once
 
 #include "components/material_table.h"
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// The members of a law are described in systems/material/with_law.h.
+/// systems/material/with_law.h describes the members of a material law.
 struct StableNeoHookean {
     static constexpr bool has_frame = false;
     static constexpr bool stiffness_varies = true;
@@ -26,7 +26,7 @@ struct StableNeoHookean {
     }
 
     /// Elastic energy per rest volume, with Ic = |F|^2 and J = det F: mu/2 (Ic - 3 - log((Ic + 1) / 4)) - 3/4 mu (J -
-    /// 1) + la/2 (J - 1)^2. It is 0 at rest [J/m^3].
+    /// 1) + la/2 (J - 1)^2. The energy is 0 in the rest shape [J/m^3].
     static Real energy_density(const MaterialConstants& material, const Mat3& F);
 
     /// First Piola-Kirchhoff stress, with Ic = |F|^2 and J = det F: mu (1 - 1 / (Ic + 1)) F + (la (J - 1) - 3/4 mu) cof
@@ -38,23 +38,23 @@ struct StableNeoHookean {
     /// 2 mu Ic / (Ic + 1)^2 over Ic = |F|^2, reached at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]. With a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu, and the stretches s of
-    /// F and c of cof F: `normal` is a I + 2 mu/(Ic + 1)^2 s s^T + la c c^T, plus p s_k in the entries of the two axes
-    /// i, j other than k. `flip` is a - p s_k and `twist` is a + p s_k.
+    /// dP/dF in the form of Tangent [Pa]. With Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu,
+    /// the stretches s of F and the stretches c of cof F: `normal` is a I + 2 mu/(Ic + 1)^2 s s^T + la c c^T, plus p
+    /// s_k in the entries of the two axes i, j other than k. `flip` is a - p s_k and `twist` is a + p s_k.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane [J/m^3].
     template <class T>
     static T energy_density(const MaterialConstants& material, const LaneMat3<T>& F) {
         const auto [mu, la] = model_moduli(material);
-        // Computed from e = F - I without the first-order terms, which cancel. With these terms a body at rest would
-        // have the energy of their rounding errors.
+        // Computes the energy from e = F - I without the first-order terms, which cancel. With these terms a body in
+        // its rest shape would have the energy of their rounding errors.
         const T xx = F.c0.x - 1.0, yy = F.c1.y - 1.0, zz = F.c2.z - 1.0;
         const T trace = xx + yy + zz;
         const LaneMat3<T> e{{xx, F.c0.y, F.c0.z}, {F.c1.x, yy, F.c1.z}, {F.c2.x, F.c2.y, zz}};
         const T minors = (xx * yy - e.c0.y * e.c1.x) + (xx * zz - e.c0.z * e.c2.x) + (yy * zz - e.c1.z * e.c2.y);
         const T bulk = minors + dot(e.c0, cross(e.c1, e.c2)), square = inner_product(e, e);
-        // Growth is J - 1, quarter is (Ic - 3) / 4.
+        // `growth` is J - 1, `quarter` is (Ic - 3) / 4, with J = det F and Ic = |F|^2.
         const T growth = trace + bulk, quarter = 0.25 * (2.0 * trace + square);
         return mu * (0.375 * square - 0.75 * bulk - 0.5 * (log_of_one_plus(quarter) - quarter)) +
                (0.5 * la) * (growth * growth);
@@ -79,8 +79,8 @@ struct StableNeoHookean {
                two_over_root_three * square_root(slope * slope * inner_product(F, F));
     }
 
-    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone by |cof F|^2 <= |F|^4/3 and 2/sqrt(3) |F| <=
-    /// |F|^2/3 + 1. At rest the two bounds are equal.
+    /// Upper bound of stiffness_bound, computed from |F|^2 and det F alone. It uses the inequalities |cof F|^2 <=
+    /// |F|^4/3 and 2/sqrt(3) |F| <= |F|^2/3 + 1. In the rest shape this bound equals stiffness_bound.
     template <class T>
     static T rough_stiffness_bound(const MaterialConstants& material, const T& square, const T& J) {
         const auto [mu, la] = model_moduli(material);
@@ -88,10 +88,11 @@ struct StableNeoHookean {
         return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
     }
 
-    /// Adds an upper bound of dP/dF to H. dP/dF maps a change X of F to mu (1 - 1 / (Ic + 1)) X + 2 mu / (Ic + 1)^2 (F
-    /// : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F), with the change d(cof F) of cof F. The first
-    /// coefficient decreases under compression and is zero at F = 0. A step length from so small a stiffness would be
-    /// too long as soon as the element expands again, so the coefficient is kept at least as large as at rest.
+    /// Adds an upper bound of dP/dF to H. With Ic = |F|^2 and J = det F, dP/dF maps a change X of F to mu (1 - 1 / (Ic
+    /// + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F), where d(cof F) is
+    /// the change of cof F. The first coefficient decreases under compression and is zero at F = 0. A step length from
+    /// so small a stiffness would be too long as soon as the element expands again. The bound therefore uses at least
+    /// the value of this coefficient in the rest shape.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

@@ -8,9 +8,9 @@
 namespace skerry {
 
 Stretches::Stretches(const Mat3& F) {
-    // Uses the eigenvalues of F^T F, which takes a third of the time of the SVD. The SVD is needed if a stretch is so
-    // small that its square is lost in rounding.
-    constexpr Real flat = 1e-4;  // least squared stretch, relative to the largest squared stretch
+    // Uses the eigenvalues of F^T F, which takes a third of the time of a singular value decomposition (SVD). The SVD
+    // is needed if a stretch is so small that its square is lost in rounding.
+    constexpr Real flat = 1e-4;  // least squared stretch, relative to the largest squared stretch, for the fast way
     const Eigen::SelfAdjointEigenSolver<Mat3> squares(F.transpose() * F);
     const Vec3& squared = squares.eigenvalues();
     if (squared[0] > flat * squared[2]) {

@@ -5,10 +5,11 @@
 
 namespace skerry {
 
-/// dP/dF of a law in the frames of F = left diag(s) right^T [Pa]. A change X of F has the components X' = left^T X
-/// right in these frames. The change of stress then has `normal` times the vector of all X'_ii on the diagonal, and
-/// (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji off the diagonal (Stomakhin, Howes, Schroeder, Teran 2012; Smith, de
-/// Goes, Kim 2018). Entry k of `flip` and `twist` belongs to the axes i, j other than k. No eigenvalue is negative.
+/// dP/dF of a material law in the principal axes of F = left diag(s) right^T [Pa]. A change X of F has the components
+/// X' = left^T X right in these axes. The change of stress then has `normal` times the vector of all X'_ii on the
+/// diagonal, and (flip + twist)/2 X'_ij + (flip - twist)/2 X'_ji off the diagonal (Stomakhin, Howes, Schroeder, Teran
+/// 2012; Smith, de Goes, Kim 2018). Entry k of `flip` and `twist` belongs to the axes i, j other than k. No eigenvalue
+/// of dP/dF in this form is negative.
 struct Tangent {
     Mat3 left, right;
     Mat3 normal;
@@ -16,7 +17,7 @@ struct Tangent {
 };
 
 /// Signed singular value decomposition F = left diag(stretch) right^T with rotations `left` and `right`. The smallest
-/// stretch is negative if F is mirrored.
+/// stretch is negative if F contains a reflection.
 struct Stretches {
     Mat3 left, right;
     Vec3 stretch;
@@ -24,7 +25,7 @@ struct Stretches {
     explicit Stretches(const Mat3& F);
 };
 
-/// Returns the Tangent with these entries, after setting negative eigenvalues to zero [Pa].
+/// Returns the tangent with the entries `normal`, `flip` and `twist`, after setting negative eigenvalues to zero [Pa].
 Tangent without_softening(const Stretches& frames, const Mat3& normal, const Vec3& flip, const Vec3& twist);
 
 }  // namespace skerry

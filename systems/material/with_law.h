@@ -12,10 +12,10 @@ namespace skerry {
 /// Calls visit(law), where `law` is an empty object of the struct that implements the model. visit is compiled once for
 /// each law. Each law is a struct in a file of its own, with these members:
 ///
-///     has_frame           whether the law uses a frame that rotates with the element: then all functions by lanes take
+///     has_frame           true if the law uses a frame that rotates with the element: then all functions by lanes take
 ///                         R, the rotation nearest to F
-///     stiffness_varies    whether elements share the mass of a node by the stiffness_bound of their present shape, by
-///                         lanes; otherwise by the stiffness_bound of their rest shape
+///     stiffness_varies    true if elements share the mass of a node in proportion to the stiffness_bound of their
+///                         present shape, by lanes; false: of their rest shape
 ///     stress_flops        number of operations of stress by lanes per tetrahedron, for profile_elements
 ///     energy_density, stress, stiffness_bound (material, F)     for one element, the simple reference for the kernels
 ///     tangent (material, F)                                     for one element, for Newton steps

@@ -22,10 +22,11 @@ constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs a
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;
-constexpr Real forgetting = 0.3;  // weight of the last step in the moving average of the sweeps
-constexpr Real caution = 1.2;     // the prediction is this multiple of the moving average
+constexpr Real forgetting = 0.3;  // weight of the last step in the moving average of the number of sweeps
+constexpr Real caution = 1.2;     // ratio of the predicted number of sweeps to the moving average
 constexpr Real fewest_sweeps = 4;
-// Prediction for new regions: first_sweeps + sweeps_of_size times the square root of the number of contacts.
+// Predicted number of sweeps of a new region: first_sweeps + sweeps_of_size times the square root of the number of
+// contacts.
 constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
 constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes some microseconds
@@ -82,7 +83,8 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
     const RegionHistoryTable& history = memory.history;
     present.resize(count);
     parallel_for(executor, count, regions_per_block, [&](std::size_t begin, std::size_t end) {
-        // Each block finds its start in the history by binary search. Then it advances in both lists.
+        // Each block finds its first region among the earlier regions by binary search, then reads the lists of earlier
+        // and of present regions side by side.
         std::size_t old = 0;
         for (std::size_t r = begin; r < end; ++r) {
             const Index contacts = contact_count(regions, static_cast<Index>(r));
@@ -90,7 +92,8 @@ void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionM
             present.sweeps[r] = no_history;
             present.age[r] = 0;
             if (key.empty()) continue;
-            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in both lists.
+            // Contacts ascend by key and regions by their first contact, so the identifiers ascend in the list of
+            // earlier regions and in the list of present ones.
             const ContactKey id =
                 regions.contacts[r].empty() ? id_of_joint(regions.joints[r][0]) : key[regions.contacts[r][0]];
             regions.id[r] = present.id[r] = id;
@@ -123,7 +126,7 @@ void schedule_regions(Executor& executor, const SolverSettings& settings, Region
     const int workers = executor.worker_count();
     const Real share = total / (tasks_per_worker * workers);
     const Real task_cost = workers == 1 ? total : std::clamp(share, smallest_task, largest_task);
-    // This loop has no branch that is hard to predict.
+    // The body of this loop has no branch that is hard to predict.
     memory.task.resize(regions.size());
     std::size_t tasks = 0;
     Index begin = 0;

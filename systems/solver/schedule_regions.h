@@ -1,5 +1,5 @@
-// Order of the regions, and grouping into tasks (docs/methods/regions.md 4). Predictions and history affect only the
-// time at which a region is solved, never its result.
+// Order of the regions, and grouping into tasks (docs/methods/regions.md 4). The sweep counts of earlier steps and the
+// predictions affect only the time at which a region is solved, never its result.
 #pragma once
 
 #include "components/column.h"
@@ -11,11 +11,11 @@
 namespace skerry {
 
 /// Writes regions.id from the keys of the contacts, and finds the number of sweeps that each region needed in earlier
-/// steps. Without keys there is no history.
+/// steps. Without keys no region is recognised from earlier steps.
 void recall_regions(Executor& executor, std::span<const ContactKey> key, RegionMemory& memory, RegionTable& regions);
 
-/// Writes regions.order and groups it into tasks. Regions too large for lanes come first, by descending predicted cost.
-/// Small regions follow by descending size, so that lanes fill up. Single contacts are last.
+/// Writes regions.order and groups the ordered regions into tasks. Regions too large for lanes come first, by
+/// descending predicted cost. Small regions follow by descending size, so that lanes fill up. Single contacts are last.
 void schedule_regions(Executor& executor, const SolverSettings& settings, RegionMemory& memory, RegionTable& regions);
 
 /// Records the number of sweeps of each region for the next step.

@@ -82,7 +82,8 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     SKERRY_CHECK(out.velocity_next.size() == contacts.inverse_mass.size() &&
                  out.push_out.size() == contacts.inverse_mass.size());
     RegionMemory& data = memory.data();
-    // Clear the pseudo velocities of the last step. advance_positions has already used them, or the step was rejected.
+    // Clear the pseudo velocities of the last step. advance_positions has already used the pseudo velocities, or the
+    // step was rejected.
     if (data.pushed.exchange(false))
         parallel_for(executor, out.push_out.size(), cleared_per_block, [&](std::size_t begin, std::size_t end) {
             std::fill(out.push_out.begin() + begin, out.push_out.begin() + end, Vec3::Zero());

@@ -60,8 +60,8 @@ Real highest_lane(const Real8& of) {
     return highest;
 }
 
-/// Highest of value(0) to value(count - 1), or 0 if all are negative. The result does not depend on the order in which
-/// the jobs run.
+/// Greatest of the numbers value(0) to value(count - 1), or 0 if all are negative. The result does not depend on the
+/// order in which the jobs run.
 template <class Value>
 Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job, Value&& value) {
     std::atomic<Real> highest{0};
@@ -75,7 +75,8 @@ Real highest_of(Executor& executor, std::size_t count, std::size_t rows_per_job,
     return highest.load();
 }
 
-/// True if exceeds(row) holds for any row below `count`. The result does not depend on the order in which the jobs run.
+/// True if exceeds(row) is true for any row below `count`. The result does not depend on the order in which the jobs
+/// run.
 template <class Exceeds>
 bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job, Exceeds&& exceeds) {
     std::atomic<bool> found{false};
@@ -87,7 +88,7 @@ bool any_exceeds(Executor& executor, std::size_t count, std::size_t rows_per_job
 }
 
 struct Fastest {
-    Real rate_squared = 0;  // squared deformation rate over the squared leeway [1/s^2]
+    Real rate_squared = 0;  // squared deformation rate over the squared leeway (factor on max_strain_step) [1/s^2]
     Index node = no_index;
     Index element = no_index;  // tetrahedron t: lane t % 8 of block t / 8
 
@@ -115,8 +116,8 @@ Real8 leeway_of(const CheckInputs& state, std::size_t block) {
     return state.tetrahedron_leeway.empty() ? Real8{} + 1.0 : load(state.tetrahedron_leeway[block]);
 }
 
-/// For each tetrahedron of a block, |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
-/// lane. F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
+/// For each tetrahedron of a block: |F'|^2 over the squared leeway (factor on max_strain_step) [1/s^2]; 0 in an unused
+/// lane. The rate of F is F' = [v_k - v_0] [X_k - X_0]^-1 with the corner velocities v and rest positions X.
 Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat3<Real8>& parting) {
     const LaneMat3<Real8> rest = edges(state.tetrahedron_node[block], state.rest_position), cof = cofactor(rest);
     const Real8 det = dot(rest.c0, cof.c0);
@@ -131,9 +132,9 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
 }
 
 /// Squared deformation rates of the tetrahedra of a block over the squared leeways (factors on max_strain_step)
-/// [1/s^2]. The deformation rate is |F'|, or the relative speed of the corners over the smallest altitude if that ratio
-/// is less. All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most
-/// blocks. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
+/// [1/s^2]. The deformation rate is |F'|, the norm of the rate of F, or the relative speed of the corners over the
+/// smallest altitude if that ratio is less. All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds
+/// `rate` [1/s], as in most blocks. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -147,7 +148,7 @@ Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, 
 }
 
 /// Returns the greatest squared deformation rate of the tetrahedra of a block if it exceeds the square of `rate`, else
-/// 0 [1/s^2]. Marks the corners of all tetrahedra that deform faster than `rate`.
+/// 0 [1/s^2]. Marks the corners of all tetrahedra whose deformation rate exceeds `rate`.
 Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
                         std::span<std::uint8_t> beside_fast) {
     const Real8 squared = deforming_squared(state, block, rate, part_at_most);
@@ -182,14 +183,15 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
     return fastest;
 }
 
-/// Greatest |F'|^2 over the squared leeway (factor on max_strain_step) among the elements of a block; 0 for inversion
-/// barriers, and if no node of the block is marked in `beside_fast` [1/s^2].
+/// Greatest |F'|^2, with the rate F' of F, over the squared leeway (factor on max_strain_step) among the elements of a
+/// block [1/s^2]. It is 0 for inversion barriers, and if no node of the block is marked in `beside_fast`.
 Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // F of an inversion barrier is F of one tetrahedron, not a mean over several
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
-    // nonzero if a node is marked; tested first, because gradients take over half of the time of a block
+    // nonzero if a node is marked in `beside_fast`; tested first, because computing gradients takes over half of the
+    // time of a block
     unsigned marked = 0;
     for (Index k = 0; k < count; ++k)
         for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)
@@ -202,8 +204,8 @@ Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<con
     return highest_lane(inner_product(change, change) / (leeway * leeway));
 }
 
-/// Finds the node that is fastest relative to the mean velocity of the body. This measure is coarser and serves bodies
-/// without a list of tetrahedra.
+/// Finds the node that is fastest relative to the mean velocity of the body. This test is less accurate than
+/// deformation rates. It is used for bodies without a list of tetrahedra.
 Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude) {
     Vec3 sum = Vec3::Zero();
     const std::size_t begin = static_cast<std::size_t>(state.block_begin[static_cast<std::size_t>(blocks.begin)]);
@@ -217,8 +219,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// True if a node is so fast relative to the first node of the body that a tetrahedron of the smallest altitude could
-/// deform faster than `rate` [1/s].
+/// True if a node is so fast relative to the first node of the body that the smallest tetrahedron could deform faster
+/// than `rate` [1/s]. The smallest tetrahedron is one with the smallest altitude.
 bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
@@ -233,9 +235,10 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
     });
 }
 
-/// Deformation rate of the fastest element of a body if it exceeds `rate`, else 0 [1/s]. Tests go from cheap to
-/// expensive, and end as soon as a test shows that no element exceeds `rate`. F' of an element is the mean of F' of its
-/// tetrahedra. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
+/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. Tests go from cheap to
+/// expensive, and end as soon as a test shows that no element exceeds `rate`. The rate of F of an element is the mean
+/// over the tetrahedra of the element. `part_at_most`: upper bound on the relative speed of two nodes of the body
+/// [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;
@@ -260,7 +263,8 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
     return where_faster(std::min(of_tetrahedra, of_elements));
 }
 
-/// Finds the tetrahedron and the node to report for a body that deforms too fast: the first with the highest rate.
+/// Finds the tetrahedron and the node to report for a body that deforms too fast: the tetrahedron with the highest
+/// deformation rate, and of several the first.
 Fastest fastest_of(const CheckInputs& state, std::size_t body) {
     if (state.body_blocks.empty())
         return fastest_from_mean(state, state.body_node_blocks[body], state.body_min_altitude[body]);
@@ -330,7 +334,7 @@ StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Re
         const Real rate =
             deformation_rate(executor, state, body, looked_for, (2 + rounding) * speed.body_frame[body], beside_fast);
         if (rate > verdict.fastest.rate) verdict.fastest = {rate, static_cast<Index>(body)};
-        // only the first fault is reported
+        // only the first fault of the step is reported
         if (!(rate > max_strain_step / h) || verdict.fault != StepFault::none) continue;
         const Fastest fastest = fastest_of(state, body);
         verdict.fault = StepFault::too_fast;

@@ -23,15 +23,15 @@ struct StrainRate {
     Index body = no_index;  // body of the fastest element: row of BodyTable
 };
 
-/// Tells whether a step may be committed, and otherwise the fault that prevents it.
+/// Shows whether a step may be committed, and otherwise the fault that prevents it.
 struct StepVerdict {
     StepFault fault = StepFault::none;
     Index body = no_index;  // row of BodyTable
     Index node = no_index;  // row of NodeTable, if one node causes the fault
-    // For too_fast: norm of the change of F in this step, over the leeway (factor on max_strain_step). For too_far:
-    // spacing of floating-point coordinates over the mean edge. Not used for not_finite.
+    // Size of the fault. For too_fast: norm of the change of F in this step, over the leeway (factor on
+    // max_strain_step). For too_far: spacing of floating-point coordinates over the mean edge. Not used for not_finite.
     Real value = 0;
-    Index tetrahedron = no_index;  // lane t % 8 of block t / 8, if one tetrahedron causes the fault
+    Index tetrahedron = no_index;  // tetrahedron that causes the fault, if there is one: lane t % 8 of block t / 8
     StrainRate fastest = {};       // fastest element; not set if the fault is not_finite
 };
 
@@ -42,11 +42,13 @@ struct CheckInputs {
     std::span<const Real> body_min_altitude;
     std::span<const Vec3> velocity;  // at the start of the step [m/s]
     std::span<const Vec3> velocity_next;
-    std::span<const Vec3> push_out;  // velocity by which contacts move positions only; empty if none does [m/s]
+    // Velocity by which contacts move positions only; empty if no contact does so [m/s]
+    std::span<const Vec3> push_out;
     std::span<const Vec3> rest_position = {};                 // m
     std::span<const TetrahedronNodes> tetrahedron_node = {};  // TetrahedronBlockTable
     std::span<const ElementLane> tetrahedron_altitude = {};   // m
-    std::span<const ElementLane> tetrahedron_leeway = {};     // factor on max_strain_step; empty means 1 for all
+    // Factor on max_strain_step; empty means 1 for all tetrahedra.
+    std::span<const ElementLane> tetrahedron_leeway = {};
     std::span<const Range> body_blocks = {};  // tetrahedra, from BodyTable; if empty, check_state tests node speeds
     // ElementBlockTable and ElementNodeTable. If empty, the tetrahedra are the elements.
     std::span<const Range> body_element_blocks = {};
@@ -55,7 +57,7 @@ struct CheckInputs {
     std::span<const ElementGradient> element_gradient = {};
     std::span<const ElementLane> element_implicit_modulus = {};
     std::span<const ElementPart> element_part = {};  // empty if no element is an inversion barrier
-    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if no frame moves
+    std::span<const MovingFrame> body_frame = {};    // from BodyTable; empty if the frames of all bodies stand still
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
     static CheckInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -100,32 +102,32 @@ struct SpeedOutputs {
     }
 };
 
-/// Factor on max_strain_step for implicit elements and for the tetrahedra that they cover.
+/// Leeway: factor on max_strain_step, for implicit elements and for the tetrahedra that these elements cover.
 inline constexpr Real implicit_leeway = 5;
 
 /// Writes the greatest speeds and returns the first fault in body order. A fault is a velocity that is not finite, or
 /// an element whose F would change too much in this step of length `h` [s]. The change of F (Frobenius norm) must not
 /// exceed `max_strain_step` times the leeway, a factor of the element. F of an element is a mean over tetrahedra, so an
 /// element is tested only beside a tetrahedron whose F changes too much. A tetrahedron is tested only if two of its
-/// corners move apart by more than the same fraction of its smallest altitude. The verdict names the tetrahedron that
-/// deforms fastest. Common motion of all nodes and slow rotation of a large body are harmless and do not count. Without
-/// `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the smallest
-/// altitude of the body. This test also rejects fast rotation of a large body. `fastest` is set if an element deforms
-/// too fast for a step of length `h` or `longest` [s]. `beside_fast` is scratch, one entry per node. Parallel over node
-/// blocks and bodies.
+/// corners move apart by more than the allowed change of F times its smallest altitude. The returned verdict names the
+/// tetrahedron that deforms fastest. Common motion of all nodes and slow rotation of a large body are harmless and do
+/// not count. Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against
+/// the smallest altitude of the body. This test also rejects fast rotation of a large body. `fastest` is set if an
+/// element deforms too fast for a step of length `h` or `longest` [s]. `beside_fast` is work memory, one entry per
+/// node. Parallel over node blocks and bodies.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 
-/// Finds the body that deforms fastest with the velocities velocity_next + push_out, for use between two steps. The
-/// rate of the result is 0 if no body deforms faster than `rate` [1/s].
+/// Finds the body that deforms fastest with the velocities velocity_next + push_out. The function serves checks between
+/// two steps. The deformation rate of the result is 0 if no body deforms faster than `rate` [1/s].
 StrainRate strain_rate(Executor& executor, const CheckInputs& state, Real rate, Column<std::uint8_t>& beside_fast);
 
 /// Greatest allowed ratio of the spacing of floating-point coordinates to the mean edge of a body. With a coarser
 /// spacing, motion below a millionth of the speed of sound would be lost to rounding.
 inline constexpr Real coarsest_place = 1e-6;
 
-/// Finds the first body that is too far from the origin for its size. One node per body is tested, since a body is
-/// small compared with such distances.
+/// Finds the first body that is too far from the origin for its size. One node per body is tested, because the size of
+/// a body is small compared with such distances.
 StepVerdict check_distance(Executor& executor, std::span<const Vec3> position, std::span<const Range> body_nodes,
                            std::span<const Real> body_mean_edge);
 

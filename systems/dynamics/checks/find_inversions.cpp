@@ -17,11 +17,11 @@ namespace {
 // Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// Number of inversion checks of a narrow block for each computation of the block's width, which takes half of the time
-// of a check.
+// Number of inversion checks of a block with narrow tetrahedra for each computation of the block's width (the least
+// width of a tetrahedron). This computation takes half of the time of a check.
 constexpr std::uint8_t looks_at_narrow = 8;
 
-// Number of blocks whose travel budgets (distances without a check) are compared together, without a branch for each
+// Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
 // block.
 constexpr std::size_t blocks_at_once = 32;
 
@@ -43,8 +43,8 @@ Real8 largest_cross_squared(const LaneMat3<Real8>& e) {
     return larger(faces, pairs);
 }
 
-/// Width of the narrowest tetrahedron of a block: the least distance of two parallel planes that enclose it [m].
-/// Inverted tetrahedra count, because they may turn back and invert again.
+/// Width of the narrowest tetrahedron of a block. The width of a tetrahedron is the least distance of two parallel
+/// planes that enclose it [m]. Inverted tetrahedra count, because they may become positive and invert again.
 Real width(const LaneMat3<Real8>& edges, const ElementLane& rest_volume) {
     const Real8 volume = determinant(edges), span = largest_cross_squared(edges);
     const Real8 left_over = Real8{} + infinity;
@@ -60,8 +60,10 @@ struct Body {
     const InversionInputs& inputs;
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
-    Real travel_bound;  // upper bound on the travel of the body at the end of this step [m]
-    Real travel_base;   // travel of the body from which a new travel budget counts (measure_displacement.h) [m]
+    Real travel_bound;  // upper bound on the travel (distance moved) of the body at the end of this step [m]
+    // Travel of the body from which a new travel budget (distance without a check) counts, see measure_displacement.h
+    // [m]
+    Real travel_base;
 
     Body(const InversionInputs& of, Real step, Index body)
         : inputs(of),
@@ -101,8 +103,8 @@ struct Body {
     }
 
 private:
-    /// False for tetrahedra whose inversion is harmless: an implicit element never makes a step unstable, and a motion
-    /// that inverts a sliver strongly strains only a negligible volume.
+    /// True for tetrahedra whose inversion matters. Inversion is harmless under implicit elements, which never make a
+    /// step unstable, and in slivers, whose strong strain concerns only a negligible volume.
     bool is_judged(std::size_t b, std::size_t l) const {
         if (!inputs.tetrahedron_sliver.empty() && (inputs.tetrahedron_sliver[b] >> l & 1U) != 0) return false;
         return inputs.tetrahedron_leeway.empty() || inputs.tetrahedron_leeway[b][l] <= 1;
@@ -154,7 +156,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
                 InversionMemory& memory) {
     memory.part.clear();
     memory.job.clear();
-    // This capacity is enough for any later step, whichever bodies are checked then.
+    // This capacity is enough for any later step, whichever bodies will be checked.
     const std::size_t most = inputs.tetrahedron_node.size() / blocks_per_part + inputs.body_blocks.size();
     memory.part.reserve(most);
     memory.job.reserve(most + 1);
@@ -176,7 +178,7 @@ void list_parts(const InversionInputs& inputs, Real h, std::span<const Real> bod
     memory.job.push_back(static_cast<Index>(memory.part.size()));
 }
 
-/// Adds the results of the parts of one body to `found`, the results of all earlier bodies.
+/// Adds the results of the parts of one body to `found`, which already contains the results of all earlier bodies.
 void add_body(const InversionInputs& inputs, Real h, std::span<const InversionPart> parts, Real& uninverted_until,
               Inversions& found) {
     const Index body = parts.front().body;

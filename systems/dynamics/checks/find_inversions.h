@@ -20,8 +20,9 @@ struct InversionInputs {
     std::span<const std::uint8_t> tetrahedron_sliver;  // empty if there are no slivers
     std::span<const Range> body_blocks;                // BodyTable
     std::span<const Real> body_frame_speed, body_travel, body_displacement;
-    std::span<const Vec3> position;                 // at the start of the step [m]
-    std::span<const Vec3> velocity_next, push_out;  // push_out is empty if no contact pushes [m/s]
+    std::span<const Vec3> position;  // at the start of the step [m]
+    // push_out is empty if no contact pushes nodes out of an overlap [m/s]
+    std::span<const Vec3> velocity_next, push_out;
     std::span<const Range> body_rigid = {};  // from BodyTable; rigid bodies are not checked; empty if there are none
 
     /// `pushed`: true if a contact pushes nodes out of penetration in this step.
@@ -46,27 +47,29 @@ struct InversionInputs {
 struct Inversions {
     Index count = 0;
     Index body = no_index;         // body of the first inverted tetrahedron: row of BodyTable
-    Index tetrahedron = no_index;  // first inverted tetrahedron: lane t % 8 of block t / 8
+    Index tetrahedron = no_index;  // first tetrahedron that the step inverts: lane t % 8 of block t / 8
     // True if a body that had no inverted tetrahedron before the step gets one. Slivers and tetrahedra that implicit
     // elements cover do not count.
     bool first = false;
 };
 
-/// Some blocks of a body that has to be checked for inversions, and the result of the check.
+/// Part of a body that has to be checked for inversions: some of its blocks, and the result of the check.
 struct InversionPart {
     Index body = no_index;
     Range blocks{0, 0};
-    Real uninverted_until = 0;                // travel of the body until which these blocks cannot invert [m]
-    Index count = 0, tetrahedron = no_index;  // number of tetrahedra that the step inverts; the first inverted one
-    bool judged = false;  // true if an inverted tetrahedron is no sliver and not covered by an implicit element
+    Real uninverted_until = 0;  // travel of the body up to which no tetrahedron of these blocks can invert [m]
+    // Number of tetrahedra that the step inverts; the first of these tetrahedra.
+    Index count = 0, tetrahedron = no_index;
+    bool judged = false;  // true if one of the inverted tetrahedra is no sliver and not covered by an implicit element
 };
 
-/// Working memory of find_inversions, kept between steps.
+/// Working memory of find_inversions, reused in later steps.
 struct InversionMemory {
     Column<InversionPart> part;  // parts of all bodies to check, in body order
     Column<Index> job;           // first row of `part` for each job; the last entry is the number of parts
     // For each block of tetrahedra: number of checks until the next travel budget (distance without a check) is
-    // computed. The number is positive only if a tetrahedron is so narrow that one step would spend a budget.
+    // computed. The number is positive only if a tetrahedron of the block is so narrow that one step would use up a
+    // budget.
     Column<std::uint8_t> looks_left;
 };
 

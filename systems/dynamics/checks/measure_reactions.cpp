@@ -21,8 +21,8 @@ bool counts(const ReactionInputs& inputs, Index body) {
     return is_awake(inputs, body) && (inputs.body_rigid[b].size() == 0 || inputs.body_implicit[b].size() > 0);
 }
 
-/// Adds the reaction on a held rigid body: the change of its momentum less the impulses of weight, loads and contacts.
-/// For an implicit body, adds only the moment that holds the frame of the body.
+/// Adds the reaction on a held rigid body: the change of momentum of the body minus the impulses of weight, loads and
+/// contacts. For an implicit body, adds only the moment that holds the frame of the body.
 void add_rigid_body(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, std::size_t a,
                     ImpulseAndMoment& reaction) {
     const Range rows = inputs.body_rigid[static_cast<std::size_t>(inputs.attached_body[a])];
@@ -47,8 +47,8 @@ Real damped_fraction(const ReactionInputs& inputs, std::size_t body, Real kick) 
     return material == no_index ? 0 : -std::expm1(-inputs.material_damping[static_cast<std::size_t>(material)] * kick);
 }
 
-/// Adds the impulses on held nodes from the added inertia of the implicit elements (docs/methods/clusters.md 1).
-/// Through this inertia a velocity change of a moving node also gives an impulse to held nodes. Velocity changes by
+/// Adds the impulses on held nodes that come from the added inertia of the implicit elements (docs/methods/clusters.md
+/// 1). Through this inertia a velocity change of a moving node also gives an impulse to held nodes. Velocity changes by
 /// damping do not count.
 void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real kick, Column<Vec3>& node_impulse) {
     const Real beta = inertia_of_stiffness(inputs.cluster_step[body]);
@@ -60,7 +60,7 @@ void add_implicit_elements(const ReactionInputs& inputs, std::size_t body, Real 
             const Real weight = beta * inputs.implicit_modulus[b][lane] * inputs.volume[b][lane];
             const auto begin = static_cast<std::size_t>(inputs.first[b]),
                        end = begin + static_cast<std::size_t>(inputs.count[b]);
-            Mat3 change = Mat3::Zero();  // change of grad v
+            Mat3 change = Mat3::Zero();  // change of the velocity gradient in the step
             for (std::size_t k = begin; k < end; ++k) {
                 const auto n = static_cast<std::size_t>(inputs.element_node[k][lane]);
                 if (!(inputs.inverse_mass[n] > 0)) continue;
@@ -86,7 +86,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     SKERRY_CHECK(inputs.velocity_before.size() == inputs.velocity.size());
     reactions.assign(count, {});
     node_impulse.resize(inputs.position.size());
-    // Computes the impulse on each held node. Every attachment that holds a node finds the same value.
+    // Computes the impulse on each held node. If several attachments hold a node, each of them finds this impulse.
     for (std::size_t a = 0; a < count; ++a) {
         if (!counts(inputs, inputs.attached_body[a])) continue;
         for (auto i = static_cast<std::size_t>(inputs.attached[a].begin);
@@ -99,7 +99,8 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     Index last = no_index;
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
-        // Attachments of one body need not be adjacent, so each body is treated at its first attachment.
+        // Attachments of one body need not be adjacent, so the function handles a body at the first attachment of the
+        // body.
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);

@@ -27,8 +27,8 @@ struct ImpulseAndMoment {
 };
 
 struct ReactionInputs {
-    std::span<const Range> attached;       // by attachment: range in `held`
-    std::span<const Index> attached_body;  // by attachment: row of BodyTable
+    std::span<const Range> attached;       // by attachment: range of entries in `held`
+    std::span<const Index> attached_body;  // by attachment: row of BodyTable of the attached body
     std::span<const Index> held;           // held nodes of all attachments: rows of NodeTable
     std::span<const Vec3> held_impulse;    // impulse of contacts on held nodes, by node [N s]
     // velocity of held nodes before the step, by node [m/s]
@@ -49,7 +49,7 @@ struct ReactionInputs {
     std::span<const Index> first, count;
     std::span<const NodeLane> element_node;
     std::span<const ElementGradient> gradient;
-    // rows of RigidBodyTable, and the ranges of these rows by body
+    // columns of RigidBodyTable, and the range of rows of each body in this table
     std::span<const Range> body_rigid, body_implicit;  // BodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, kick, moment_kick, hold_moment;
@@ -91,12 +91,12 @@ struct ReactionInputs {
     }
 };
 
-/// Writes the impulse and moment of each attachment on its nodes, one row per attachment. The impulse changes the
-/// velocities of the nodes to those of this step. It acts against element forces, weight, loads, the impulses of
-/// contacts and the inertia of implicit elements. Moments are about `moment_point`. A node that several attachments
-/// hold counts for the last one, whose motion it follows. Attachments of sleeping bodies and of colliders get zero
-/// rows. A rigid body counts as a whole for the last attachment that holds it. `kick`: time for which forces act [s].
-/// `node_impulse` is scratch, by node. Sequential.
+/// Writes the impulse and moment of each attachment on its nodes, one row per attachment. The impulse gives the nodes
+/// their velocities of this step. It acts against element forces, weight, loads, the impulses of contacts and the
+/// inertia of implicit elements. Moments are about `moment_point`. A node that several attachments hold counts for the
+/// last one, whose motion it follows. Attachments of sleeping bodies and of colliders get zero rows. A rigid body
+/// counts as a whole for the last attachment that holds it. `kick`: time for which forces act [s]. `node_impulse` is
+/// work memory, by node. Sequential.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

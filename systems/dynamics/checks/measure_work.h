@@ -20,17 +20,17 @@ struct ExternalWork {
 };
 
 struct WorkInputs {
-    std::span<const Vec3> load;         // applied force by node; empty if there is none [N]
-    std::span<const Vec3> load_before;  // applied force of the last step by node; empty if there is none [N]
-    std::span<const Vec3> force;        // force of elements, weight and loads by node; used at held nodes [N]
+    std::span<const Vec3> load;         // applied force by node; empty if there are no applied forces [N]
+    std::span<const Vec3> load_before;  // applied force of the last step by node; empty if there were none [N]
+    std::span<const Vec3> force;        // force of elements, weight and loads by node; used only at held nodes [N]
     std::span<const Vec3> velocity, velocity_next;  // [m/s]
-    std::span<const Real> inverse_mass;             // by node; 0: held [1/kg]
+    std::span<const Real> inverse_mass;             // by node; 0 for a held node [1/kg]
     std::span<const Range> body_rigid;              // BodyTable
     std::span<const Index> holder;                  // RigidBodyTable
     std::span<const Real> mass;                     // kg, by node
     std::span<const Index> held;                    // nodes
     std::span<const Index> node_body;
-    std::span<const Range> body_implicit;  // rows of implicit bodies, whose `force` holds for the whole step
+    std::span<const Range> body_implicit;  // rows of implicit bodies, whose entries of `force` act for the whole step
     RestingNodes resting;
     Vec3 gravity = Vec3::Zero();  // m/s^2
 
@@ -55,21 +55,21 @@ struct WorkInputs {
                 .gravity = binder.value(gravity)};
     }
 
-    /// Whether a node moves by forces: it is neither held nor part of a held body.
+    /// True if forces move the node: the node is neither held nor part of a held body.
     bool is_free(std::size_t n) const {
         const Range rigid = body_rigid[static_cast<std::size_t>(node_body[n])];
         return inverse_mass[n] > 0 && (rigid.size() == 0 || holder[static_cast<std::size_t>(rigid.begin)] == no_index);
     }
 };
 
-/// Sum of impulse and work over two kinds of forces: the loads on all nodes, and the forces that hold the nodes `held`.
-/// A holding force is the opposite of `force`. The impulse of a force F is kick F with the force interval `kick` [s]. A
-/// constant force does the work h F . velocity_next, since h velocity_next is the displacement in symplectic Euler. A
-/// force that has changed since the last step by dF does lag dF . velocity more on a free node: each force works over
-/// half of the step before and half of the step after. `lag`: half of the step before [s]. A holding force works
-/// against weight and loads for the step length `h` [s], but against element forces for `kick`. Nodes of sleeping
-/// bodies do not count, because the forces that hold these nodes are unknown. Loads are summed over fixed groups of
-/// nodes, in a fixed order.
+/// Sum of impulse and work of two kinds of forces: the loads on all nodes, and the forces that hold the nodes listed in
+/// `held`. A holding force is the opposite of `force`. The impulse of a force F is kick F with the force interval
+/// `kick` [s]. A constant force does the work h F . velocity_next, since h velocity_next is the displacement in
+/// symplectic Euler. If a force has changed by dF since the last step, its work on a free node is greater by lag dF .
+/// velocity: each force works over half of the step before and half of the step after. `lag`: half of the step before
+/// [s]. A holding force works against weight and loads for the step length `h` [s], but against element forces for
+/// `kick`. Nodes of sleeping bodies do not count, because the forces that hold these nodes are unknown. Loads are
+/// summed over fixed groups of nodes, in a fixed order.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

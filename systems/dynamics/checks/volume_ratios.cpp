@@ -17,7 +17,7 @@ VolumeRatios worst_of(std::span<const ElementLane> volume, Range blocks, Real ne
             if (!(volume[b][l] > 0)) continue;
             worst.near_inversion += ratio[l] < near;
             worst.inverted += ratio[l] < 0;
-            // The first NaN counts as the smallest ratio and is kept.
+            // NaN counts as the smallest ratio. The first NaN is not replaced by later ratios.
             if (std::isnan(worst.smallest) || ratio[l] >= worst.smallest) continue;
             worst.smallest = ratio[l];
             worst.item = static_cast<Index>(b * element_lanes + l);

@@ -1,4 +1,4 @@
-// Ratios of present volume to rest volume, of tetrahedra and of elements, for reports.
+// Ratios of present volume to rest volume for tetrahedra and for elements. The ratios are used in reports.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 namespace skerry {
 
 /// Statistics of the ratio of present volume to rest volume, over some tetrahedra or elements. `smallest`: the smallest
-/// ratio; NaN counts as the smallest. `item`: the one with the smallest ratio, in lane i % 8 of block i / 8.
-/// `near_inversion`: number of ratios below 0.1 or another limit. `inverted`: number of ratios below 0.
+/// ratio; NaN counts as the smallest. `item`: the tetrahedron or element with the smallest ratio, in lane i % 8 of
+/// block i / 8. `near_inversion`: number of ratios below 0.1 or another limit. `inverted`: number of ratios below 0.
 struct VolumeRatios {
     Real smallest;
     Index item;

@@ -12,15 +12,15 @@ struct GuardOutputs {
     std::span<ElementLane> modulus, volume;  // Pa; m^3
 };
 
-/// Activates every guard whose moving corners are all nodes of one cluster. Guards themselves do not form clusters. An
-/// active guard gets its volume and an assumed modulus; stiffen_clusters raises this modulus when the guard is
-/// compressed. Other guards get volume 0 and modulus 0. The assumed modulus of an already active guard does not
-/// decrease. Sequential; allocates.
+/// Activates every guard (inversion barrier) whose moving corners are all nodes of one cluster. Guards themselves do
+/// not form clusters. An active guard gets the volume of its tetrahedron and an assumed modulus; stiffen_clusters
+/// raises this modulus when the guard is compressed. Other guards get volume 0 and modulus 0. The assumed modulus of an
+/// already active guard does not decrease. Sequential; allocates.
 void arm_guards(const ElementInputs& elements, Range blocks, std::span<const Real> inverse_mass,
                 const GuardOutputs& out);
 
-/// Deactivates all guards of a body by setting their volumes to 0. `part` and `volume` have one row per element block
-/// of the body.
+/// Deactivates all guards (inversion barriers) of a body: sets their volumes to 0. `part` and `volume` have one row per
+/// element block of the body.
 void disarm_guards(std::span<const ElementPart> part, std::span<ElementLane> volume);
 
 }  // namespace skerry

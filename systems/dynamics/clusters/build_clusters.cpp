@@ -33,7 +33,7 @@ void sort_unique(std::vector<Index>& nodes) {
 void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeClusters& clusters) {
     const auto first = static_cast<Index>(clusters.body.size());
     for (const Index n : nodes) {
-        const Index root = sets.root(n);  // smallest node of the set, so the loop visits it first
+        const Index root = sets.root(n);  // smallest node of the set, which the loop therefore visits first
         if (root == n) {
             clusters.cluster_of[n] = static_cast<Index>(clusters.body.size());
             clusters.body.push_back(body);
@@ -88,7 +88,8 @@ void build(const ElementInputs& elements, const ClusterInputs& inputs, std::size
         const std::size_t begin = clusters.inverse.size();
         clusters.first_entry.push_back(begin);
         clusters.inverse.resize(begin + static_cast<std::size_t>(inverse.size()));
-        // Mirrors the upper triangle: a bitwise symmetric inverse makes two contacts act on each other equally.
+        // Mirrors the upper triangle. With a bitwise symmetric inverse, contact i changes the velocity of contact j
+        // exactly as j changes that of i.
         for (Eigen::Index i = 0; i < inverse.rows(); ++i)
             for (Eigen::Index j = 0; j < inverse.cols(); ++j)
                 clusters.inverse[begin + static_cast<std::size_t>(i * inverse.cols() + j)] =

@@ -26,13 +26,13 @@ struct ClusterInputs {
 void build_clusters(const ElementInputs& elements, const ClusterInputs& inputs, NodeClusters& clusters);
 
 /// Rebuilds the clusters of bodies whose implicit elements have changed, marked in `body_changed` (by body). The
-/// matrices of all other bodies stay bitwise equal.
+/// inertia matrices of the clusters of all other bodies stay bitwise equal.
 void rebuild_clusters(const ElementInputs& elements, const ClusterInputs& inputs,
                       std::span<const std::uint8_t> body_changed, NodeClusters& clusters);
 
-/// Sizes of the clusters that a body would have. `largest`: node count of the largest cluster. `entries`: entries of
-/// all inertia matrices together. `cubes`: sum of the cubes of the node counts, proportional to the cost of the
-/// inversions.
+/// Sizes of the clusters that build_clusters() would make for a body. `largest`: node count of the largest cluster.
+/// `entries`: number of entries of all inertia matrices together. `cubes`: sum of the cubes of the node counts,
+/// proportional to the cost of the inversions.
 struct ClusterSizes {
     std::size_t largest = 0, entries = 0, cubes = 0;
 };

@@ -24,7 +24,8 @@ void for_each_implicit(Range blocks, std::span<const ElementLane> modulus, Visit
             if (const Real m = modulus[b - static_cast<std::size_t>(blocks.begin)][l]; m > 0) visit(b, l, m);
 }
 
-/// Calls visit(node, k) for every moving node on which the element in lane `l` acts; k is its index in the element.
+/// Calls visit(node, k) for every moving node on which the element in lane `l` acts; k is the index of the node in the
+/// element.
 template <class Visit>
 void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real> inverse_mass, Visit&& visit) {
     for (Index k = 0; k < nodes.count; ++k) {
@@ -33,8 +34,8 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
     }
 }
 
-/// Sets of moving nodes that the implicit elements of a body connect. Guards connect no nodes, since they only act
-/// inside a cluster.
+/// Sets of moving nodes that the implicit elements of a body connect. Guards (inversion barriers) connect no nodes,
+/// since they only act inside a cluster.
 struct NodeChains {
     Index first = 0;                    // smallest row of NodeTable among the connected nodes
     UnionFind sets;                     // by row of NodeTable minus `first`

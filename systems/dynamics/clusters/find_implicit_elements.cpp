@@ -60,13 +60,13 @@ Real least_moment(std::span<const Index> nodes, std::span<const Vec3> position, 
 }
 
 /// Moment of inertia that an implicit element adds in a rigid rotation about any axis [kg m^2]. At the angular velocity
-/// omega the kinetic energy grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2. c is the modulus, V the
-/// volume, and beta = inertia_of_stiffness(step).
+/// omega the kinetic energy grows by beta c V |grad(omega x x)|^2 / 2 = beta c V omega^2, with the assumed modulus c,
+/// the volume V, and beta = inertia_of_stiffness(step).
 Real added_moment(Real step, Real modulus, Real volume) {
     return 2 * inertia_of_stiffness(step) * modulus * volume;
 }
 
-constexpr Real most_volume = 0.75;  // largest fraction of the volume that may be implicit
+constexpr Real most_volume = 0.75;  // largest fraction of the volume of a body that may be implicit
 
 }  // namespace
 
@@ -210,16 +210,18 @@ ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
 }
 
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
-    constexpr int rounds_of_sharing = 4;  // every fourth round also makes elements implicit
+    // Every fourth round also makes elements implicit, after mass shares have adapted.
+    constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
-    // Largest factor on a mass share in one round. It keeps an element that stays unstable from taking the masses of
-    // its neighbours.
+    // Largest factor by which a mass share may change in one round. The limit prevents an element that remains unstable
+    // from taking the masses of its neighbours.
     constexpr Real most_change = 4;
     start_mass_shares(elements_, blocks_, out_.mass_share);
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-        if (need(b, l, goal.stands) > 1) share(b, l) = 0;  // unstable even with the full masses of its nodes
+        // The element would be unstable even with the full masses of its nodes.
+        if (need(b, l, goal.stands) > 1) share(b, l) = 0;
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;
@@ -235,7 +237,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         found_enough = !(shortest < goal.stands);
         if (found_enough && exact_) break;
-        if (found_enough) continue;  // the rigorous bound must confirm the estimate
+        if (found_enough) continue;  // the estimate must be confirmed by the rigorous bound
         if (round % rounds_of_sharing == 0) {
             give_up(goal.stands);
             found = added(goal);
@@ -255,7 +257,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
                                     const ImplicitOutputs& out) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
-    // Elements that become implicit release their mass shares to explicit elements, so stable steps are computed again.
+    // When an element becomes implicit, explicit elements get its mass share. Stable steps are then computed again.
     for (bool gave_up = true; gave_up;) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);
         gave_up = false;

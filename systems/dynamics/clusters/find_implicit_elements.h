@@ -11,22 +11,23 @@ namespace skerry {
 
 /// Output columns of the search, with one row per element block of the body.
 struct ImplicitOutputs {
-    // Weight of an element when the masses of nodes are shared; 0 for implicit elements, which take no mass.
+    // Weight with which an explicit element gets a share of the masses of its nodes. It is 0 for implicit elements,
+    // which get no mass.
     std::span<ElementLane> mass_share;
-    std::span<ElementLane> modulus;  // assumed stiffness of an implicit element; 0 for an explicit element [Pa]
+    std::span<ElementLane> modulus;  // assumed modulus of an implicit element; 0 for an explicit element [Pa]
 };
 
 struct ImplicitGoal {
     Real step;  // step for which the clusters are made [s]
-    // Required stable step of explicit elements with shared masses. It is below `step` if mass forms, computed later,
-    // allow longer steps [s].
+    // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms,
+    // computed later, allow longer steps.
     Real stands;
-    Real headroom;     // ratio of the assumed to the present stiffness of implicit elements
+    Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
 };
 
 struct ImplicitShare {
-    Real moment = 0;        // moment of inertia added by the clusters, relative to the least moment of the body
+    Real moment = 0;  // moment of inertia added by the clusters, relative to the least principal moment of the body
     bool too_many = false;  // the search failed: more than 3/4 of the volume would be implicit
 };
 
@@ -34,27 +35,29 @@ struct ImplicitShare {
 /// that do not depend on the step length are computed once. All constructor arguments must outlive the search, and only
 /// the output columns may change meanwhile. Sequential.
 ///
-/// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore estimate the change of
-/// the bound with the masses: the step is nearly proportional to 1/sqrt(T) with the trace T of sum_k g_k g_k^T / m_k.
-/// g_k is the shape gradient and m_k the element's mass share at node k. The trace takes one product per node.
+/// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
+/// bound changes with the mass shares: the step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
+/// g_k^T / m_k with the shape gradient g_k and the element's mass share m_k at node k. The trace takes one product per
+/// node.
 class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
     ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
-    /// Shares the masses of the body so that every explicit element is stable at goal.stands, and makes as few elements
-    /// implicit as necessary. Elements that need the largest fraction of the masses of their nodes become implicit
-    /// first. The search stops when implicit elements have too much volume or add too much moment of inertia. The
-    /// outputs are then invalid.
+    /// Shares the masses of the body so that every explicit element is stable at a step of goal.stands, and makes as
+    /// few elements implicit as necessary. The elements that need the largest fraction of the masses of their nodes
+    /// become implicit first. The search stops when implicit elements have too much volume or add too much moment of
+    /// inertia. The outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
 private:
     /// Pair of an element and one of its nodes. Pairs are listed by block, node of the block and lane, so that sums
     /// have a fixed order.
     struct Hold {
-        Index node, element;  // counted from the first node and the first element lane of the body
-        Real size;            // squared length of the shape gradient [1/m^2]
+        // Index of the node counted from the first node of the body; index of the element counted from its first lane.
+        Index node, element;
+        Real size;  // squared length of the shape gradient [1/m^2]
     };
     // Bits of marks_: `some_starved` marks the nodes of elements that are unstable at the step, `of_implicit` the nodes
     // of implicit elements.
@@ -66,12 +69,12 @@ private:
         const auto e = static_cast<std::size_t>(element);
         return column[e / element_lanes][e % element_lanes];
     }
-    /// Fraction of the masses of its nodes that an element needs to be stable at `step`. Above 1 no sharing can make
-    /// the element stable.
+    /// Fraction of the masses of its nodes that an element needs to be stable at `step`. If the fraction is above 1, no
+    /// mass share can make the element stable.
     Real need(std::size_t b, std::size_t l, Real step) const;
     void list_holds();
-    /// measure() and estimate() compute the stable steps of all elements with their present mass shares: by the
-    /// rigorous bound, or by the change of the trace since the last rigorous bound.
+    /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
+    /// the rigorous bound, estimate() the change of the trace since the last rigorous bound.
     void measure();
     void estimate();
     /// Computes the trace of sum_k g_k g_k^T / m_k for every element with a mass share, up to a factor that depends
@@ -81,9 +84,9 @@ private:
     /// Marks of an element: some_starved if any of its nodes has this mark, and of_implicit if all of its nodes have
     /// this mark.
     std::uint8_t marks_of(std::size_t b, std::size_t l) const;
-    /// Makes elements implicit that share a node with an element unstable at `step`. Candidates are elements whose need
-    /// is at least least_need_, and elements whose nodes all belong to implicit elements, because they enlarge no
-    /// cluster. If there is no candidate, lowers least_need_.
+    /// Makes elements implicit that share a node with an element unstable at `step`. Candidates are elements whose
+    /// need() is at least least_need_. Elements whose nodes all belong to implicit elements are candidates as well,
+    /// because they enlarge no cluster. If there is no candidate, the function lowers least_need_.
     void give_up(Real step);
     ImplicitShare added(const ImplicitGoal& goal) const;
 
@@ -97,22 +100,23 @@ private:
     Real least_moment_;         // kg m^2
     Index first_node_ = 0;
     std::vector<Hold> holds_;
-    std::vector<ElementLane> frequency_;  // squared, with all mass of the nodes [1/s^2]
+    std::vector<ElementLane> frequency_;  // squared frequency of an element that has all mass of its nodes [1/s^2]
     std::vector<ElementLane> stiffness_;  // Pa
-    std::vector<ElementLane> unit_;       // stiffness_weight() divided by the mass share
-    // Values by element: stable step, step at the last rigorous bound, trace at that bound, present trace, stiffness
-    // weight.
+    std::vector<ElementLane> unit_;       // stiffness_weight() of an element divided by its mass share
+    // Values by element: stable step (step_), stable step at the last rigorous bound (measured_), trace at that bound
+    // (trace_), present trace (now_), stiffness weight (weight_).
     std::vector<ElementLane> step_, measured_, trace_, now_, weight_;
-    // Sum of the element stiffnesses at each node, and this sum divided by the node's mass.
+    // For each node: sum of the stiffnesses of the elements at the node, and this sum divided by the mass of the node.
     std::vector<Real> sum_, ratio_;
     std::vector<std::uint8_t> marks_;  // by node
     Real least_need_ = 1;
     bool exact_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 
-/// Makes every explicit element implicit that is unstable at goal.stands. Implicit elements stay implicit, and the mass
-/// shares and mass forms of all other elements are unchanged. This is faster than ImplicitSearch::find(), but makes
-/// more elements implicit because masses are not shared anew. goal.most_moment is ignored.
+/// Makes every explicit element implicit that is unstable at a step of goal.stands. Implicit elements stay implicit,
+/// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
+/// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. goal.most_moment is
+/// ignored.
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
                                     const ImplicitOutputs& out);

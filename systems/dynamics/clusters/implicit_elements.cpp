@@ -27,8 +27,8 @@ void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> m
 }
 
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time) {
-    // Ratio of the viscous time to the step. With this viscosity the stability limit of omega h, sqrt(4 - 2 * 1.8^2 *
-    // 0.1), is above 1.8.
+    // Ratio of the viscous time of implicit elements to the step. With this viscosity the stability limit of frequency
+    // times step, sqrt(4 - 2 * 1.8^2 * 0.1), is above 1.8.
     constexpr Real of_step = 0.1;
     for (std::size_t b = 0; b < modulus.size(); ++b)
         viscous_time[b] = std::ranges::any_of(modulus[b].lane, [](Real of) { return of > 0; }) ? of_step * step : 0;

@@ -9,22 +9,23 @@
 
 namespace skerry {
 
-/// Writes the leeway of each tetrahedron: the factor on the change of its deformation gradient that a step may cause.
-/// The factor is `of_implicit` if an implicit element covers the tetrahedron, which may then also invert; otherwise it
-/// is 1. `tetrahedra` lists the tetrahedra that each element covers.
+/// Writes the leeway of each tetrahedron: a factor on the allowed change of the deformation gradient in a step. The
+/// factor is `of_implicit` if an implicit element covers the tetrahedron, which may then also invert; otherwise it is
+/// 1. `tetrahedra` lists the tetrahedra that each element covers.
 void find_leeway(const Ragged<Index>& tetrahedra, std::span<const ElementLane> modulus, Real of_implicit,
                  std::span<ElementLane> leeway);
 
 /// Writes the viscous time of each block with implicit elements: viscosity over assumed modulus [s]. Other blocks get
-/// 0. `step`: step of the body's clusters [s].
+/// 0. `step`: step length for which the clusters of the body are made [s].
 void find_viscous_times(std::span<const ElementLane> modulus, Real step, std::span<Real> viscous_time);
 
 /// Largest ratio of present to assumed stiffness among the implicit elements of a body; 0 without implicit elements.
 Real worst_stiffening(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const ElementLane> modulus);
 
-/// Kinetic energy that the inertia of implicit elements adds: v.(A - M) v / 2 [J]. v are the node velocities, A is the
-/// inertia matrix of the clusters, and M the matrix of lumped masses. `step`: step of the body's clusters [s].
+/// Kinetic energy that the inertia of implicit elements adds: v.(A - M) v / 2, with the node velocities v, the inertia
+/// matrix A of the clusters, and the matrix M of lumped masses [J]. `step`: step length for which the clusters of the
+/// body are made [s].
 Real added_energy(const ElementInputs& elements, Range blocks, std::span<const ElementLane> modulus, Real step,
                   std::span<const Vec3> velocity);
 
@@ -32,15 +33,16 @@ Real added_energy(const ElementInputs& elements, Range blocks, std::span<const E
 /// centre of mass.
 Real least_moment_of(const Mat3& spread);
 
-/// Relative increase of the least moment of inertia by lumped masses: each tetrahedron of a body of uniform density
-/// puts a quarter of its mass at each corner. 0 for a body without volume.
+/// Relative increase of the least principal moment of inertia if masses are lumped: each tetrahedron of a body of
+/// uniform density puts a quarter of its mass at each corner. 0 for a body without volume.
 Real moment_of_lumping(std::span<const TetrahedronNodes> node, std::span<const ElementLane> volume,
                        std::span<const Vec3> position);
 
 /// Factor beta of the element stiffnesses in the inertia matrix of clusters, A = M + beta (sum of element stiffnesses),
 /// for steps up to `step` [s^2].
 constexpr Real inertia_of_stiffness(Real step) {
-    constexpr Real safety = 1.8;  // bound on circular frequency times step (step_times_frequency); the limit is 2
+    // Bound on circular frequency times step (step_times_frequency); the stability limit is 2.
+    constexpr Real safety = 1.8;
     return step * step / (safety * safety);
 }
 

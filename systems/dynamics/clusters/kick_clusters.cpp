@@ -12,8 +12,8 @@ namespace skerry {
 
 namespace {
 
-// Number of matrix rows whose sums stay in registers at the same time. These rows share the loads of impulses and
-// column sums. Rows add to a column sum in ascending order, so this number does not change the results.
+// Number of matrix rows whose sums are in registers at the same time. An impulse and a column sum are loaded once for
+// all of these rows. Rows add to a column sum in ascending order, so this number does not change the results.
 constexpr std::size_t rows_at_once = kernel_parts == 1 ? 8 : 2;
 constexpr std::size_t tile = element_lanes;  // rows and columns of one square tile of a matrix
 
@@ -27,8 +27,8 @@ Real sum_of_lanes(const Real8& of) {
     return ((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7]));
 }
 
-/// A vector for each node of a cluster, stored as three lists of components by index of the node in the cluster. Each
-/// list begins at a multiple of the register length, so that one load touches one cache line.
+/// A vector for each node of a cluster, stored as three lists: all x, all y and all z components, by index of the node
+/// in the cluster. Each list begins at a multiple of the register length, so that one load touches one cache line.
 struct ByComponent {
     Real* component[3];
 
@@ -36,7 +36,8 @@ struct ByComponent {
     Vec3 at(std::size_t place) const { return {component[0][place], component[1][place], component[2][place]}; }
 };
 
-/// Products of some matrix rows with a vector field, by component of the vectors. Each lane sums its own columns.
+/// Products of some matrix rows with a field of vectors, one for each component of the vectors. Each lane sums its own
+/// columns.
 template <std::size_t Rows>
 struct RowSums {
     std::array<Real8, Rows> x{}, y{}, z{};
@@ -51,8 +52,8 @@ template <std::size_t Rows, class Visit>
 }
 
 /// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, with columns 0 to width - 1; `width` is a
-/// multiple of the tile. Returns the sums of the rows, and adds the products of the transposed entries to the sums of
-/// those columns. So only one triangle is read: large matrices do not fit into the caches.
+/// multiple of the tile. Returns the sums of the rows. Adds the products of the transposed entries to the sums of these
+/// columns. So only one triangle of the matrix is read, because large matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t place, std::size_t width,
@@ -60,7 +61,7 @@ template <std::size_t Rows>
     const Real* const row = matrix + place * count;
     const auto [kick_x, kick_y, kick_z] = kick.component;
     const auto [sum_x, sum_y, sum_z] = sum.component;
-    Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous, so that one base address serves all rows
+    Real own_x[Rows], own_y[Rows], own_z[Rows];  // contiguous memory, so that one base address serves all rows
     std::copy_n(kick_x + place, Rows, own_x);
     std::copy_n(kick_y + place, Rows, own_y);
     std::copy_n(kick_z + place, Rows, own_z);
@@ -105,8 +106,8 @@ template <std::size_t Rows>
              to);
 }
 
-/// Computes the sums of `Rows` rows, from row `place` on, of the complete tile that begins at row `first`. All columns
-/// within the tile are read, not only one triangle.
+/// Computes the sums of `Rows` rows, from row `place` on, of the complete tile that begins at row `first`. It reads all
+/// columns of the tile, not only one triangle.
 template <std::size_t Rows>
 void add_rows_of_tile(const Real* matrix, std::size_t count, std::size_t first, std::size_t place,
                       const ByComponent& kick, const ByComponent& sum) {
@@ -154,9 +155,9 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
     if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
 }
 
-/// Index of the tile in working memory at which cluster `c` begins. `begin` is the index of its first node in the list
-/// of all cluster nodes. The padded clusters before it end below this tile, since (begin + 7 c)/8, rounded down, is at
-/// most begin/8 + c.
+/// Index of the tile of working memory at which cluster `c` begins. `begin` is the index of the first node of the
+/// cluster in the list of all cluster nodes. All earlier clusters, padded to complete tiles, end below this tile, since
+/// (begin + 7 c)/8, rounded down, is at most begin/8 + c.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

@@ -15,8 +15,8 @@ namespace skerry {
 struct ClusterKickInputs {
     const NodeClusters& clusters;
     std::span<const Real> mass;                           // kg, by node
-    std::span<const std::uint8_t> body_asleep;            // empty: no body is asleep
-    std::span<const std::uint16_t> body_unstrained = {};  // empty: no body is unstrained
+    std::span<const std::uint8_t> body_asleep;            // empty if no body is asleep
+    std::span<const std::uint16_t> body_unstrained = {};  // empty if no body is unstrained
 
     static ClusterKickInputs bind(const Binder& binder, const NodeClusters& clusters, const NodeTable& node,
                                   const BodyTable& body, const bool& any_asleep) {
@@ -34,9 +34,9 @@ struct ClusterKickInputs {
 /// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity) for the nodes of each cluster, with the inertia
 /// matrix A of the cluster and the node masses m. If the body is unstrained and the nodes of a cluster have equal
 /// velocities, velocity_next is unchanged, since A then acts like the masses. `kick`: impulse of the forces on each
-/// node, by item of clusters.nodes [N s]. `work`: work memory that persists between steps. `known`: `kick` and `work`
-/// still hold the results of a call with equal clusters, velocities and forces. Parallel over clusters. Returns false
-/// if there is no cluster (skipped).
+/// node, by item of clusters.nodes [N s]. `work`: work memory whose contents persist between steps. `known`: `kick` and
+/// `work` still contain the results of a call with equal clusters, velocities and forces. Parallel over clusters.
+/// Returns false if there is no cluster (skipped).
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

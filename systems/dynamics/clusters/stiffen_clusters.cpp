@@ -16,11 +16,12 @@ namespace skerry {
 
 namespace {
 
-constexpr Real too_near = 0.9;  // fraction of the assumed modulus; stiffer elements get a new assumed modulus
-constexpr Real raised_to = 2;   // ratio of the new assumed modulus to the present stiffness
+// Fraction of the assumed modulus; elements whose stiffness exceeds it get a new assumed modulus.
+constexpr Real too_near = 0.9;
+constexpr Real raised_to = 2;  // ratio of the new assumed modulus to the present stiffness
 
-/// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. All
-/// entries are computed by one expression, vectorised or not.
+/// Adds a linear combination of the three vectors x, y, z in `from`: to += x factor.x + y factor.y + z factor.z. Every
+/// entry is computed by one expression, with or without vectorisation.
 void add_combination(const std::array<std::vector<Real>, 3>& from, const Vec3& factor, std::span<Real> to) {
     const Real *const x = from[0].data(), *const y = from[1].data(), *const z = from[2].data();
     std::size_t i = 0;
@@ -84,9 +85,9 @@ Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to its viscous impulse.
-/// F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the element's
-/// inertia. So the element keeps the momentum of its deformation, and not its velocity.
+/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to the viscous impulse
+/// of the element. F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the
+/// element's inertia. With this impulse the element retains the momentum of its deformation instead of the velocity.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);
@@ -121,8 +122,9 @@ struct StepForces {
     const PatchForces& patches;
 };
 
-/// Raises the assumed stiffness of those implicit elements of a block whose present stiffness is close to it. Returns
-/// the kinetic energy that this adds [J]. `forces`: forces of the step, or null between steps.
+/// Raises the assumed stiffness of the implicit elements of a block whose present stiffness is close to the assumed
+/// stiffness. Returns the kinetic energy that the larger inertia adds [J]. `forces`: forces of the step, or null
+/// between steps.
 Real stiffen_block(const ElementInputs& elements, const StiffenInputs& bodies, Real beta, std::size_t b,
                    const StepForces* forces, const StiffenOutputs& out) {
     const Real8 one = Real8{} + 1.0, zero{}, taken = load(out.modulus[b]);

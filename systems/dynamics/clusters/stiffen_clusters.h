@@ -14,7 +14,7 @@ namespace skerry {
 
 struct StiffenInputs {
     std::span<const Range> body_blocks;
-    std::span<const Real> body_cluster_step;  // step for which clusters are made; 0 without clusters [s]
+    std::span<const Real> body_cluster_step;  // step for which the clusters are made; 0 without clusters [s]
     std::span<const std::uint8_t> body_asleep;
     std::span<const Vec3> position, velocity;
     std::span<const Real> inverse_mass;
@@ -32,7 +32,7 @@ struct StiffenInputs {
 /// Outputs of a stiffening: the assumed moduli of implicit elements, and the cluster matrices that depend on them.
 struct StiffenOutputs {
     std::span<ElementLane> modulus;  // Pa, by block
-    NodeClusters& clusters;          // only the inverse matrices are written
+    NodeClusters& clusters;          // of the clusters only the inverse matrices are written
 
     static StiffenOutputs bind(const Binder& binder, ElementBlockTable& element, NodeClusters& clusters) {
         binder.value(clusters.nodes);
@@ -45,11 +45,11 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of implicit elements to twice their present stiffness if the present stiffness has come
-/// close to the assumed one. Updates the matrices of their clusters. Returns the kinetic energy that this adds at
-/// unchanged velocities [J].
+/// Raises the assumed stiffness of an implicit element to twice its present stiffness if the present stiffness has come
+/// close to the assumed one. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that
+/// the larger inertia adds at unchanged velocities [J].
 ///
-/// A stiffened element keeps the momentum of its deformation, and not its velocity. The difference is an impulse of the
+/// A stiffened element retains the momentum of its deformation, not the velocity. The difference is an impulse of the
 /// step (docs/methods/clusters.md 6). It is added to the element forces, which act for the time `kick` [s], and to the
 /// viscous impulses. Only blocks marked in `patches.stiffening` by compute_element_forces at the same positions are
 /// tested; the marks are then cleared. Sequential, in element order.

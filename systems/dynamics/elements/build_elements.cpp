@@ -25,8 +25,8 @@ std::vector<Vec3> centres_of(const ElementList& list, std::span<const Vec3> rest
     return centre;
 }
 
-/// Halves a group of elements along its longest side until every part is small enough for a patch. Appends the number
-/// of elements of each patch to `patch_size`.
+/// Halves a group of elements along the longest side of the group until every part is small enough for a patch. Appends
+/// the number of elements of each patch to `patch_size`.
 void split_into_patches(Order group, std::span<const Vec3> centre, std::vector<std::size_t>& patch_size) {
     const std::size_t patches = (group.size() + elements_per_patch - 1) / elements_per_patch;
     if (patches <= 1) {
@@ -55,7 +55,7 @@ ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_po
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    // Inversion barriers get patches of their own, so that inactive ones change no sum of other elements.
+    // Inversion barriers get patches of their own, so that inactive barriers change no sum of other elements.
     const auto group_of = [&](Index e) { return list.part[static_cast<std::size_t>(e)] == ElementPart::guard; };
     std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;
@@ -162,7 +162,8 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         blocks.part[block] = list.part[leader];
         blocks.opens_patch[block] = places.opens_patch[place / element_lanes];
         for (Real& w : blocks.rotation[block][0].lane) w = 1;
-        // The columns must be equal, since the step swaps them and laws without a corotational frame write neither.
+        // `rotation` and `rotation_next` must be equal: the step swaps the two columns, and laws without a corotational
+        // frame write to neither of them.
         blocks.rotation_next[block] = blocks.rotation[block];
         for (Real& share : blocks.mass_share[block].lane) share = 1;
         for (std::size_t l = 0; l < element_lanes; ++l) {
@@ -219,7 +220,7 @@ void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span
 
 namespace {
 
-/// Appends a list for each row that has none yet. The list of a row has all items i with row_of_item[i] == row,
+/// Appends a list for each row that has none yet. The list of a row contains all items i with row_of_item[i] == row,
 /// ascending. Items that are not in a list yet must belong to rows without a list.
 void sort_by_row(std::span<const Index> row_of_item, std::size_t row_count, Ragged<Index>& items) {
     // Counting sort: count the items of each row, form prefix sums, fill the lists.

@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Greatest number of elements in a patch. A full patch takes about 10 us, much longer than starting a job. The
-/// positions and forces of its nodes fit into the L1 cache.
+/// Greatest number of elements in a patch. Computing a full patch takes about 10 us, much longer than starting a job.
+/// The positions and forces of the nodes of a patch fit into the L1 cache.
 inline constexpr std::size_t elements_per_patch = 256;
 
 /// Smallest altitude of a tetrahedron at rest [m].
@@ -36,14 +36,14 @@ struct AppendedElements {
 };
 
 /// Assigns the elements of a list to lanes of blocks, patch after patch. A patch is a spatially compact group of up to
-/// elements_per_patch elements, found by repeated halving along the longest side. Within a patch each block has
-/// elements of one part of the stress (ElementPart) and one material. Elements with equal numbers of nodes are
-/// adjacent, so that few rows are unused. Otherwise elements keep their order. Inversion barriers (guards) have patches
-/// of their own, after all others. `rest_position`: rest positions of the nodes of the body [m].
+/// elements_per_patch elements, found by repeated halving along the longest side. Within a patch all elements of a
+/// block have the same part of the stress (ElementPart) and the same material. Elements with equal numbers of nodes are
+/// adjacent, so that few rows are unused. In all other respects elements stay in order. Inversion barriers (guards)
+/// have patches of their own, after all others. `rest_position`: rest positions of the nodes of the body [m].
 ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position);
 
-/// Appends the elements of a new body to the tables, in the lanes `places`. These lanes were assigned for a list whose
-/// elements have the same nodes.
+/// Appends the elements of a new body to the tables, in the lanes `places`. These lanes may have been assigned for
+/// another list, if its elements have the same nodes.
 AppendedElements append_elements(const ElementList& list, const ElementPlaces& places, Index first_node, Index body,
                                  ElementBlockTable& blocks, ElementNodeTable& nodes);
 /// Assigns the elements of a new body to lanes of blocks, and appends the elements to the tables.
@@ -58,12 +58,13 @@ void turn_elements(const Mat3& rotation, Range rows, ElementBlockTable& blocks, 
 void add_lumped_mass(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Vec3> rest_position,
                      std::span<const Real> density, std::span<Real> mass);
 
-/// Builds the patches, their nodes and the slots of element nodes for all blocks and nodes without patches: those of
-/// added bodies, or all. The slots of a patch are in the order of the nodes. The slots of a node are in the order of
-/// the patches.
+/// Builds the patches, the lists of their nodes, and the slots of element nodes. Covers all blocks and nodes without
+/// patches: those of added bodies, or all. The slots of a patch are in the order of the nodes. The slots of a node are
+/// in the order of the patches.
 void build_patches(ElementBlockTable& blocks, std::size_t node_count, ElementNodeTable& nodes, ElementPatches& patches);
 
-/// Keeps only the patches of the first `block_count` blocks and `node_count` nodes, which must belong to whole bodies.
+/// Removes all patches except those of the first `block_count` blocks and `node_count` nodes, which must belong to
+/// complete bodies.
 void truncate_patches(Index block_count, Index node_count, ElementPatches& patches);
 
 }  // namespace skerry

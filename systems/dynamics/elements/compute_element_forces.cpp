@@ -19,7 +19,7 @@ namespace skerry {
 
 namespace {
 
-// Number of blocks by which prefetching is ahead of computing.
+// Number of blocks by which prefetching is ahead of the computation.
 constexpr std::size_t blocks_ahead = 6;
 
 // Number of node positions (16 kB) that fit into a local buffer, which stays in the L1 cache. Larger patches use
@@ -35,10 +35,11 @@ struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
-    Real kick;                       // s
-    Real kick_over_last;             // this kick over the last; 0 if the last change of viscous strain is unknown
-    PatchRows<const Real> position;  // of the nodes of the patch [m]
-    PatchRows<Real> force;           // on the nodes of the patch [N]
+    Real kick;  // s
+    // Kick of this step over the kick of the last; 0 if the last change of viscous strain is unknown.
+    Real kick_over_last;
+    PatchRows<const Real> position;  // positions of the nodes of the patch [m]
+    PatchRows<Real> force;           // forces on the nodes of the patch [N]
     std::span<const Vec3> velocity;  // of all nodes
     std::span<const ElementRotation> rotation;
     const ElementMemory& next;
@@ -72,8 +73,8 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// Fractions of the elastic stretch that remain after the dashpots relax for the time of the kick: one fraction for
-    /// the strain, one for the volume.
+    /// Fractions of the elastic stretch that remain after the dashpots have relaxed for the time of the kick: one
+    /// fraction for the strain, one for the volume.
     template <class T>
     struct Kept {
         T strain, volume;
@@ -82,7 +83,7 @@ struct Run {
     [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
         const T forgets = kick * part_of<T>(elements.relaxation_rate, block, part);
         const T forgets_volume = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
-        // Backward Euler never relaxes more than the whole stretch. One division serves both fractions.
+        // Backward Euler never relaxes more than the complete stretch. One division serves both fractions.
         const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
         return {over_both * less_volume, over_both * less};
     }
@@ -97,7 +98,7 @@ struct Run {
     }
 
     /// Relaxes the dashpots, then computes the stress of the springs. Returns the second Piola-Kirchhoff stress [Pa]
-    /// times `scale`. Writes the viscous strain, and `dissipated`, which dissipated_of converts to an energy.
+    /// times `scale`. Writes the viscous strain, and a number `dissipated` that dissipated_of() converts to an energy.
     template <Kicks kicks, class T>
     [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, const T& scale,
                                                   std::size_t block, std::size_t part, T& dissipated) const {
@@ -106,14 +107,14 @@ struct Run {
         const LaneSymmetric<T> strain = twice_green_strain(F);
         const ElementStrain& forgotten = elements.viscous_strain[block];
         const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
-        // 2 if the last change of viscous strain is unknown: it is then assumed equal to the present change
+        // weight of the present change of viscous strain; 2 if the last change is unknown, which is then assumed equal
         const Real of_now = kick_over_last > 0 ? 1 : 2;
         const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
         const LaneSymmetric<T> taken = strain - after.strain;
         const T taken_volume = strain.trace() - after.volume;
-        // The dissipated energy is the mean spring stress of the last step and this step, times the change of viscous
-        // strain. The last stress follows from the last change of viscous strain, which is the relaxation rate times
-        // the stretch.
+        // The dissipated energy is the mean of the spring stresses of the last step and this step, times the change of
+        // viscous strain. The stress of the last step follows from the change of viscous strain in that step, which is
+        // the relaxation rate times the stretch.
         const auto twice = [&](const T& now, std::size_t i) {
             const T older = load_part<T>(forgotten_next[i], part);
             if constexpr (kicks == Kicks::alike) return T(now - older);
@@ -136,16 +137,16 @@ struct Run {
         return S;
     }
 
-    /// Calls relax() in the rare case of unlike kicks, out of line. Arguments are passed by value, so that the caller
-    /// need not hold them in memory.
+    /// Calls relax() for the rare case that this kick and the last kick differ. The call is out of line. Arguments are
+    /// passed by value, so that the caller need not store them in memory.
     template <class T>
     [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, T scale,
                                                            std::size_t block, std::size_t part, T& dissipated) {
         return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
-    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for the whole block at once, so that the
-    /// number of iterations does not depend on the register width.
+    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for all lanes of a block at once, so that
+    /// the number of iterations does not depend on the register width.
     template <class Law>
     [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                                const Parts<KernelReal>& scale) const {
@@ -172,10 +173,10 @@ struct Run {
         }
     }
 
-    /// True for implicit elements so near to rest that they have no viscosity. `square`: |F|^2, `J`: det F.
+    /// True for implicit elements so near to their rest shape that they have no viscosity. `square`: |F|^2, `J`: det F.
     template <class T>
     static auto is_calm(const T& square, const T& J) {
-        constexpr Real stretched = 6, pressed = 0.3;  // limits on |F|^2 and det F, which are 3 and 1 at rest
+        constexpr Real stretched = 6, pressed = 0.3;  // limits on |F|^2 and det F, which are 3 and 1 in the rest shape
         return (square < stretched) & (J > pressed);
     }
 
@@ -277,8 +278,8 @@ struct Run {
             if (rests_easy(block, F)) {
                 note(block, false, false);
             } else {
-                // Only the call needs these copies: a variable whose address is taken lives in memory, even without the
-                // call.
+                // The call alone needs these copies: a variable whose address is taken is stored in memory, even if the
+                // call is not made.
                 Parts<LaneMat3<KernelReal>> rest;
                 for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
@@ -297,7 +298,8 @@ struct Run {
             if (kick_over_last == 1) {
                 S = relax<Kicks::alike>(F[part], kept[part], scale[part], block, part, dissipated);
             } else {
-                KernelReal unlike;  // only for the call, as a variable whose address is taken lives in memory
+                // Copy for the call only, because a variable whose address is taken is stored in memory.
+                KernelReal unlike;
                 S = relax_unlike(*this, F[part], kept[part], scale[part], block, part, unlike);
                 dissipated = unlike;
             }
@@ -307,8 +309,9 @@ struct Run {
         return P;
     }
 
-    /// Dissipated energy from the sum over the elements [J]. The factor 1/4 is needed because the sum covers two steps
-    /// and contains twice the strain. The minus sign is needed because `scale` is negative.
+    /// Dissipated energy from the sum over the elements [J]. The factor 1/4 is needed because the sum contains the
+    /// changes of two steps instead of their mean, and twice the strain. The minus sign is needed because `scale` is
+    /// negative.
     static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
 
     /// Deformation gradients F of the elements of a block.
@@ -319,7 +322,7 @@ struct Run {
         return F;
     }
 
-    /// Adds the forces of the elements of a block to their nodes. `Q`: stress times minus the volume.
+    /// Adds the forces of the elements of a block to the forces on their nodes. `Q`: stress times minus the volume.
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
         for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
@@ -329,9 +332,9 @@ struct Run {
 };
 
 /// Computes the forces of a run of blocks. With wide registers the next block is fetched before the forces of the
-/// present block are added. These two operations are independent, while the stress between them is a long chain of
-/// dependent operations. Narrow registers are too few to hold two blocks. Returns the energy that the dashpots of the
-/// elements dissipate [J].
+/// present block are added. Fetching and adding are independent of each other, while the stress between them is a long
+/// chain of dependent operations. Narrow registers are too few to store two blocks. Returns the energy that the
+/// dashpots of the elements dissipate [J].
 [[gnu::always_inline]] inline Real compute_run(const Run& run) {
     constexpr bool ahead = kernel_parts == 1;
     Parts<KernelReal> relaxed{};
@@ -344,7 +347,7 @@ struct Run {
             const bool goes_on = block + 1 < run.end;
             if (ahead && goes_on) {
                 F = run.fetch(block + 1);
-                kept = run.kept_of(block + 1);  // computed early, because a division takes long
+                kept = run.kept_of(block + 1);  // computed early, because the division in kept_of() takes long
             }
             run.add(block, Q);
             if (!ahead && goes_on) {
@@ -362,7 +365,8 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    const std::size_t last = node.size() - 1;  // no other position can be the last of the array
+    // The nodes ascend, so only the last of them can be the last of the position array.
+    const std::size_t last = node.size() - 1;
     for (std::size_t s = 0; s < last; ++s)
         store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);
     to[last] = {{at(last)[0], at(last)[1], at(last)[2], 0}};

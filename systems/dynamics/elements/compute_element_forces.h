@@ -26,12 +26,13 @@ struct ElementInputs {
     std::span<const ElementLane> relaxation_rate = {}, own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
     std::span<const ElementStrain> viscous_strain = {};
-    // Flags from BodyTable. Elements of sleeping and of unstrained bodies are left out of a step. Empty if there are
-    // no such bodies.
+    // Flags from BodyTable. Elements of sleeping and of unstrained bodies are left out of a step. The spans are empty
+    // if there are no such bodies.
     std::span<const std::uint8_t> body_asleep = {};
     std::span<const std::uint16_t> body_unstrained = {};
-    std::span<const ElementForm> mass_form = {};         // empty if all elements use mass_share [1/(kg m^2)]
-    std::span<const ElementLane> implicit_modulus = {};  // 0 for an explicit element; empty if all are explicit [Pa]
+    std::span<const ElementForm> mass_form = {};  // empty if all elements use mass_share [1/(kg m^2)]
+    // Assumed modulus; 0 for an explicit element; empty if all elements are explicit [Pa]
+    std::span<const ElementLane> implicit_modulus = {};
     std::span<const FrameMass> frame_mass = {};
     std::span<const Real> frame_bound = {};  // empty if no body has frame masses [1/s^2]
 
@@ -65,7 +66,8 @@ struct ElementInputs {
         elements.body_unstrained = binder.read(body.unstrained);
         return elements;
     }
-    /// Binds all elements without implicit_modulus, for readers that need not wait for its writer.
+    /// Binds all elements without implicit_modulus, for stages that then need not wait for the stage that writes this
+    /// column.
     static ElementInputs bind_explicit(const Binder& binder, const ElementBlockTable& element,
                                        const ElementNodeTable& nodes, const MaterialTable& material) {
         return {.first = binder.read(element.first),
@@ -93,14 +95,14 @@ struct ElementInputs {
 /// the stiffness is computed accurately.
 inline constexpr Real near_stiffness = 0.7;
 
-/// Patches, and the columns for their sums of forces and of dissipated energy.
+/// Patches of elements, and columns for the forces and the dissipated energy of each patch.
 struct PatchForces {
     std::span<const Range> blocks, slots;
     std::span<const Index> node;                            // by slot
     std::span<const NodeLane> slot;                         // slot of each element node, times slot_width
-    std::span<PaddedVec3> position;                         // m, by slot; scratch
+    std::span<PaddedVec3> position;                         // by slot [m]; work memory
     std::span<PaddedVec3> force;                            // N, by slot
-    std::span<ElementViscousImpulse> viscous_impulse = {};  // impulse by block; empty if no element is viscous
+    std::span<ElementViscousImpulse> viscous_impulse = {};  // viscous impulse by block; empty if no element is viscous
     std::span<std::uint8_t> viscous = {};                   // 1 if the block has a viscous impulse in this step
     // 1 if the quick stiffness bound of an implicit element of the block is above near_stiffness. Blocks that are left
     // out are not written.
@@ -124,8 +126,8 @@ struct PatchForces {
 /// State of the elements that a step writes for the next step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // Viscous strain after this step. Until this step writes the column, it holds the viscous strain before the last
-    // step. Empty if no stress relaxes.
+    // Viscous strain after this step. Until this step writes the column, the column still contains the viscous strain
+    // before the last step. Empty if no stress relaxes.
     std::span<ElementStrain> viscous_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
@@ -138,11 +140,11 @@ struct ElementMemory {
 /// stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions x_k and the gradients g_k
 /// at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 + f_2 + ...). Sums run block
 /// by block and lane by lane, so that the bits do not depend on the number of workers. Corotational elements start the
-/// search for their frame from `rotation` and write next.rotation; other laws write no frame. Patches of bodies that
-/// are left out keep their forces. `kick`: time for which forces act [s]. `kick_over_last`: this kick over the kick of
-/// the step before; 0 if next.viscous_strain no longer holds the strain from before that step. With 0 the dissipated
-/// energy is exact to first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J]. Parallel
-/// over patches.
+/// search for their frame from `rotation` and write next.rotation; other laws write no frame. The forces of patches of
+/// bodies that are left out stay unchanged. `kick`: time for which forces act [s]. `kick_over_last`: this kick over the
+/// kick of the step before; 0 if next.viscous_strain no longer contains the strain from before that step. With 0 the
+/// dissipated energy is exact to first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J].
+/// Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, Real kick_over_last,
                             std::span<const ElementRotation> rotation, const ElementMemory& next,

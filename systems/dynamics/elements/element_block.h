@@ -20,7 +20,7 @@ namespace skerry {
 }
 
 /// Positions of the nodes of a patch, or forces on these nodes. A slot is the offset of the first number of a row
-/// (ElementNodeTable), not the index of the row. Processors scale addresses by at most eight bytes, and a row is
+/// (ElementNodeTable), not the index of the row: processors scale addresses by at most eight bytes, and a row is
 /// longer.
 template <class Number>
 struct PatchRows {
@@ -33,8 +33,8 @@ struct PatchRows {
 };
 
 /// Corner: positions of one corner of several elements, as many as a kernel computes at once, in the order that the
-/// transposes below need. One full-width load per position and a few shuffles replace three gathers, which cost one
-/// load per lane each.
+/// transposes below need. A full-width load per position and a few shuffles replace three gathers, each of which costs
+/// one load per lane.
 #ifdef __AVX512VL__
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
@@ -63,8 +63,8 @@ template <class Positions>
 [[gnu::always_inline]] inline LaneVec3<Real8> edge(const Corner& corner, const Corner& corner0) {
     const Real8 d04 = corner.pair[0] - corner0.pair[0], d15 = corner.pair[1] - corner0.pair[1];
     const Real8 d26 = corner.pair[2] - corner0.pair[2], d37 = corner.pair[3] - corner0.pair[3];
-    // After the transposes, low01 holds x0 x1 z0 z1 x4 x5 z4 z5 and high01 holds y0 y1 .. .. y4 y5 .. .. (digits are
-    // lanes).
+    // After the transposes, low01 contains x0 x1 z0 z1 x4 x5 z4 z5 and high01 contains y0 y1 .. .. y4 y5 .. .. (letters
+    // are components, digits are lanes).
     const Real8 low01 = __builtin_shufflevector(d04, d15, 0, 8, 2, 10, 4, 12, 6, 14);
     const Real8 high01 = __builtin_shufflevector(d04, d15, 1, 9, 3, 11, 5, 13, 7, 15);
     const Real8 low23 = __builtin_shufflevector(d26, d37, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -98,7 +98,8 @@ template <class Positions>
 [[gnu::always_inline]] inline LaneVec3<Real4> edge(const Corner& corner, const Corner& corner0) {
     const Real4 d0 = corner.lane[0] - corner0.lane[0], d1 = corner.lane[1] - corner0.lane[1];
     const Real4 d2 = corner.lane[2] - corner0.lane[2], d3 = corner.lane[3] - corner0.lane[3];
-    // After the transposes, low01 holds x0 x1 z0 z1 and high01 holds y0 y1 .. .. (digits are lanes).
+    // After the transposes, low01 contains x0 x1 z0 z1 and high01 contains y0 y1 .. .. (letters are components, digits
+    // are lanes).
     const Real4 low01 = __builtin_shufflevector(d0, d1, 0, 4, 2, 6);
     const Real4 high01 = __builtin_shufflevector(d0, d1, 1, 5, 3, 7);
     const Real4 low23 = __builtin_shufflevector(d2, d3, 0, 4, 2, 6);
@@ -127,8 +128,8 @@ template <class Part>
     }
 }
 
-/// True if no node of the block is the last of `position`, so that a number follows every position. Lanes are compared
-/// side by side: finding the highest node first would take a quarter of the time of a block.
+/// True if no node of the block is the last of `position`, so that another number follows every position in memory.
+/// Lanes are compared side by side: finding the highest node first would take a quarter of the time of a block.
 [[gnu::always_inline]] inline bool clear_of_end(const NodeLane* node, Index count, std::span<const Vec3> position) {
     typedef Index Index8 __attribute__((vector_size(sizeof(NodeLane)), may_alias));
     typedef std::int64_t Bits __attribute__((vector_size(sizeof(NodeLane))));
@@ -217,7 +218,7 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 template <class T>
 using Parts = std::array<T, kernel_parts>;
 
-/// Copies matrices number by number. A rare call gets the copy, so that the original need not be in memory.
+/// Copies matrices number by number. A rare call gets the copy, so that the original can stay in registers.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
@@ -277,9 +278,11 @@ template <class Take>
 /// Adds the force f of lane l to force[slot[l]], one lane after the other, because two lanes may have the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     const Real4 zero{};
-    const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);  // digits are lanes: x0 y0 x2 y2
+    // Letters are components of f, digits are lanes: x0 y0 x2 y2.
+    const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);  // digits are lanes: z0 0 z2 0
+    // Letters are components of f, digits are lanes: z0 0 z2 0.
+    const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);
     const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
     const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };
     add(slot[0], __builtin_shufflevector(xy02, z02, 0, 1, 4, 5));

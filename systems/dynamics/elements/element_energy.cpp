@@ -15,9 +15,9 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) holds. The search for a
+/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) is true. The search for a
 /// corotational frame starts from the frame of the same lane of the block before, since neighbours rotate alike. The
-/// search therefore also runs for skipped blocks. Laws without a frame do not use it.
+/// search therefore also runs for skipped blocks. Laws without a frame do not use this argument.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
                        Visit&& visit) {
@@ -43,7 +43,7 @@ void for_each_block(const ElementInputs& elements, Range blocks, std::span<const
 /// Writes the Cauchy stress of each element of a block [Pa]; zero in lanes without volume.
 void put_cauchy_stress(const Real8& volume, const LaneMat3<Real8>& F, const LaneMat3<Real8>& P,
                        std::span<Mat3> stress) {
-    // below this ratio the Cauchy stress has no meaning; the limit keeps it finite
+    // least volume ratio for which the Cauchy stress has a meaning; the limit makes the stress finite
     constexpr Real least_volume_ratio = 1e-6;
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Mat3 f = lane_of(F, static_cast<int>(l));

@@ -18,7 +18,7 @@ namespace skerry {
 inline constexpr Real unstrained_within = 1e-11;
 
 /// Number of steps until the strains of an unstrained body are checked again. In n steps rounding moves a node by at
-/// most n half units in the last place of its position.
+/// most n / 2 units in the last digit of its position.
 inline constexpr std::uint16_t unstrained_steps = 1024;
 
 struct UnstrainedInputs {
@@ -54,9 +54,9 @@ struct UnstrainedOutputs {
 
 /// Finds the awake bodies that are unstrained. All nodes of an unstrained body have bitwise the same velocity, and none
 /// of its elements is strained, rotated or has a viscous strain. A body stays unstrained while its velocities are
-/// equal; its strains are checked again every unstrained_steps steps. Its elements keep their rotation and viscous
-/// strain for the next step. Code that moves nodes other than by their velocities must set `unstrained` to 0. Returns
-/// the number of unstrained bodies. Parallel over bodies.
+/// equal; its strains are checked again every unstrained_steps steps. The rotation and viscous strain of its elements
+/// stay the same for the next step. Code that moves nodes other than by their velocities must set `unstrained` to 0.
+/// Returns the number of unstrained bodies. Parallel over bodies.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry

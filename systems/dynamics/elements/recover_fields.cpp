@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t parts = 3;
 
-/// Mean of a field over the elements that cover a tetrahedron, separate for each part of the stress (ElementPart).
+/// Mean of a field over the elements that cover a tetrahedron. Each part of the stress (ElementPart) has its own mean.
 struct Mean {
     std::array<Mat3, parts> sum{Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
     std::array<int, parts> count{};

@@ -9,20 +9,20 @@
 
 namespace skerry {
 
-/// Lower triangle of a symmetric matrix of 3x3 blocks, stored row by row with ascending columns. The last block of each
-/// row is the diagonal block.
+/// Lower triangle of a symmetric matrix of 3x3 blocks, stored row by row. The columns of a row ascend, so the last
+/// block of each row is the diagonal block.
 struct BlockRows {
     std::vector<Index> offset{0};  // index of the first block of each row; rows + 1 entries
     std::vector<Index> column;
     std::vector<Mat3> block;
 
     std::size_t size() const { return offset.size() - 1; }
-    /// Computes out = A x with this matrix A.
+    /// Computes the product out = A x of this matrix A and a vector x.
     void multiply(std::span<const Vec3> x, std::span<Vec3> out) const;
 };
 
 /// Position of each node in an elimination order with little fill-in (minimum degree). `neighbours` lists for each node
-/// all other nodes that share a block with it; each pair occurs in both lists.
+/// all other nodes with which the node shares a block; each pair occurs in the lists of both nodes.
 std::vector<Index> elimination_places(const std::vector<std::vector<Index>>& neighbours);
 
 /// Cholesky factorisation L L^T of a matrix A, row by row (up-looking: Davis, Direct Methods for Sparse Linear Systems,
@@ -42,8 +42,8 @@ public:
 private:
     template <class X>
     void solve_in_place(X* x) const;
-    /// Columns of the nonzero blocks in row `k` of L, ordered so that each column follows the columns it depends on.
-    /// Sets mark_ of these columns to k.
+    /// Columns of the nonzero blocks in row `k` of L. The order is such that each column follows the columns on which
+    /// it depends. Sets mark_ of the found columns to k.
     std::span<const Index> columns_of(const BlockRows& pattern, Index k);
 
     std::vector<Index> parent_;           // parent of each column in the elimination tree; no_index for a root
@@ -53,7 +53,7 @@ private:
     std::vector<Mat3> inverse_diagonal_;  // inverses of the diagonal blocks of L (lower triangular)
     // Work memory for the factorisation of one row at a time:
     std::vector<Index> mark_, path_, stack_;
-    std::vector<std::size_t> end_;  // end of the blocks of each column that are computed so far
+    std::vector<std::size_t> end_;  // for each column: end of the blocks that are computed so far
     std::vector<Mat3> sum_;
 };
 

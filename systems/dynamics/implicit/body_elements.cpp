@@ -73,7 +73,8 @@ void BodyElements::forces(const Displacements& displacement, std::span<Vec3> out
     for (std::size_t e = 0; e < size(); ++e) {
         const Nodes nodes = nodes_of(e);
         const Mat3 pull = volume_[e] * stress(material_[e], Mat3::Identity() + gradient_of(e, displacement));
-        Vec3 others = Vec3::Zero();  // sum of the forces on all other nodes; the first node gets the opposite
+        // Sum of the forces on all nodes but the first; the first node gets the opposite force.
+        Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < nodes.place.size(); ++k) {
             const Vec3 of_node = pull * nodes.gradient[k];
             out[static_cast<std::size_t>(nodes.place[k])] += of_node;
@@ -103,8 +104,8 @@ void BodyElements::add_tangent(const Displacements& displacement, Real scale, Bl
         const Nodes nodes = nodes_of(e);
         const Tangent tangent = skerry::tangent(material_[e], Mat3::Identity() + gradient_of(e, displacement));
         const Real weight = scale * volume_[e];
-        // The tangent maps dF to dP in the principal frames of F. `normal` couples the diagonal entries. An
-        // off-diagonal entry of dP is `even` times the same entry of dF plus `crossed` times its transposed entry.
+        // The tangent maps dF to dP in the principal axes of F. `normal` couples the diagonal entries. An off-diagonal
+        // entry of dP is `even` times the same entry of dF plus `crossed` times the transposed entry of dF.
         const Mat3 normal = weight * tangent.normal;
         Mat3 even = Mat3::Zero(), crossed = Mat3::Zero();
         for (Index i = 0; i < 3; ++i) {

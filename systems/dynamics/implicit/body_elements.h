@@ -12,8 +12,8 @@
 
 namespace skerry {
 
-/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the place of its node
-/// in the elimination order. If values are stored by node instead, `node_at` gives the node at each place.
+/// Displacements of the nodes of a body from their rest positions [m]. The index of an entry is the position of its
+/// node in the elimination order. If values are stored by node instead, `node_at` gives the node at each position.
 class Displacements {
 public:
     Displacements(std::span<const Vec3> by_place) : by_place_(by_place) {}
@@ -40,23 +40,24 @@ public:
 
     /// True if some element has a nonlinear material law.
     bool any_bends() const { return any_bends_; }
-    /// Largest Frobenius norm |F - 1| among all elements, with the deformation gradient F.
+    /// Largest Frobenius norm |F - 1| of all elements, with the deformation gradient F.
     Real largest_strain(const Displacements& displacement) const;
     /// Bound on the change of largest_strain() divided by the largest change of a node displacement [1/m].
     Real strain_by_displacement() const { return strain_by_displacement_; }
     /// Elastic energy of all elements at the given displacements [J].
     Real energy(const Displacements& displacement) const;
     struct Misfit {
-        // `linear`: energy of all elements by linear elasticity. `off`: sum over the elements of the absolute
-        // difference between their energy by material law and by linear elasticity [J].
+        // `linear`: energy of all elements by linear elasticity [J]. `off`: sum over the elements of the absolute
+        // difference between the energy by the material law and the energy by linear elasticity [J].
         Real linear, off;
     };
     Misfit misfit(const Displacements& displacement) const;
-    /// Computes out = dU/dx, the gradient of the elastic energy U, by place of the node in the elimination order [N].
+    /// Computes out = dU/dx, the gradient of the elastic energy U, by position of the node in the elimination order
+    /// [N].
     void forces(const Displacements& displacement, std::span<Vec3> out) const;
-    /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy, without its negative part, to `matrix`
-    /// [N/m]. The first call locates the blocks of the elements in the matrix, so later matrices must have the same
-    /// pattern.
+    /// Adds `scale` times the second derivative d2U/dx2 of the elastic energy U, without its negative part, to `matrix`
+    /// [N/m]. The first call finds the positions of the element blocks in the matrix, so later matrices must have the
+    /// same pattern.
     void add_tangent(const Displacements& displacement, Real scale, BlockRows& matrix);
 
 private:
@@ -73,11 +74,13 @@ private:
     std::vector<Index> place_;
     std::vector<Vec3> gradient_;  // shape gradient at each node of each element [1/m]
     std::vector<Real> volume_;    // [m^3]
-    // Material constants of each element, for the part of the stress that it contributes.
+    // Material constants of each element, with only the constants for the part of the stress that the element
+    // contributes.
     std::vector<MaterialConstants> material_;
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;
-    std::vector<Index> block_;  // matrix index of the block of each node pair, element by element
+    // For each pair of nodes of an element: index of their block in the matrix, element by element.
+    std::vector<Index> block_;
     std::vector<Vec3> turned_;  // work memory: shape gradients of one element in principal axes
 };
 

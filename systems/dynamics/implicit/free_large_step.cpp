@@ -21,8 +21,8 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
     const Real within = theta * h;
     const Mat3 to_mesh = bodies.turn(r).transpose();
     step.angular_momentum = to_mesh * spins.kicked(r);
-    // Coriolis forces rotate the node velocities by -2 h times the angular velocity of the frame. A rotation adds no
-    // energy.
+    // Coriolis forces rotate the node velocities by -2 h times the angular velocity of the frame. A rotation of
+    // velocities adds no energy.
     const Mat3 against = rotation_matrix(-2 * h * stiff.shape().inertia().ldlt().solve(step.angular_momentum));
     for (std::size_t n = 0; n < of.count; ++n) step.before[of.place(n)] = against * velocity[n];
     stiff.take_momenta(step.before);
@@ -39,9 +39,9 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 
 namespace {
 
-/// Removes the rigid motion, in the shape at the end of a step, from the velocities and displacements at the end.
-/// Returns `taken` plus the decrease of energy [J]. `taken` must already contain the kinetic energy of the deformation
-/// before.
+/// Removes the rigid motion from the velocities and displacements at the end of a step. The rigid motion is that of the
+/// shape at the end of the step. Returns `taken` plus the decrease of energy [J]. `taken` must already contain the
+/// kinetic energy of the deformation at the start of the step.
 Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real taken,
                   StiffBody& stiff, const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
@@ -57,8 +57,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     out.large_next[r] = is_large;
     follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
                  out.rotation_shaped[r]);
-    // Removes rigid-body motion from the velocities: in the shape at the end of the step if strain is large, else in
-    // the rest shape.
+    // Removes rigid-body motion from the velocities. The motion is that of the shape at the end of the step if strain
+    // is large, else that of the rest shape.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
         step.before.resize(of.count);
@@ -70,8 +70,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
         stiff.take_rigid_motion(next);
     }
     for (std::size_t n = 0; n < of.count; ++n) taken -= stiff.mass(of.place(n)) / 2 * next[n].squaredNorm();
-    // The energy of the spin uses the moments of inertia of the new shape, and includes the energy error of this step's
-    // rotation (docs/methods/rigid_bodies.md 2).
+    // The energy of the spin uses the moments of inertia of the new shape. It includes the energy error that the
+    // rotation of this step makes (docs/methods/rigid_bodies.md 2).
     const Mat3 turned_for_step =
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),
@@ -95,7 +95,8 @@ Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         const std::size_t k = of.place(n);
         const Vec3 during = next[n], before = newton ? step.before[k] : velocity[n];
         next[n] = before + (during - before) / theta;
-        // `taken` sums the reported work of contacts and loads and the kinetic energy at the start of the step.
+        // `taken` is the sum of the reported work of contacts and loads and of the kinetic energy at the start of the
+        // step.
         taken += (to_mesh * contact[n]).dot(velocity[n] + during) / 2;
         if (!loads.load.empty()) {
             const Vec3 load = to_mesh * loads.load[of.first_node + n];
@@ -112,7 +113,7 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     Real kinetic = 0;
     for (std::size_t n = 0; n < of.count; ++n)
         kinetic += stiff.mass(of.place(n)) / 2 * of.rows(out.velocity_next)[n].squaredNorm();
-    // The energy balance of the step already contains the growth of the linear elastic energy, which is cancelled here.
+    // The energy balance of the step already contains the growth of the linear elastic energy. It is subtracted here.
     const Real linear = stiff.elastic_energy(of.rows(out.displacement_next), false) -
                         stiff.elastic_energy(of.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);

@@ -6,18 +6,18 @@
 
 namespace skerry {
 
-/// Computes the node velocities of a step at large strain by Newton's method, by place in the elimination order.
-/// Returns false if Newton's method fails.
+/// Computes the node velocities of a step at large strain by Newton's method, by position of the node in the
+/// elimination order. Returns false if Newton's method fails.
 bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                           std::size_t r, Real h, Real theta, StiffBody& stiff, std::span<Vec3> out);
 
-/// Computes the state at the end of a step in which strain is or was large. Reads the velocities of the step's
-/// displacement from out.velocity_next, and the displacements at the end of the step. Returns the damped energy [J].
+/// Computes the state at the end of a step in which strain is or was large. Reads the displacements at the end of the
+/// step, and from out.velocity_next the node velocities that led to them. Returns the damped energy [J].
 Real end_large_free_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, const ImplicitSpins& spins,
                          std::size_t r, Real h, Real theta, StiffBody& stiff, const ImplicitStrains& out);
 
-/// Converts the end state of a step at small strain to large strain. Returns the additional damped energy, beyond that
-/// of the step with linear elasticity [J].
+/// Converts the end state of a step at small strain to large strain. Returns the damped energy that the step with
+/// linear elasticity does not contain [J].
 Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, StiffBody& stiff,
                   const ImplicitStrains& out);
 

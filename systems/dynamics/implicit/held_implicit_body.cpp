@@ -46,7 +46,7 @@ LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : stands
 
 namespace {
 
-/// True if a step with the given velocities leads to large strain. `velocity`: by place in the elimination order, in
+/// True if a step with the given velocities leads to large strain. `velocity`: by position in the elimination order, in
 /// the frame of the mesh at the end of the step.
 bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec3> displacement,
                    std::span<const Vec3> velocity, Real h, StiffBody& stiff) {
@@ -61,8 +61,9 @@ bool becomes_large(const HeldNodes& nodes, const OfBody& of, std::span<const Vec
     return stiff.becomes_large_in_places(at_end, Vec3::Zero());
 }
 
-/// Computes the node velocities of a step at large strain by Newton's method, by place, in the frame of the mesh at the
-/// end of the step. `outer_force(n)`: force on node n in this frame [N]. Returns false if Newton's method fails.
+/// Computes the node velocities of a step at large strain by Newton's method, in the frame of the mesh at the end of
+/// the step, by position in the elimination order. `outer_force(n)`: force on node n in this frame [N]. Returns false
+/// if Newton's method fails.
 bool kick_large(const HeldNodes& nodes, const OfBody& of, std::size_t r, Real within, auto&& outer_force,
                 StiffBody& stiff, std::span<Vec3> out) {
     LargeStep& step = stiff.large_step;
@@ -96,8 +97,8 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         if (!loads.load.empty()) outer += loads.load[of.first_node + n];
         return Vec3(frame.turn.transpose() * outer);
     };
-    // Elastic force of the step if free nodes do not move: 1 - theta times the force at the start plus theta times the
-    // force at the end of the step.
+    // Elastic force of the step if free nodes do not move: 1 - theta times the force at the start of the step plus
+    // theta times the force at the end.
     bool carried = !frame.stands;
     for (std::size_t n = 0; n < of.count; ++n) {
         impulse[of.place(n)] = displacement[n];
@@ -125,7 +126,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
         large = sound && becomes_large(nodes, of, displacement, impulse, h, stiff);
     }
     if (large) sound = kick_large(nodes, of, r, theta * h, outer_force, stiff, impulse);
-    if (!sound)  // NaN velocities make the engine refuse the step
+    if (!sound)  // velocities of NaN make the engine refuse the step
         std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
     for (std::size_t n = 0; n < of.count; ++n) {
         if (nodes.held(n)) {
@@ -140,9 +141,9 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
 
 namespace {
 
-/// Computes the elastic forces on the nodes in a step of large strain, by place [N]. Forces on free nodes follow from
-/// the motion of these nodes, forces on held nodes from the material laws. The residual force of Newton's method and of
-/// contacts is shared among the held nodes, so that all forces add up to zero.
+/// Computes the elastic forces on the nodes in a step of large strain, by position in the elimination order [N]. Forces
+/// on free nodes follow from the motion of these nodes, forces on held nodes from the material laws. The remaining
+/// force of Newton's method and of contacts is divided among the held nodes, so that all forces add up to zero.
 void forces_of_large_step(const HeldNodes& nodes, const OfBody& of, Real inertia, Real theta, Real within,
                           std::span<const Vec3> next, std::span<const Vec3> contact, StiffBody& stiff,
                           std::span<Vec3> force) {
@@ -176,7 +177,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
                                 force = of.rows(out.elastic_force), contact = of.rows(out.contact_impulse);
     const Mat3 to_mesh = frame.turn.transpose();
     out.hold_moment[r] = Vec3::Zero();
-    // Velocities of the step are expressed in the frame of the mesh at the end of the step.
+    // The velocities of the step refer to the frame of the mesh at the end of the step.
     const bool touched = std::ranges::any_of(contact, [](const Vec3& of_node) { return !of_node.isZero(0); });
     if (touched) {
         for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = theta * (to_mesh * contact[n]);
@@ -188,8 +189,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         displacement_next[n] = frame.carried(nodes.arm(n), displacement[n]) + h * next[n];
     }
     if (bodies.asleep(r)) return 0;
-    // The elastic forces have a moment about the centre, with the arms of the deformed shape. This moment acts on the
-    // prescribed frame.
+    // The elastic forces have a moment about the centre, with the lever arms of the deformed shape. This moment acts on
+    // the prescribed frame.
     const bool newton = stiff.is_tangent(), was_large = bodies.large[r] != 0,
                is_large = is_large_after(was_large, displacement_next, Vec3::Zero(), of, stiff);
     const bool large = newton || was_large || is_large;
@@ -209,19 +210,19 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         const Vec3 &of_mesh = rate[k], pull = frame.turn * of_mesh;
         const Vec3 place = nodes.arm(n) + displacement[n];
         moment += (frame.turn_start * place).cross(pull);
-        // Subtracts the work of the hold, which rotates the node positions against the elastic forces. These forces add
-        // up to zero, so the shift of the frame does no work.
+        // Subtracts the work of the attachment, which rotates the node positions against the elastic forces. The
+        // elastic forces add up to zero, so the translation of the frame does no work.
         if (large)
             taken += h * next[n].dot(of_mesh);
         else if (!frame.stands)
             taken += of_mesh.dot(place - frame.across * place);
-        // Force on a held node over the whole step, reported as a force that acts for the time `kick`.
+        // Force on a held node over the complete step, reported as a force that acts for the time `kick`.
         if (Vec3& force_on_held = out.force[of.first_node + n]; nodes.held(n))
             force_on_held = h / kick * (force_on_held - pull);
     }
     out.hold_moment[r] = -h * moment;
-    // Energy losses: (theta - 1/2) (dw.M dw + du.K du) and the material damping. dw and du are the changes of velocity
-    // and displacement in the step, M the masses and K the stiffness.
+    // Adds the energy losses: (theta - 1/2) (dw.M dw + du.K du) and the material damping. dw and du are the changes of
+    // velocity and displacement in the step, M the masses and K the stiffness.
     if (large) {
         taken += stiff.elastic_energy(displacement, was_large) - stiff.elastic_energy(displacement_next, is_large);
     } else {
@@ -235,7 +236,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         if (nodes.held(n)) continue;
         const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
         taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
-        // The reported work of contacts uses the mean of `before` and `during`; the losses above assume `during` alone.
+        // The reported work of contacts uses the mean of the velocities `before` and `during`. The losses above assume
+        // `during` alone, so the difference is added.
         taken += (to_mesh * contact[n]).dot(before - during) / 2;
         next[n] = before + change;
     }

@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Prescribed motion of the frame of the mesh of a held body in this step.
+/// Prescribed motion in this step of a held body, as the motion of the frame of its mesh.
 struct LedFrame {
     bool stands;      // true if the frame does not move in this step
     Mat3 turn_start;  // rotation from the frame of the mesh to the world at the start of the step
@@ -23,17 +23,17 @@ struct LedFrame {
     }
 };
 
-/// Does the work of kick_implicit_bodies for one held body. Writes out.velocity_next in the frame of the mesh at the
-/// start of the step.
+/// Kick of one held body: computes the velocities for kick_implicit_bodies. Writes out.velocity_next in the frame of
+/// the mesh at the start of the step.
 void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real h, Real theta,
                     StiffBody& stiff, const ImplicitKicks& out);
 
-/// Does the work of strain_implicit_bodies for one held body. Returns the damped energy minus the work of the moment
-/// with which the hold acts on the body [J].
+/// End of the step of one held body, for strain_implicit_bodies. Returns the damped energy minus the work of the moment
+/// with which the attachment acts on the body [J].
 Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real kick, Real theta, StiffBody& stiff,
                       const ImplicitStrains& out);
 
-/// Does the work of drift_implicit_bodies for one held body.
+/// Drift of one held body, for drift_implicit_bodies.
 void drift_held_body(const ImplicitBodies& bodies, std::size_t r, Real seconds, std::span<Vec3> displacement_next,
                      std::span<Vec3> velocity_next);
 

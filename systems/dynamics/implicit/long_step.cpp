@@ -14,8 +14,8 @@ Real time_at_end(const LongStep& step, const ImplicitTimes& times) {
     return std::abs(time - times.length) < rounding * times.length ? times.length : time;
 }
 
-/// Computes the quantities of a long step that depend only on the state at its start. Returns false if the matrix of
-/// the long step cannot be factored.
+/// Computes the quantities of a long step that depend only on the state at the start of the long step. Returns false if
+/// the matrix of the long step cannot be factored.
 bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                      const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                      std::span<Vec3> impulse) {
@@ -43,7 +43,7 @@ bool begin_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, s
     std::ranges::fill(step.answer, Vec3::Zero());
     std::ranges::fill(step.left_impulse, Vec3::Zero());
     if (std::ranges::all_of(left, [](const Vec3& of_node) { return of_node.isZero(0); })) return true;
-    // Impulses that cause the velocities step.left: A times step.left, with the matrix A of the long step.
+    // Impulses that cause the velocities step.left: the product A step.left with the matrix A of the long step.
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
     for (std::size_t n = 0; n < of.count; ++n) impulse[of.place(n)] = step.left[n];
     of.stiff.elastic_forces(impulse, elastic_force);
@@ -99,7 +99,7 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
     const Real time = time_at_end(step, times), share = time / times.length, still_left = 1 - share;
     const Real within = times.theta * times.length, inertia = inertia_of(bodies, r, within);
     Real taken = 0;                        // reported work of contacts and loads minus the growth of energy [J]
-    Real at_start = 0;                     // rate of elastic energy at the start of the long step [W]
+    Real at_start = 0;                     // rate of change of the elastic energy at the start of the long step [W]
     Real of_impulses = 0, of_inertia = 0;  // [J]
     for (std::size_t n = 0; n < of.count; ++n) {
         const Real mass = of.stiff.mass(of.place(n));
@@ -123,7 +123,8 @@ Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& load
         next[n] = after;
     }
     // Elastic energy u.K u / 2 at the displacements u = step.start + time v, with the velocity v = `during` and the
-    // stiffness K. The product K v follows from A v, which equals the known impulses; A is the matrix of the long step.
+    // stiffness K. The product K v follows from A v, where A is the matrix of the long step and A v are the known
+    // impulses.
     step.elastic_next = 0;
     for (std::size_t n = 0; n < of.count; ++n) step.elastic_next += step.start[n].dot(step.start_force[n]) / 2;
     step.elastic_next += time * at_start + time * time / 2 * (of_impulses - of_inertia) / (within * within);
@@ -149,7 +150,7 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.answer.swap(step.answer_next);
         step.contact.swap(step.contact_next);
         if (!times.ends) continue;
-        // The next long step assumes that contact forces continue at their mean over the elapsed part of this long
+        // The next long step assumes that contact forces continue with their mean over the elapsed part of this long
         // step.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];

@@ -12,18 +12,19 @@ namespace skerry {
 /// True if a body takes long steps: long steps are in use, no attachment holds the body, and its strain is small.
 bool takes_long_steps(const ImplicitBodies& bodies, const ImplicitTimes& times, std::size_t r);
 
-/// Computes the velocities of the nodes' displacement in this short step without its contacts, by place in the
-/// elimination order. Begins a long step if the body is in none. Returns false if the matrix of the long step cannot be
-/// factored.
+/// Computes the velocities with which the node displacements change in this short step without its contacts, by
+/// position in the elimination order. Begins a long step if the body is in none. Returns false if the matrix of the
+/// long step cannot be factored.
 bool kick_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                        const ImplicitTimes& times, StiffBody& stiff, std::span<Vec3> elastic_force,
                        std::span<Vec3> out);
-/// Treats a sleeping body as one at the start of a long step, so that its contacts in this step use that state.
+/// Treats a sleeping body like a body at the start of a long step, so that its contacts in this step use the state at
+/// that start.
 void rest_in_long_step(const ImplicitTimes& times, StiffBody& stiff);
 
 /// Computes displacements and velocities at the end of the short step. The body continues with these values if its long
-/// step ends here. `given`: velocities that the contacts of this step add to the displacement, by place [m/s]. Returns
-/// the damped energy without the jump of energy at a change to large strain [J].
+/// step ends here. `given`: node velocities that the contacts of this step add, by position in the elimination order
+/// [m/s]. Returns the damped energy without the jump of energy at a change to large strain [J].
 Real strain_in_long_step(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r,
                          const ImplicitTimes& times, StiffBody& stiff, std::span<const Vec3> given,
                          const ImplicitStrains& out);

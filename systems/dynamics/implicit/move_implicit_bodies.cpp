@@ -22,7 +22,8 @@ void for_each_implicit(Executor& executor, const ImplicitBodies& bodies, auto&& 
     });
 }
 
-/// True if a step with these velocities (by place) leads from small to large strain.
+/// True if a step with these velocities leads from small to large strain. The velocities are stored by position in the
+/// elimination order.
 bool becomes_large(std::span<const Vec3> displacement, std::span<const Vec3> velocity, const Vec3& angular_momentum,
                    Real h, const OfBody& of, StiffBody& stiff) {
     if (!stiff.elements().any_bends()) return false;
@@ -70,7 +71,7 @@ bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Ve
 
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff) {
     // The step length is rounded to about twelve digits (40 bits). Steps that divide a time interval evenly differ only
-    // in later digits, and so share a factor.
+    // in later digits, and so share one matrix factor.
     constexpr int bits = 40;
     int exponent = 0;
     const Real fraction = std::frexp(h, &exponent);
@@ -119,7 +120,7 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
                                                  of, stiff[r]));
         if (large) stiff[r].long_step.weight = 0;
         if (large) sound = kick_large_free_body(bodies, loads, spins, r, h, theta, stiff[r], impulse);
-        if (!sound)  // NaN velocities make the engine refuse the step
+        if (!sound)  // velocities of NaN make the engine refuse the step
             std::ranges::fill(impulse, Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()));
         const Mat3 turn = bodies.turn(r);
         for (std::size_t n = 0; n < of.count; ++n) {
@@ -177,7 +178,7 @@ bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, st
 
 namespace {
 
-/// Value of StrainPart::impulse for one body.
+/// Computes StrainPart::impulse for one body.
 Vec3 impulse_of_longer_step(const ImplicitLoads& loads, Real h, const OfBody& of) {
     Vec3 force = Vec3::Zero();
     for (std::size_t n = 0; n < of.count; ++n) {
@@ -236,12 +237,12 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             const std::size_t k = of.place(n);
             const Vec3 &before = velocity[n], &during = next[n];
             const Vec3 after = before + (during - before) / theta;
-            // `taken` sums the reported work of contacts and loads minus the growth of energy.
+            // `taken` is the sum of the reported work of contacts and loads, minus the growth of energy.
             taken += (back * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = back * loads.load[of.first_node + n];
-                // Reported work of the load: work of the step's displacement, corrected for the time by which reported
-                // velocities lag or lead positions [J].
+                // Reported work of the load: the work over the displacement of the step, corrected for the time by
+                // which reported velocities are earlier or later than positions [J].
                 taken += h * load.dot(during - (after - before) / 2) + (loads.kick - h) * load.dot(before);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);

@@ -31,7 +31,7 @@ struct ImplicitBodies {
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
     std::span<const Index> body_material;       // BodyTable
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: no body is asleep
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty if no body is asleep
     std::span<const Real> material_damping;     // MaterialTable [1/s]
     std::span<const Vec3> displacement;         // ImplicitNodeTable [m]
     std::span<const Vec3> velocity;             // ImplicitNodeTable [m/s]
@@ -72,7 +72,7 @@ struct ImplicitBodies {
     bool asleep(std::size_t r) const {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
-    /// Damping of the material of a body [1/s].
+    /// Damping rate of the material of a body [1/s].
     Real damping(std::size_t r) const {
         return material_damping[static_cast<std::size_t>(body_material[static_cast<std::size_t>(body[r])])];
     }
@@ -87,8 +87,8 @@ struct LongStepTimes {
     bool ends = false;    // true if the long step ends with this short step
 };
 
-/// Step lengths, and the factor theta (1/2 to 1) of the elastic force at the end of a step. The elastic force at the
-/// start has the factor 1 - theta.
+/// Step lengths, and the factor theta (1/2 to 1) on the elastic force at the end of a step. The factor on the elastic
+/// force at the start is 1 - theta.
 struct ImplicitTimes : LongStepTimes {
     Real h = 0;  // [s]
     Real theta = 1;
@@ -102,9 +102,9 @@ struct ImplicitTimes : LongStepTimes {
 };
 
 struct ImplicitLoads {
-    std::span<const Vec3> load;  // applied force by node; empty if there is none [N]
-    Vec3 gravity;                // accelerates nodes of held bodies; free bodies fall with their frames [m/s^2]
-    // Time for which loads act on other bodies. On implicit bodies they act for the whole step [s].
+    std::span<const Vec3> load;  // applied force by node; empty if there are no applied forces [N]
+    Vec3 gravity;                // gravity for the nodes of held bodies; free bodies fall with their frames [m/s^2]
+    // Time for which loads act on other bodies. On implicit bodies the loads act for the complete step [s].
     Real kick;
 
     static ImplicitLoads bind(const Binder& binder, const NodeTable& node, const Vec3& gravity, const bool& forced,
@@ -127,8 +127,8 @@ struct ImplicitSpins {
                 .push_spin = binder.read(rigid.push_spin)};
     }
 
-    /// Angular momentum in the world frame at the end of the step: kicked() without contacts, after() with contacts [kg
-    /// m^2/s].
+    /// Angular momentum in the world frame at the end of the step: kicked() without the contacts of the step, after()
+    /// with these contacts [kg m^2/s].
     Vec3 kicked(std::size_t r) const { return angular_momentum[r] + moment_kick[r]; }
     Vec3 after(std::size_t r) const { return angular_momentum[r] + (moment_kick[r] + contact_moment[r]); }
 };
@@ -146,10 +146,10 @@ struct ImplicitKicks {
     }
 };
 
-/// Computes out.velocity_next, the velocity of the step's displacement in the frame of the mesh: A^-1 P (M w + theta h
-/// (Q^T f - K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2), or the result of Newton's method at
-/// large strain. Adds this velocity to the node velocities that kick_rigid_bodies has computed from the motion of the
-/// frames. Computes missing factors for the step length.
+/// Computes out.velocity_next, the velocities with which the node displacements change in the step, in the frame of the
+/// mesh. They are A^-1 P (M w + theta h (Q^T f - K u)) at small strain (symbols: docs/methods/implicit_bodies.md 1, 2),
+/// or the result of Newton's method at large strain. Adds these velocities to the node velocities that
+/// kick_rigid_bodies has computed from the motion of the frames. Computes missing matrix factors for the step length.
 ///
 /// For a held body out.velocity_next is the velocity in the world, rotated into the frame at the start of the step; the
 /// velocities of its held nodes are already set. Parallel over bodies. Returns false if there is no implicit body
@@ -158,8 +158,8 @@ bool kick_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, cons
                           const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                           const ImplicitKicks& out);
 
-/// Lists the nodes of implicit bodies that contacts touch, and computes the velocity responses of these nodes to
-/// impulses on each other. Returns false if no contact touches an implicit body (skipped).
+/// Lists the nodes of implicit bodies that contacts touch. Computes the velocity response of each of these nodes to
+/// impulses on all touched nodes of its body. Returns false if no contact touches an implicit body (skipped).
 bool couple_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, std::span<const Stencil> stencil,
                             std::span<const Index> node_body, const ImplicitTimes& times, StiffBodies& stiff,
                             ImplicitCoupling& coupling);
@@ -192,9 +192,9 @@ struct ImplicitStrains {
 
 /// Result of strain_implicit_bodies for one body.
 struct StrainPart {
-    Real damped = 0;  // damped energy minus the work of the moment of the hold [J]
-    // Impulse of weight and loads over the whole step, minus their impulse over the time for which they act on other
-    // bodies [N s].
+    Real damped = 0;  // damped energy minus the work of the moment of the attachment [J]
+    // Impulse of weight and loads over the complete step, minus the impulse over the shorter or longer time for which
+    // weight and loads act on other bodies [N s].
     Vec3 impulse = Vec3::Zero();
 };
 
@@ -207,17 +207,17 @@ struct StrainFindings {
 };
 
 /// Computes velocities and displacements at the end of the step. Adds the elastic forces on held nodes to `force`,
-/// which then holds forces that act for the time loads.kick. Writes the elastic moments on held frames to
+/// which then contains forces that act for the time loads.kick. Writes the elastic moments on held frames to
 /// `hold_moment`. `parts`: work memory by row of RigidBodyTable. Parallel over bodies.
 StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& bodies, const ImplicitLoads& loads,
                                       const ImplicitSpins& spins, const ImplicitTimes& times, StiffBodies& stiff,
                                       const ImplicitStrains& out, Column<StrainPart>& parts);
 
-/// Commits a short step: advances the long step of every body that is in one. `left`: column of ImplicitNodeTable [m].
+/// Commits a short step for every body that is in a long step. `left`: column of ImplicitNodeTable [m].
 void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, std::span<const Range> body_implicit,
                       StiffBodies& stiff, std::span<Vec3> left);
 
-/// Moves displacements for the time `seconds` at the present velocities. Writes the columns that ElasticMotion reads.
+/// Changes the displacements by the present velocities times `seconds`. Writes the columns that ElasticMotion reads.
 void drift_implicit_bodies(const ImplicitBodies& bodies, const ImplicitSpins& spins, StiffBodies& stiff, Real seconds,
                            const ImplicitStrains& out);
 

@@ -1,4 +1,4 @@
-// Table ranges of one implicit body, and the places of its nodes in the elimination order.
+// Table ranges of one implicit body, and the positions of its nodes in the elimination order.
 #pragma once
 
 #include <span>
@@ -31,13 +31,14 @@ Real inertia_of(const ImplicitBodies& bodies, std::size_t r, Real within);
 /// matrix cannot be factored.
 bool make_factor(const ImplicitBodies& bodies, std::size_t r, Real h, Real theta, StiffBody& stiff);
 
-/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by place [N s]. M are the node
-/// masses. `force`: elastic forces, by place [N]; `within`: theta times the step length [s].
+/// Computes the impulses M velocity + within (load - force) on the nodes of a free body, by position in the elimination
+/// order [N s]. M are the node masses. `force`: elastic forces, by position [N]; `within`: theta times the step length
+/// [s].
 void add_up_impulses(const ImplicitBodies& bodies, const ImplicitLoads& loads, std::size_t r, Real within,
                      std::span<const Vec3> force, const OfBody& of, std::span<Vec3> impulse);
 
-/// True if strain is large after a step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: in
-/// the frame of the mesh for a free body, zero for a held body [kg m^2/s].
+/// True if strain is large after a step. `displacement`: at the end of the step, by node [m]. `angular_momentum`: for a
+/// free body in the frame of the mesh, zero for a held body [kg m^2/s].
 bool is_large_after(bool was_large, std::span<const Vec3> displacement, const Vec3& angular_momentum, const OfBody& of,
                     StiffBody& stiff);
 

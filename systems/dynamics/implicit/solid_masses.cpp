@@ -28,8 +28,9 @@ SolidMasses::SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::
 }
 
 void SolidMasses::find_arms(BodyShape& shape) const {
-    // The integral of rho N_k x over a tetrahedron is a twentieth of its mass times the sum of its four corners plus
-    // corner k. rho is the density and N_k the shape function of corner k.
+    // The integral of rho N_k x over a tetrahedron is a twentieth of the tetrahedron's mass times the sum of all four
+    // corner positions plus the position of corner k. rho is the density, N_k the shape function of corner k, and x the
+    // position.
     shape.arm.assign(shape.position.size(), Vec3::Zero());
     for (std::size_t t = 0; t < share_.size(); ++t) {
         Vec3 sum = Vec3::Zero();

@@ -10,10 +10,11 @@
 
 namespace skerry {
 
-/// Deformed shape of a body, by place of its nodes in the elimination order.
+/// Deformed shape of a body, by position of its nodes in the elimination order.
 struct BodyShape {
-    std::vector<Vec3> position;  // relative to the centre of mass [m]
-    std::vector<Vec3> arm;       // weights of node velocities v in the angular momentum, sum arm x v [kg m]
+    std::vector<Vec3> position;  // node positions relative to the centre of mass [m]
+    // Lever arms of the nodes: the angular momentum is the sum of arm x v over the node velocities v [kg m]
+    std::vector<Vec3> arm;
 
     /// Inertia tensor of the shape about the centre of mass [kg m^2].
     Mat3 inertia() const;
@@ -27,12 +28,13 @@ public:
     SolidMasses(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Real> mass,
                 std::span<const Index> place);
 
-    /// Computes the arms of a shape from its node positions.
+    /// Computes the lever arms of a shape from its node positions.
     void find_arms(BodyShape& shape) const;
 
 private:
-    std::vector<std::array<Index, 4>> corners_;  // places of the corners of each tetrahedron
-    std::vector<Real> share_;                    // a twentieth of the mass of each tetrahedron [kg]
+    // For each tetrahedron: positions of the corners in the elimination order.
+    std::vector<std::array<Index, 4>> corners_;
+    std::vector<Real> share_;  // a twentieth of the mass of each tetrahedron [kg]
 };
 
 }  // namespace skerry

@@ -9,8 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// Function of the node velocities v that the step minimises: inertia v.M v / 2 - v.impulse + U(carried + within v). M
-/// are the node masses and U is the elastic energy, for a free body plus the energy of the spin.
+/// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
+/// U(carried + within v). M are the node masses. U is the elastic energy, for a free body plus the energy of the spin.
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)
@@ -20,8 +20,8 @@ public:
           step_(step),
           spins_(!stiff.is_held() && !step.angular_momentum.isZero(0)) {}
 
-    /// Value of the function at step_.velocity + along step_.direction [J]. Leaves the displacements for this velocity
-    /// in step_.within.
+    /// Value of the function at step_.velocity + along step_.direction [J]. Writes the displacements for this velocity
+    /// to step_.within.
     Real at(Real along) {
         Real sum = 0;
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) {
@@ -33,7 +33,7 @@ public:
     }
 
     /// Computes forces and gradient at the displacements step_.within, and the next Newton direction with the present
-    /// factor. Returns the squared Newton decrement [J].
+    /// matrix factor. Returns the squared Newton decrement [J].
     Real turn() {
         stiff_.elements().forces(step_.within, step_.force);
         if (spins_) {
@@ -47,8 +47,8 @@ public:
         return redirect();
     }
 
-    /// Computes the Newton direction with a new factor and an unchanged gradient. Returns the squared Newton decrement
-    /// [J].
+    /// Computes the Newton direction with a new matrix factor and an unchanged gradient. Returns the squared Newton
+    /// decrement [J].
     Real redirect() {
         for (std::size_t k = 0; k < step_.velocity.size(); ++k) step_.direction[k] = -step_.gradient[k];
         stiff_.respond(step_.direction);
@@ -83,8 +83,8 @@ private:
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
     // `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on the squared decrement
-    // relative to all energy. `still_good`: a new factor is computed if more than this fraction of the decrement is
-    // left.
+    // relative to the sum of all energies. `still_good`: a new matrix factor is computed if more than this fraction of
+    // the decrement remains after a step.
     constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;
@@ -104,7 +104,7 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         if (!std::isfinite(decrement)) return false;
         if (decrement <= std::max(close * close * first, rounding * size)) return true;
         ++step.counts.steps;
-        constexpr Real enough = 1e-4;  // required fraction of the decrease that the slope predicts
+        constexpr Real enough = 1e-4;  // required decrease, as a fraction of the decrease that the slope predicts
         Real along = 1, next = objective.at(along);
         for (int halved = 0; !(next <= value - enough * along * decrement + rounding * size); ++halved) {
             if (halved == most_halvings) return false;

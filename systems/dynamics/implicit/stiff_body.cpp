@@ -40,7 +40,7 @@ std::vector<Index> inverse_of(std::span<const Index> place) {
     return node;
 }
 
-/// Block matrix of zeros, with a block on the diagonal for each node and one for each pair of nodes that share an
+/// Matrix of zero blocks. It has a block on the diagonal for each node and a block for each pair of nodes that share an
 /// element.
 BlockRows pattern_of(const std::vector<std::vector<Index>>& neighbours, std::span<const Index> place,
                      std::span<const Index> node) {
@@ -64,7 +64,7 @@ Mat3& block_at(BlockRows& rows, Index row, Index column) {
     return rows.block[static_cast<std::size_t>(std::lower_bound(first, last, column) - rows.column.begin())];
 }
 
-/// Restricts the matrix to free nodes. Rows and columns of held nodes keep only the inertia on the diagonal.
+/// Restricts the matrix to free nodes. In rows and columns of held nodes only the inertia on the diagonal remains.
 void leave_out_held(std::span<const std::uint8_t> held, std::span<const Real> mass, Real inertia, BlockRows& matrix) {
     for (std::size_t k = 0; k < matrix.size(); ++k)
         for (auto i = static_cast<std::size_t>(matrix.offset[k]); i < static_cast<std::size_t>(matrix.offset[k + 1]);
@@ -184,7 +184,7 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
     if (!elements_.any_bends()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!looked_at_.empty()) {
-        Real way = 0;  // largest squared distance of a node since the last evaluation [m^2]
+        Real way = 0;  // largest squared distance of a node from its displacement in the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
             way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
         if (way == 0 && angular_momentum == looked_with_) return large_there_;
@@ -200,8 +200,8 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    // `calmer`: fraction of the bounds of becomes_large(). `still`: fraction of small_strain below which energies are
-    // mostly rounding errors.
+    // `calmer`: the bounds of becomes_large() are multiplied by this fraction. `still`: below this fraction of
+    // small_strain, energies are mostly rounding errors.
     constexpr Real calmer = 0.25, still = 0.1;
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
@@ -251,8 +251,9 @@ void StiffBody::stand_in(const Displacements& displacement) {
 }
 
 Mat3 StiffBody::turn_to_own_frame(std::span<Vec3> displacement) const {
-    // Finds the rotation for which sum m X x y = 0, by Newton's method. m are the node masses, and X and y the rest and
-    // the present positions from the centre of mass. In one step a body rotates only little against its frame.
+    // Finds the rotation for which the sum of m X x y is zero, by Newton's method. m are the node masses, X and y the
+    // rest and the present positions relative to the centre of mass, and x is the cross product. In one step a body
+    // rotates only little against its frame.
     constexpr int most = 20;
     constexpr Real rounding = 1e-15;
     Mat3 turn = Mat3::Identity();
@@ -372,13 +373,13 @@ void StiffBody::respond_to(std::span<X> impulse) const {
     if (tangent_) {
         factor_.solve(impulse);
         take_rigid_answer(impulse);
-        take_momenta_of(impulse);  // removes only rounding errors
+        take_momenta_of(impulse);  // this call removes only rounding errors
         return;
     }
     take_rigid_part(impulse);
     factor_.solve(impulse);
-    // Removes rounding errors in the rigid motion. They matter for stiff bodies, whose response as a rigid body is far
-    // larger than their elastic response.
+    // Removes the rounding errors that have the form of rigid motion. They matter for stiff bodies, whose rigid
+    // response is far larger than their elastic response.
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] *= mass_[k];
     take_rigid_part(impulse);
     for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] /= mass_[k];
@@ -392,7 +393,7 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // With fewer slots than nodes touched in one step, every step would compute all columns again.
+        // If there were fewer slots than nodes touched in one step, every step would compute all columns again.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {
@@ -440,7 +441,7 @@ void StiffBody::find_responses() {
             used_at_[static_cast<std::size_t>(slot)] = uses_;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Mat3> from = column(static_cast<std::size_t>(touched_[i]));
-        // Each column fills both triangles, so the matrix is bitwise symmetric.
+        // Each column is written to both triangles, so the matrix is bitwise symmetric.
         for (std::size_t j = i; j < count; ++j) {
             const Mat3& block = from[static_cast<std::size_t>(place(static_cast<std::size_t>(touched_[j])))];
             for (std::size_t c = 0; c < 3; ++c)

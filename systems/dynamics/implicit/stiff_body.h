@@ -1,5 +1,5 @@
-// Elasticity of an implicit body in the frame that moves with it: stiffness K and masses M of its nodes, and velocities
-// that impulses cause in a step (docs/methods/implicit_bodies.md 2, 3).
+// Elasticity of an implicit body in the frame that moves with the body: stiffness K and masses M of its nodes, and
+// velocities that impulses cause in a step (docs/methods/implicit_bodies.md 2, 3).
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ Mat3 element_stiffness(const MaterialConstants& material, Real volume, const Vec
 
 /// Counters of Newton's method in steps at large strain.
 struct NewtonCounts {
-    std::uint64_t solved = 0;   // steps of single bodies for which Newton's method was run
-    std::uint64_t steps = 0;    // iterations of Newton's method
-    std::uint64_t factors = 0;  // factorisations of tangent matrices
+    std::uint64_t solved = 0;   // number of steps of single bodies in which Newton's method was run
+    std::uint64_t steps = 0;    // number of iterations of Newton's method
+    std::uint64_t factors = 0;  // number of factorisations of tangent matrices
 
     NewtonCounts& operator+=(const NewtonCounts& other) {
         solved += other.solved;
@@ -34,13 +34,14 @@ struct NewtonCounts {
     }
 };
 
-/// State of one step of a body at large strain, by place in the elimination order (docs/methods/implicit_bodies.md 8).
+/// State of one step of a body at large strain, by position of the nodes in the elimination order
+/// (docs/methods/implicit_bodies.md 8).
 struct LargeStep {
-    std::vector<Vec3> carried;   // displacements at the end of the step if nodes did not move [m]
+    std::vector<Vec3> carried;   // displacements at the end of the step if the nodes did not move [m]
     std::vector<Vec3> impulse;   // momentum at the start plus impulses of loads and weight [N s]
-    std::vector<Vec3> velocity;  // velocities of the step's displacement, without contacts [m/s]
+    std::vector<Vec3> velocity;  // node velocities in the step, without contacts [m/s]
     std::vector<Vec3> force;     // gradient dU/du of the elastic energy within the step [N]
-    std::vector<Vec3> before;    // velocities at the start, after Coriolis forces, without rigid motion [m/s]
+    std::vector<Vec3> before;  // velocities at the start of the step, without rigid motion, after Coriolis forces [m/s]
     std::vector<Vec3> gradient, direction, within;
     // Angular momentum of a free body in the frame of its mesh; zero for a held body [kg m^2/s].
     Vec3 angular_momentum = Vec3::Zero();
@@ -61,18 +62,18 @@ struct LargeStep {
 /// (docs/methods/implicit_bodies.md 9).
 struct LongStep {
     Real done = 0;  // elapsed time of the long step; 0 outside of a long step [s]
-    // Elapsed time of the long step at the end of this short step, over the length of the short step; 0 in an ordinary
-    // step.
+    // Ratio of the elapsed time of the long step, at the end of this short step, to the length of this short step; 0 in
+    // an ordinary step.
     Real weight = 0;
     bool rests = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:
     std::vector<Vec3> start, start_velocity;  // [m], [m/s]
     std::vector<Vec3> start_force;            // K u [N]
-    std::vector<Vec3> impulse, free;          // impulses without contacts [N s], velocities caused by them [m/s]
+    std::vector<Vec3> impulse, free;  // impulses without contacts [N s], and the velocities that they cause [m/s]
     // Velocities [m/s] and impulses [N s] of the contacts of the last long step, which are assumed to continue.
     std::vector<Vec3> left, left_impulse;
-    // Contributions of contacts from the start of the long step to the start of this short step, and (`_next`) to its
-    // end:
+    // Contributions of contacts from the start of the long step to the start of this short step; columns `_next`: to
+    // the end of this short step.
     std::vector<Vec3> answer, answer_next;    // velocities caused by contacts [m/s]
     std::vector<Vec3> contact, contact_next;  // impulses of contacts, in the frame of the mesh [N s]
     Real elastic = 0, elastic_next = 0;       // elastic energy [J]
@@ -84,8 +85,8 @@ struct LongStep {
     }
 };
 
-/// Stiffness, masses and factor of one implicit body. Vectors by node are in the elimination order unless a comment
-/// says "by node of the body"; place() gives the position of a node in this order.
+/// Stiffness, masses and matrix factor of one implicit body. Vectors by node are in the elimination order unless a
+/// comment says "by node of the body"; place() gives the position of a node in this order.
 class StiffBody {
 public:
     StiffBody() = default;
@@ -96,15 +97,15 @@ public:
               std::span<const Real> tetrahedron_mass);
 
     /// Makes the nodes whose `inverse_mass` (by node of the body) is zero held nodes from now on. Impulses do not move
-    /// held nodes, and other nodes deform against them. A body without held nodes is free. The present factor remains
-    /// valid if the set of held nodes is unchanged.
+    /// held nodes, and other nodes deform against them. A body without held nodes is free. The present matrix factor
+    /// remains valid if the set of held nodes is unchanged.
     void hold(std::span<const Real> inverse_mass);
     bool is_held() const { return !held_.empty(); }
 
     bool empty() const { return place_.empty(); }
     std::size_t size() const { return place_.size(); }
     Index place(std::size_t node) const { return place_[node]; }
-    /// Node of the body at each place of the elimination order.
+    /// Node of the body at each position of the elimination order.
     std::span<const Index> nodes() const { return node_; }
     Real mass(std::size_t place) const { return mass_[place]; }
 
@@ -117,16 +118,16 @@ public:
     ///
     /// One of two conditions suffices. First, the spin would stretch a bar by small_strain. Second, |F - 1| exceeds
     /// small_strain in an element with deformation gradient F, and in addition the energies or the spin are inaccurate.
-    /// The energies are inaccurate if linear elasticity and the material laws differ, summed over the elements, by more
-    /// than energy_share of the linear energy. The spin is inaccurate if its energy exceeds the same bound and the
-    /// inertia of the present shape changes the spin by more than the fraction small_strain.
+    /// The energies are inaccurate if the energies by linear elasticity and by the material laws differ, summed over
+    /// the elements, by more than energy_share of the linear energy. The spin is inaccurate if its energy exceeds the
+    /// same bound and the inertia of the present shape changes the spin by more than the fraction small_strain.
     ///
     /// Always false if all material laws are linear.
     bool becomes_large(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
         return is_beyond({displacement, node_}, angular_momentum);
     }
-    /// Version of becomes_large() for displacements by place in the elimination order. Evaluates elements only if nodes
-    /// have moved far enough since the last evaluation for strain to become large.
+    /// Variant of becomes_large() for displacements by position in the elimination order. Evaluates elements only if
+    /// nodes have moved far enough since the last evaluation for strain to become large.
     bool becomes_large_in_places(std::span<const Vec3> displacement, const Vec3& angular_momentum);
     /// True if linear elasticity and the moments of inertia at rest are accurate enough again. The energy of the spin
     /// must be below a quarter of the bound in becomes_large(). In addition all strains must be below a tenth of
@@ -138,11 +139,13 @@ public:
     Real elastic_energy(std::span<const Vec3> displacement, bool large) const;
     /// Removes the rigid-body motion of the rest shape from velocities, by node of the body [m/s].
     void take_rigid_motion(std::span<Vec3> velocity) const;
-    /// Computes node positions and arms (BodyShape) of the shape with the given displacements.
+    /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets the shape, given by displacements, whose rigid-body motion is removed from responses by tangents.
+    /// Sets the shape, given by displacements, whose rigid-body motion is removed from the velocities that respond()
+    /// computes with a tangent.
     void stand_in(const Displacements& displacement);
-    /// Removes momentum and angular momentum, in the shape of stand_in(), from node velocities, by place [m/s].
+    /// Removes momentum and angular momentum, in the shape of stand_in(), from node velocities, by position in the
+    /// elimination order [m/s].
     void take_momenta(std::span<Vec3> velocity) const { take_momenta_of(velocity); }
     const BodyShape& shape() const { return shape_; }
     /// Rotates displacements (by node) into the frame in which they contain no rigid rotation
@@ -150,19 +153,19 @@ public:
     Mat3 turn_to_own_frame(std::span<Vec3> displacement) const;
 
     /// Makes A = inertia M + stiffness K the matrix of respond(), with masses M and stiffness matrix K. Reuses the
-    /// present factor if it belongs to this matrix. Returns false if A is not positive definite. Rows of held nodes in
-    /// A have only a diagonal entry.
+    /// present factor if it was computed for this matrix. Returns false if A is not positive definite. Rows of held
+    /// nodes in A have only a diagonal entry.
     bool prepare(Real inertia, Real stiffness);
     /// Makes A = inertia M + stiffness d2U/du2 the matrix of respond(). d2U/du2 is the second derivative of the elastic
-    /// energy at these displacements (by place), without its negative part. Always computes a new factor, and forces
-    /// the next prepare() to compute one. Returns false if A is not positive definite.
+    /// energy at these displacements (by position in the elimination order), without its negative part. Always computes
+    /// a new factor, and forces the next prepare() to compute one. Returns false if A is not positive definite.
     bool prepare_tangent(Real inertia, Real stiffness, std::span<const Vec3> displacement);
-    /// True if the present factor was computed by prepare_tangent().
+    /// True if prepare_tangent() has computed the present factor.
     bool is_tangent() const { return tangent_; }
     void forget_tangent() {
         if (tangent_) forget_factor();
     }
-    /// State of the step in progress if its strain is large.
+    /// State of the step in progress, used if strain is large.
     LargeStep large_step;
     /// State of the long step in progress.
     LongStep long_step;
@@ -173,15 +176,16 @@ public:
     /// nodes are ignored, and held nodes get zero velocity.
     void respond(std::span<Vec3> impulse) const;
 
-    /// Velocities of all nodes, by place, per unit impulse on one node, computed by respond() [1/kg]. The result is
-    /// computed once for a factor, and kept while there is room.
+    /// Velocities of all nodes per unit impulse on one node, by position in the elimination order, computed by
+    /// respond() [1/kg]. The result is computed once for a matrix factor, and stored while there is room.
     std::span<const Mat3> column(std::size_t node);
     /// Velocities of the given nodes per unit impulse on these nodes, computed by respond() [1/kg]. The result is a
-    /// symmetric matrix, stored column by column with three numbers for each node, and zero without a factor. It is
-    /// reused while the list of nodes stays the same. `nodes` ascend; `first` is the first node of the body in the same
-    /// numbering.
+    /// symmetric matrix, stored column by column with three numbers for each node. It is zero if there is no matrix
+    /// factor. It is reused while the list of nodes stays the same. `nodes` ascend; `first` is the first node of the
+    /// body in the same numbering.
     std::span<const Real> responses(std::span<const Index> nodes, Index first);
-    /// Memory limit for kept columns. It is exceeded if one call of responses() needs more columns.
+    /// Memory limit for stored columns of responses. The limit is exceeded if one call of responses() needs more
+    /// columns.
     static constexpr std::size_t column_memory = std::size_t(64) << 20;  // [bytes]
     std::uint64_t columns_made() const { return columns_made_; }
 
@@ -193,55 +197,60 @@ private:
     void find_responses();
     void forget_factor();
     void forget_columns();
-    /// True if the energies of elements or the spin exceed the bounds of becomes_large() times `part`. Does not test
-    /// the strain |F - 1|.
+    /// True if the differences of element energies or the spin exceed the bounds of becomes_large() times `part`. Does
+    /// not test the strain |F - 1|.
     bool is_off(const Displacements& displacement, const Vec3& angular_momentum, Real part);
     /// Energy of the spin for an angular momentum, with the inertia at rest [J].
     Real energy_of_spin(const Vec3& angular_momentum) const {
         return angular_momentum.dot(inverse_solid_inertia_ * angular_momentum) / 2;
     }
     bool is_beyond(const Displacements& displacement, const Vec3& angular_momentum);
-    /// Computes the corrections that keep responses by a tangent free of rigid motion. They are needed because a
-    /// tangent, unlike K, gives forces for rigid motion.
+    /// Computes the corrections that remove rigid motion from responses with a tangent matrix. They are needed because
+    /// a tangent, unlike the stiffness K at rest, gives forces for rigid motion.
     void find_rigid_answers();
     template <class X>
     void take_rigid_answer(std::span<X> velocity) const;
     template <class X>
     void take_momenta_of(std::span<X> velocity) const;
 
-    std::vector<Index> place_;        // position of each node of the body in the elimination order
-    std::vector<Index> node_;         // node of the body at each place
-    std::vector<Real> mass_;          // by place [kg]
-    std::vector<Vec3> arm_;           // rest position relative to the centre of mass, by place [m]
-    std::vector<std::uint8_t> held_;  // 1 for held nodes, by place; empty: no node is held
+    std::vector<Index> place_;  // position of each node of the body in the elimination order
+    std::vector<Index> node_;   // node of the body at each position
+    std::vector<Real> mass_;    // by place [kg]
+    std::vector<Vec3> arm_;  // rest position relative to the centre of mass, by position in the elimination order [m]
+    // 1 for held nodes, by position in the elimination order; empty if no node is held.
+    std::vector<std::uint8_t> held_;
     Real total_mass_ = 0;
     Mat3 inverse_inertia_ = Mat3::Zero();        // inverse inertia of the nodal masses at rest [1/(kg m^2)]
     Mat3 inverse_solid_inertia_ = Mat3::Zero();  // inverse inertia of the solid at rest [1/(kg m^2)]
     Real stretching_spin_ = 0;                   // energy of the spin that would stretch a bar by small_strain [J]
     SolidMasses solid_;
     BodyShape shape_;  // set by stand_in()
-    // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the arm a and the mass m of a node [1/(kg m^2)].
+    // Inverse of the sum of (|a|^2 1 - a a^T) / m over the nodes, with the lever arm a and the mass m of a node [1/(kg
+    // m^2)].
     Mat3 inverse_arm_inertia_ = Mat3::Zero();
     BlockRows stiffness_, matrix_;
-    Real inertia_factor_ = 0, stiffness_factor_ = 0;  // coefficients of masses and stiffness in the factored matrix
+    // Coefficients of the masses and of the stiffness in the factored matrix.
+    Real inertia_factor_ = 0, stiffness_factor_ = 0;
     BlockCholesky factor_;
     BodyElements elements_;
     bool tangent_ = false;
-    // Velocity responses to the nodal momenta of unit translations (shifts_) and unit rotations (turns_), by place.
+    // Velocity responses to the nodal momenta of unit translations (shifts_) and of unit rotations (turns_), by
+    // position in the elimination order.
     std::vector<Mat3> shifts_, turns_;
     // Inverse of the matrix of total momenta and angular momenta of shifts_ and turns_.
     Eigen::Matrix<Real, 6, 6> rigid_inverse_;
-    // Inputs and results of the last evaluation in becomes_large_in_places(); looked_at_ is empty before the first:
-    std::vector<Vec3> looked_at_;      // displacements at the last evaluation, by place [m]
+    // Inputs and results of the last evaluation in becomes_large_in_places(). looked_at_ is empty before the first
+    // evaluation.
+    std::vector<Vec3> looked_at_;      // displacements at the last evaluation, by position in the elimination order [m]
     Vec3 looked_with_ = Vec3::Zero();  // angular momentum at the last evaluation [kg m^2/s]
     Real strain_there_ = 0;
     bool large_there_ = false;
-    // Slot in `columns_` with the column of each node of the body, or no_index:
+    // For each node of the body: slot in `columns_` with the column of the node, or no_index.
     std::vector<Index> slot_of_;
     std::vector<Index> node_in_;          // node of each slot
-    std::vector<std::uint64_t> used_at_;  // value of uses_ at the last use of each slot
+    std::vector<std::uint64_t> used_at_;  // for each slot: value of uses_ when the slot was last used
     std::uint64_t uses_ = 0, columns_made_ = 0;
-    std::vector<Mat3> columns_;  // velocity responses, size() blocks in each slot
+    std::vector<Mat3> columns_;  // stored columns of velocity responses, size() blocks in each slot
     // Nodes of the body in the last call of responses(), and the result of this call:
     std::vector<Index> touched_;
     std::vector<Real> responses_;

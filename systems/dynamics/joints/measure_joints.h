@@ -10,7 +10,7 @@
 namespace skerry {
 
 struct JointMeasures {
-    Vec3 impulse = Vec3::Zero();  // impulse from the world and from held bodies [N s]
+    Vec3 impulse = Vec3::Zero();  // impulse that joints transmit from the world and from held bodies [N s]
     Real work = 0;                // work of motors and moving held bodies, minus work absorbed by stops [J]
 };
 

@@ -27,7 +27,7 @@ struct JointInputs {
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
     std::span<const Range> body_rigid, body_nodes;  // BodyTable
-    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty: no body is asleep
+    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty if no body is asleep
     // RigidBodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, rest_center;
@@ -79,8 +79,8 @@ struct JointInputs {
     JointPlace place(Index body, const JointFrame& frame) const;
 };
 
-/// Displacement of a slider [m] or angle of a hinge [rad] between the frames on both bodies; 0 for other kinds of
-/// joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
+/// Displacement of a slider [m] or angle of a hinge [rad] between the joint frames of the two bodies; 0 for other kinds
+/// of joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
 /// Writes the constraint blocks of all joints with a moving body. The impulses of the last step serve as the warm

@@ -8,7 +8,7 @@ namespace skerry {
 
 namespace {
 
-/// Appends elements to another list. Tetrahedron t of the appended elements becomes tetrahedra[t].
+/// Appends elements to another list. In the appended elements tetrahedron t becomes tetrahedra[t].
 void append(const ElementList& from, std::span<const Index> tetrahedra, ElementList& to) {
     const auto append_all = [](const auto& more, auto& column) {
         column.insert(column.end(), more.begin(), more.end());

@@ -15,7 +15,7 @@ namespace skerry {
 /// Elements with their nodes, gradients and volumes. Nodes and tetrahedra are numbered from zero within the body.
 struct ElementList {
     std::vector<std::size_t> first_node{0};         // first entry of element e in node and gradient; size() + 1 entries
-    std::vector<Index> node;                        // the first node of an element is the reference x_0 of F
+    std::vector<Index> node;                        // nodes of each element; the first node is the reference x_0 of F
     std::vector<Vec3> gradient;                     // the gradients of an element have the sum zero [1/m]
     std::vector<std::size_t> first_tetrahedron{0};  // first entry of element e in tetrahedron; size() + 1 entries
     std::vector<Index> tetrahedron;                 // tetrahedra that each element covers
@@ -62,21 +62,21 @@ struct MaterialZone {
 ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones);
 
 /// Limit on the volume of a sliver, as a fraction of the mean volume of the tetrahedra around a corner. A tetrahedron
-/// below this limit at all its corners is a sliver. No step is shortened to keep a sliver from inverting
+/// is a sliver if it is below this limit at all its corners. No step is shortened to keep a sliver from inverting
 /// (docs/methods/time_stepping.md 4.2).
 inline constexpr Real sliver_volume = 0.05;
 
 /// For each tetrahedron: 1 if the tetrahedron is a sliver, else 0.
 std::vector<std::uint8_t> sliver_tetrahedra(const RestMesh& mesh);
 
-/// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of the
-/// mesh. A tetrahedron below this limit has little effect on the smoothed F around its edges and nodes
-/// (docs/methods/elasticity.md 7.7).
+/// Limit on the volume of a tetrahedron with an inversion barrier (guard), as a fraction of the mean volume of all
+/// tetrahedra of the mesh. A tetrahedron below this limit has little effect on the smoothed F around its edges and
+/// nodes (docs/methods/elasticity.md 7.7).
 inline constexpr Real guarded_volume = 0.5;
 
 /// Adds an inversion barrier (guard) for every small tetrahedron in the zones of smoothed elements, except slivers.
 /// Barriers follow all other elements of the list. A barrier covers no tetrahedron, since it does not contribute to
-/// reported stress or strain. Its volume is zero until it acts (clusters/arm_guards.h).
+/// reported stress or strain. Its volume is zero while it is inactive (clusters/arm_guards.h).
 void add_guards(const RestMesh& mesh, std::span<const MaterialZone> zones, ElementList& list);
 
 /// Replaces `smoothed` by the kind that suits the Poisson ratio; other kinds are returned unchanged. Above a Poisson

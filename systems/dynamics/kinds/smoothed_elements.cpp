@@ -1,6 +1,6 @@
-// Elements that average F over several tetrahedra. Each tetrahedron e gives a fraction w of its volume V_e to the
+// Elements that average F over several tetrahedra. Each tetrahedron e contributes a fraction w of its volume V_e to the
 // element. The element then has the volume W = sum_e w V_e, and its node k has the gradient g_k = sum_e (w V_e / W)
-// g_ek (docs/methods/elasticity.md 7).
+// g_ek, with the gradient g_ek of tetrahedron e at node k (docs/methods/elasticity.md 7).
 #include <algorithm>
 #include <unordered_map>
 
@@ -27,9 +27,9 @@ struct Gradients {
         }
     }
 
-    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding leaves a remainder
-    /// of about 1e-16 of a gradient. The remainder moves nothing, but would count in the bound on the step, however
-    /// small it is.
+    /// Removes the nodes whose gradients cancel, such as an inner node in its own element. Rounding errors leave about
+    /// 1e-16 of a gradient. This remainder moves nothing, but would count in the bound on the step, however small it
+    /// is.
     void drop_nothings() {
         constexpr Real nothing = 1e-12;
         Real largest = 0;
@@ -61,7 +61,7 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
                 element.add(mesh.tetrahedra[static_cast<std::size_t>(t)][a], (share * of.volume / volume) * of.g[a]);
         }
         element.drop_nothings();
-        // The gradient of node 0 is computed bitwise as in the kernel.
+        // The gradient of node 0 is computed with the same operations as in the kernel, so that it is bitwise equal.
         Vec3 others = Vec3::Zero();
         for (std::size_t k = 1; k < element.gradient.size(); ++k) others += element.gradient[k];
         element.gradient.front() = -others;

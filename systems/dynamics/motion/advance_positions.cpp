@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t moved_blocks_per_job = 8;
 
-/// Drift in a step without push-out. Treats node vectors as flat lists of numbers, for vectorisation.
+/// Drift in a step without push-out: moves positions by the velocities. Treats node vectors as flat lists of numbers,
+/// so that the compiler can vectorise the loop.
 void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
     const Real* v = velocity.data()->data();
     Real* x = position.data()->data();
@@ -23,8 +24,8 @@ void drift(std::span<const Vec3> velocity, Real h, std::span<Vec3> position) {
     for (std::size_t i = 0; i < count; ++i) x[i] += h * v[i];
 }
 
-/// Drift in a step in which contacts push nodes out of an overlap. Most nodes are not pushed, so push_out is cleared
-/// only in blocks with a pushed node.
+/// Drift in a step in which contacts push nodes out of an overlap: moves positions by the velocities and push
+/// velocities. Most nodes are not pushed, so push_out is cleared only in blocks with a pushed node.
 void drift_pushed(std::span<const Vec3> velocity, Real h, std::span<Vec3> push_out, std::span<Vec3> position) {
     const Real *v = velocity.data()->data(), *p = push_out.data()->data();
     Real* x = position.data()->data();

@@ -1,4 +1,4 @@
-// Drift of the nodes: moves positions by the velocities and commits the step.
+// Drift of the nodes: moves the positions by the velocities and makes the new state the present one.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace skerry {
 
 struct AdvanceInputs {
     std::span<const Index> block_begin, block_end, block_body;  // NodeBlockTable
-    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty: no body is asleep
+    std::span<const std::uint8_t> body_asleep = {};             // BodyTable; empty if no body is asleep
     std::span<const Vec3> velocity_next;                        // [m/s]
     std::span<const Vec3> displacement_origin;                  // [m]
-    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty: all frames stand still
+    std::span<const MovingFrame> body_frame = {};               // BodyTable; empty if all frames stand still
 
     /// `velocity`: column of the velocities with which nodes move. `any_asleep`: true if some body is asleep.
     static AdvanceInputs bind(const Binder& binder, const NodeBlockTable& block, const BodyTable& body,
@@ -34,7 +34,7 @@ struct AdvanceInputs {
 };
 
 struct AdvanceOutputs {
-    std::span<Vec3> push_out;  // empty: no contact pushes nodes out of an overlap [m/s]
+    std::span<Vec3> push_out;  // empty if no contact pushes nodes out of an overlap [m/s]
     std::span<Vec3> position;
     std::span<Vec3> velocity;
     std::span<Real> block_displacement_squared;  // [m^2]

@@ -30,8 +30,8 @@ bool is_damped(const DampingInputs& bodies, std::size_t body) {
            !has_frame && !(bodies.body_unstrained[body] > 0 && keeps_rigid_motion(bodies, body));
 }
 
-/// Node whose position and velocity are the reference for the sums of a body. Absolute sums would lose digits far from
-/// the world's origin.
+/// First node of a body. Its position and velocity are the reference for the sums over the body, because sums of
+/// absolute values would lose digits far from the world's origin.
 std::size_t first_node(const DampingInputs& bodies, std::size_t body) {
     return static_cast<std::size_t>(bodies.block_begin[static_cast<std::size_t>(bodies.body_node_blocks[body].begin)]);
 }
@@ -42,7 +42,7 @@ T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
 }
 
-// Sums over nodes keep the components of one node side by side in a register.
+// Sums over nodes, with the components of one vector side by side in a register.
 Real4 load(const Vec3& v) {
     return Real4{v[0], v[1], v[2], 0};
 }
@@ -76,8 +76,8 @@ NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::spa
     return sums;
 }
 
-/// Adds up the block sums of a body in the entry of its first block. Momentum is then in the world frame; second
-/// moments and angular momentum are about the centre of mass.
+/// Adds up the block sums of a body and writes the result to the entry of its first block. Momentum is then in the
+/// world frame; second moments and angular momentum are about the centre of mass.
 void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity,
                  std::span<NodeBlockSums> sums) {
     const Range blocks = bodies.body_node_blocks[body];
@@ -102,8 +102,8 @@ void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const 
 Vec3 angular_velocity_of(const NodeBlockSums& total) {
     const Mat3 inertia = total.second_moment.trace() * Mat3::Identity() - total.second_moment;
     const Real mean = inertia.trace() / 3;
-    // Bound on the determinant over the cube of the mean moment of inertia. Above it the inverse loses at most ten
-    // digits; for most bodies it loses none.
+    // Least ratio of the determinant to the cube of the mean moment of inertia. Above this ratio the inverse loses at
+    // most ten digits; for most bodies it loses none.
     constexpr Real well_shaped = 1e-6;
     if (inertia.determinant() > well_shaped * mean * mean * mean) return inertia.inverse() * total.angular_momentum;
     const Eigen::JacobiSVD<Mat3> turned(inertia, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -116,7 +116,8 @@ Vec3 angular_velocity_of(const NodeBlockSums& total) {
     return omega;
 }
 
-/// Rigid motion towards which node velocities are damped, and the removed fraction of the velocity difference.
+/// Rigid motion towards which node velocities are damped, and the fraction of the velocity difference that damping
+/// removes.
 struct DampedTowards {
     Vec3 linear, angular, origin, centre;
     Real lag, fraction;
@@ -141,8 +142,8 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
         next[3 * n] -= fraction * ex;
         next[3 * n + 1] -= fraction * ey;
         next[3 * n + 2] -= fraction * ez;
-        // The removed energy is m v^2/2 before minus after damping. The deformation velocity is not quite orthogonal to
-        // the rigid motion if positions and velocities belong to different times.
+        // The removed energy is m v^2/2 before minus m v^2/2 after damping. The deformation velocity is not quite
+        // orthogonal to the rigid motion if positions and velocities belong to different times.
         work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
     }
 }

@@ -46,14 +46,14 @@ struct DampingInputs {
 };
 
 /// Removes the fraction 1 - exp(-damping kick) of the deformation velocity v - v_rigid from velocity_next. `velocity`
-/// is v at the start of the step, and not the predicted velocity: a body at rest under load must not feel its damping.
+/// is v at the start of the step, and not the predicted velocity: damping must not act on a body at rest under load.
 /// `kick`: time between `velocity` and velocity_next [s]. `dissipated`: removed kinetic energy [J].
 ///
 /// Damps every body with damping > 0 that is awake, not in unstrained flight and not in RigidBodyTable. A body with
 /// pinned nodes is damped towards zero velocity. For any other body v_rigid is the rigid motion with the momentum and
-/// angular momentum of the body, at the node positions of the time `lag` ago. So a body that rotates at its centrifugal
-/// stretch has no deformation velocity. Moments are taken about the present positions, where the removed velocity then
-/// has no angular momentum.
+/// angular momentum of the body, at the node positions of the time `lag` ago. So a body that rotates with constant
+/// centrifugal stretch has no deformation velocity. Angular momentum is taken about the present positions, where the
+/// removed velocity then has none.
 ///
 /// Returns false if no body has damping (skipped). Parallel over node blocks; sums in block order.
 bool damp_velocity(Executor& executor, const DampingInputs& bodies, std::span<const Vec3> velocity, Real kick,

@@ -10,13 +10,14 @@ namespace skerry {
 
 namespace {
 
-// A body takes some microseconds when its displacement origins move.
+// The work for a body takes some microseconds when its displacement origins move.
 constexpr std::size_t displaced_bodies_per_job = 16;
 
-// Displacement, as a fraction of the mean edge, at which the displacement origins move to the nodes. A pair list made
-// at the displacements a and b of both bodies is valid for a travel of skin - 2 (a + b) (contact_reach.h). So at most 4
-// x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost, and sleeping candidates wake too early by this
-// travel. A body that vibrates by less than this displacement adds nothing to its travel in the long run.
+// Displacement, as a fraction of the mean edge, at which the displacement origins move to the nodes. A pair list that
+// was made while the two bodies had the displacements a and b is valid for a travel of skin - 2 (a + b)
+// (contact_reach.h). So at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost, and sleeping
+// candidates wake too early by this travel. A body that vibrates by less than this displacement adds nothing to its
+// travel in the long run.
 constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
@@ -70,7 +71,7 @@ void measure_displacement(Executor& executor, const DisplacementInputs& bodies, 
             out.frame[b].offset = Vec3::Zero();
             const Range nodes = bodies.nodes(b);
             out.frame[b].velocity = mean_velocity(bodies.velocity, nodes);
-            // The contact search of the next step uses this frame (step_reach.cpp).
+            // The contact search of the next step uses the frame updated here (step_reach.cpp).
             out.frame_speed[b] = greatest_speed(bodies.velocity, nodes, out.frame[b].velocity);
             const auto first = static_cast<std::ptrdiff_t>(nodes.begin), last = static_cast<std::ptrdiff_t>(nodes.end);
             std::copy(bodies.position.begin() + first, bodies.position.begin() + last, out.origin.begin() + first);

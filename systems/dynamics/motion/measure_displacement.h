@@ -1,4 +1,5 @@
-// Displacement and travel of each body, which limit how long results of the collision stages remain valid.
+// Displacement and travel (distance moved) of each body. These distances limit how long results of the collision stages
+// remain valid.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,7 @@ struct DisplacementInputs {
                 .velocity = binder.read(node.velocity)};
     }
 
-    /// Nodes of a body that belong to node blocks: all nodes, or only some nodes of a round body.
+    /// Nodes of a body that count for its displacement: all nodes, or for a round body only the nodes in node blocks.
     Range nodes(std::size_t body) const {
         const Range blocks = body_node_blocks[body];
         if (blocks.size() == 0) return {0, 0};
@@ -41,9 +42,10 @@ struct DisplacementInputs {
 };
 
 struct DisplacementOutputs {
-    std::span<Vec3> origin;          // by node: position when the displacement of its body was last reset to zero [m]
-    std::span<std::uint8_t> rebase;  // by body, or empty; 1: reset the displacement and clear this flag
-    std::span<MovingFrame> frame;    // BodyTable
+    std::span<Vec3> origin;  // by node: position when the displacement of its body was last reset to zero [m]
+    // Flag of each body, or empty; 1: set the displacement of the body to zero and clear the flag.
+    std::span<std::uint8_t> rebase;
+    std::span<MovingFrame> frame;  // BodyTable
     std::span<Real> frame_speed, displacement, travel;
 
     /// `rebase`: by body.
@@ -70,10 +72,10 @@ Real block_displacement_squared(std::span<const Vec3> position, std::span<const 
 ///
 /// If the displacement exceeds a small fraction of the mean edge, or on request, the origins move to the nodes and the
 /// frame gets the mean velocity of the nodes. The displacement is then zero, travel is unchanged, and frame_speed
-/// becomes the greatest speed of the nodes in the new frame [m/s].
+/// becomes the greatest speed of the nodes relative to the frame [m/s].
 ///
-/// Bound on the motion since an earlier time t: in the frame, no node has moved further than travel - travel(t) + 2
-/// displacement(t).
+/// Bound on the motion since an earlier time t: relative to the frame, no node has moved further than travel -
+/// travel(t) + 2 displacement(t).
 void measure_displacement(Executor& executor, const DisplacementInputs& bodies, Real seconds,
                           const DisplacementOutputs& out);
 

@@ -10,7 +10,7 @@ namespace skerry {
 namespace {
 
 bool are_parallel(const Vec3& a, const Vec3& b) {
-    constexpr Real parallel = 1e-12;  // largest sine of the angle between parallel axes
+    constexpr Real parallel = 1e-12;  // two axes count as parallel if the sine of their angle is at most this value
     return a.cross(b).squaredNorm() <= parallel * parallel * a.squaredNorm() * b.squaredNorm();
 }
 

@@ -48,8 +48,8 @@ private:
                 add(n, Vec3::Zero());
     }
 
-    /// Calls visit(node, sum) with the sum of the forces in all patch slots of each node. Sums are in the order of the
-    /// patches, so they are bitwise equal for any number of workers.
+    /// Calls visit(node, sum) for each node, with the sum of the forces on the node from all patches. The patches are
+    /// added in order, so the sums are bitwise equal for any number of workers.
     void sum_slots(std::size_t begin, std::size_t end, auto&& visit) const {
         const RaggedView<Index>& slots = nodes.slots_of_node;
         const Index* slot = slots.item.data() + slots.offset[begin];
@@ -67,13 +67,13 @@ private:
         for (std::size_t n = begin; n < end; ++n) held |= static_cast<unsigned>(!(inverse_mass[n] > 0));
         return held == 0;
     }
-    /// Updates the velocities of nodes that are neither held nor loaded, several nodes at a time.
+    /// Updates the velocities of nodes that are neither held nor loaded by a force, several nodes at a time.
     void all_free(std::size_t begin, std::size_t end) const {
         std::array<Real, 3 * nodes_per_block + 1> force_on;
         const std::size_t count = end - begin;
         SKERRY_CHECK(3 * count < force_on.size());
         sum_slots(begin, end, [&](std::size_t n, const Real4& sum) {
-            // Writes four numbers at once. The next node overwrites the fourth number.
+            // Writes four numbers at once. The fourth number is overwritten by the next node.
             std::memcpy(force_on.data() + 3 * (n - begin), &sum, sizeof sum);
         });
         const Real *const v = velocity[begin].data(), *const mass = nodes.mass.data() + begin,
@@ -91,7 +91,8 @@ private:
     [[gnu::always_inline]] void add(std::size_t n, const Vec3& sum) const {
         Vec3 total = sum + nodes.mass[n] * nodes.gravity;
         if (!nodes.load.empty()) total += nodes.load[n];
-        // The branch replaces a product with zero: a pinned node does not move even if the force on it is not finite.
+        // The branch is used instead of a product with zero: a pinned node must not move even if the force on the node
+        // is not finite.
         if (nodes.inverse_mass[n] > 0) {
             velocity_next[n] = velocity[n] + (seconds * nodes.inverse_mass[n]) * total;
         } else {

@@ -1,4 +1,4 @@
-// Kick of symplectic Euler: sums the forces on each node and changes its velocity by them.
+// Kick of symplectic Euler: sums the forces on each node and changes the velocity of the node accordingly.
 #pragma once
 
 #include <span>
@@ -20,9 +20,10 @@ struct KickInputs {
     std::span<const PaddedVec3> patch_force;
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
-    std::span<const Vec3> load = {};                 // applied force; empty: no node has one [N]
-    std::span<const std::uint8_t> body_asleep = {};  // BodyTable; sleeping bodies are skipped; empty: none is asleep
-    // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty: no body is unstrained.
+    std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
+    // BodyTable; sleeping bodies are skipped; empty if no body is asleep.
+    std::span<const std::uint8_t> body_asleep = {};
+    // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};
 
     /// `forced`: true if the world has force elements. `any_asleep`: true if some body is asleep.
@@ -46,10 +47,10 @@ struct KickInputs {
 /// Sets velocity_next = velocity + kick F inverse_mass. F is the force on a node: the forces of its element patches,
 /// summed in a fixed order, plus mass times gravity plus load. `kick`: time for which forces act in this step [s].
 ///
-/// Held nodes (inverse mass 0) keep their velocity. For held nodes alone F is written to `force`; the holding force is
-/// its opposite. Storing F of all nodes and reading it again would take as long as the kick itself, so one pass does
-/// all. In an unstrained body without loads and held nodes, equal velocities stay bitwise equal. Parallel over node
-/// blocks.
+/// Held nodes (inverse mass 0) keep their velocity. F is written to `force` for held nodes only; the holding force is
+/// the opposite of F. To store F of all nodes and to read it again would take as long as the kick itself, so one pass
+/// does everything. In an unstrained body without loads and held nodes, equal velocities stay bitwise equal. Parallel
+/// over node blocks.
 void predict_velocity(Executor& executor, const KickInputs& nodes, std::span<const Vec3> velocity, Real kick,
                       std::span<Vec3> force, std::span<Vec3> velocity_next);
 

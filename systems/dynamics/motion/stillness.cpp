@@ -13,8 +13,9 @@ namespace {
 
 namespace limits = own_sleep_limits;
 
-/// Number of measurements of the drift that are due after the fraction `part` of a half of the sleep time. They are
-/// unevenly spaced: at equal intervals an oscillation that returns at each measurement would seem still.
+/// Number of measurements of the drift (displacement of the nodes) that are due after the fraction `part` of one half
+/// of the sleep time. They are unevenly spaced: at equal intervals an oscillation that returns at each measurement
+/// would seem still.
 int looks_due(Real part) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(part * limits::looks);
@@ -62,13 +63,12 @@ public:
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
-            // A body that is further from its start at each measurement may move at constant speed, on ice or by a
-            // motor.
+            // A body whose drift grows with each measurement may move at constant speed, on ice or by a motor.
             const bool goes_on = !comes_back && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
-                still = half;  // the next half is compared with the present half
+                still = half;  // the next half of the sleep time is compared with the present half
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();
@@ -76,10 +76,10 @@ public:
     }
 
 private:
-    /// True if the mean forces over the last two halves are in balance. Damping forces are not counted, since a body at
-    /// rest has none. The mean acceleration of a node, with triangular weights over both halves, is the difference of
-    /// its displacements in both halves over the square of a half. The sum of the drifts is an upper bound of this
-    /// difference.
+    /// True if the mean forces over the last two halves of the sleep time are in balance. Damping forces are not
+    /// counted, since no damping force acts on a body at rest. The mean acceleration of a node, with triangular weights
+    /// over both halves, is the difference of its displacements in the two halves divided by the squared length of a
+    /// half. The sum of the drifts is an upper bound of this difference.
     bool is_balanced(Real half) const {
         // A body with held nodes is damped towards zero velocity, and not towards its rigid motion.
         const bool held = bodies_.pinned_count[body_] > 0;
@@ -89,7 +89,8 @@ private:
     }
 
     /// True if the shape varies little about a constant shape and does not creep towards a distant shape. If the change
-    /// of shape shrinks by the factor q from half to half, the creep still to come is shape_drift q/(1 - q).
+    /// of shape shrinks by the factor q from one half of the sleep time to the next, the remaining creep is shape_drift
+    /// q/(1 - q).
     bool has_its_shape(bool goes_one_way) const {
         const Real now = state_.shape_drift[body_], before = state_.creep_before[body_];
         if (now <= limits::noise * bodies_.mean_edge[body_]) return true;

@@ -1,4 +1,4 @@
-// Measures for how long a body has been still, by the limits of the engine (docs/methods/skipping.md 3.1).
+// Measures for how long a body has been still, if the engine chooses the limits (docs/methods/skipping.md 3.1).
 #pragma once
 
 #include <span>
@@ -13,10 +13,11 @@ namespace own_sleep_limits {
 inline constexpr Real speed = 0.01;
 /// Limit of the drift, the displacement of a node in half of the sleep time, as a fraction of the mean edge.
 inline constexpr Real drift = 3e-3;
-/// Limit of the drift relative to the drift in the half before. Bodies that begin to slide, fall or buckle exceed it.
+/// Limit of the drift relative to the drift in the previous half of the sleep time. Bodies that begin to slide, fall or
+/// buckle exceed it.
 inline constexpr Real growth = 2;
-/// Noise level of displacements, as a fraction of the mean edge. Limits of growth, steady motion and shape do not apply
-/// below it.
+/// Noise level of displacements, as a fraction of the mean edge. The limits of growing drift, steady motion and change
+/// of shape do not apply below this level.
 inline constexpr Real noise = 2e-5;
 /// Largest imbalance of the forces on a node, as a fraction of its weight. Damping forces are not counted.
 inline constexpr Real imbalance = 1e-3;
@@ -30,8 +31,8 @@ inline constexpr Real creep = 3e-3;
 inline constexpr int looks = 8;
 }  // namespace own_sleep_limits
 
-/// Greatest distance between corresponding points of two lists, after the rigid motion that minimises the sum of
-/// squared distances [m]. Zero for fewer than two points.
+/// Greatest distance between corresponding points of two lists. Before the comparison one list is moved by the rigid
+/// motion that minimises the sum of squared distances [m]. Zero for fewer than two points.
 Real shape_distance(std::span<const Vec3> points, std::span<const Vec3> others);
 
 /// Adds `h` to the time for which a body has been still. Resets this time to zero if the body is not still, and to half

@@ -12,11 +12,11 @@ namespace skerry {
 
 namespace {
 
-// Block size for moving bodies; a still body takes some microseconds.
+// Number of bodies per job if the bodies move; a still body takes some microseconds.
 constexpr std::size_t watched_per_block = 64;
 
-/// Joins touching bodies and bodies connected by joints into groups. Marks bodies that touch a moving collider as
-/// restless.
+/// Joins touching bodies and bodies connected by joints into groups. Marks bodies that touch a moving collider in
+/// `restless`.
 void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMemory& memory) {
     for (std::size_t c = 0; c < touches.state.size(); ++c) {
         if (touches.state[c] == ContactState::open) continue;
@@ -35,7 +35,7 @@ void join_touching(const TouchInputs& touches, const RestInputs& bodies, SleepMe
 
 void stop_rigid(const RestInputs& bodies, std::size_t r, const RestOutputs& state, TakenByRest& taken) {
     const Vec3 turn = spin_of(bodies.rigid_rotation[r], bodies.rigid_moments[r], state.angular_momentum[r]);
-    if (!bodies.held(static_cast<Index>(r))) {  // an attachment causes the motion of a held body
+    if (!bodies.held(static_cast<Index>(r))) {  // a held body moves with its attachment, so its energy does not count
         taken.energy +=
             (state.momentum[r].squaredNorm() / bodies.rigid_mass[r] + state.angular_momentum[r].dot(turn)) / 2;
         taken.momentum += state.momentum[r];
@@ -88,7 +88,7 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time) {
-    // Early exit, because the update of positions waits for this function.
+    // The function returns early because the update of positions waits for it.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {

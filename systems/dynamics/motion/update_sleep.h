@@ -24,8 +24,8 @@ namespace skerry {
 
 struct SleepSettings {
     Real speed = 0;           // speed limit: a body is still while all of its nodes are slower [m/s]
-    bool own_limits = false;  // true: own_sleep_limits replace `speed` (stillness.h)
-    Real time = 0.5;          // time for which a body and all that it touches must be still [s]
+    bool own_limits = false;  // true: the engine uses own_sleep_limits (stillness.h) instead of `speed`
+    Real time = 0.5;          // time for which a body and all bodies that it touches must be still [s]
     Real gravity = 0;         // [m/s^2]
 
     bool on() const { return speed > 0 || (own_limits && gravity > 0); }
@@ -50,10 +50,10 @@ struct TouchInputs {
     }
 };
 
-/// Contacts of this step before the solve.
+/// Inputs of the wake-up test: contacts of this step before the solve.
 struct PressInputs {
     std::span<const Index> first_body, second_body;
-    std::span<const Vec3> warm_impulse;    // impulses of earlier steps; empty: none are stored [N s]
+    std::span<const Vec3> warm_impulse;    // impulses of earlier steps; empty if none are stored [N s]
     std::span<const std::uint8_t> asleep;  // by body
 
     static PressInputs bind(const Binder& binder, const ContactTable& contact, const BodyTable& body,
@@ -66,8 +66,8 @@ struct PressInputs {
 };
 
 /// Marks both bodies of every contact with a stored impulse from earlier steps. For sleeping bodies this is the impulse
-/// from the time when they fell asleep, because the present solve leaves out their weight. If no impulses are stored,
-/// every contact counts.
+/// from the time when they fell asleep, because the present solve does not include the weight of sleeping bodies. If no
+/// impulses are stored, every contact counts.
 void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed);
 
 /// Wakes a body if it is marked in `pressed`, if a contact of this step has an impulse or an overlap, if a joint
@@ -92,13 +92,13 @@ struct RestInputs {
     std::span<const Real> mass;              // by node [kg]
     std::span<const Real> inverse_mass;      // by node [1/kg]
     // Columns of BodyTable and RigidBodyTable:
-    std::span<const Range> body_rigid = {};     // empty: no body is rigid
+    std::span<const Range> body_rigid = {};     // empty if no body is rigid
     std::span<const Range> body_implicit = {};  // rows of ImplicitNodeTable
     std::span<const Index> rigid_body = {};
     std::span<const Real> rigid_mass = {};
     std::span<const Vec3> rigid_moments = {};
     std::span<const Mat3> rigid_rotation = {};
-    std::span<const Index> rigid_holder = {};  // empty: no body is held
+    std::span<const Index> rigid_holder = {};  // empty if no body is held
     std::span<const Index> body_core_nodes = {};
 
     static RestInputs bind(const Binder& binder, const AttachmentTable& attachment, const BodyTable& body,
@@ -126,7 +126,8 @@ struct RestInputs {
                 .body_core_nodes = binder.read(body.core_nodes)};
     }
 
-    /// Nodes that show whether the body moves. Nodes that only draw a round body may lag behind and are left out.
+    /// Nodes that show whether the body moves. Nodes of a round body that are only drawn may be out of date and are
+    /// left out.
     Range telling_nodes(std::size_t b) const {
         return body_core_nodes.empty() ? nodes[b] : step_nodes_of(nodes[b], body_core_nodes[b]);
     }
@@ -175,14 +176,14 @@ struct TakenByRest {
 };
 
 struct SleepMemory {
-    UnionFind touching;             // groups of touching bodies
+    UnionFind touching;             // sets of bodies that touch each other
     Column<std::uint8_t> restless;  // by body
 };
 
 /// Counts the time for which each body has been still. Puts a body to sleep if it and all bodies that it touches,
-/// directly or through other bodies, have been still long enough: their velocities become zero. A body that touches a
-/// moving collider or is held by a moving attachment stays awake. Parallel over bodies; sequential over contacts once a
-/// body has been still long enough.
+/// directly or through other bodies, have been still long enough. The velocities of these bodies become zero. A body
+/// that touches a moving collider or is held by a moving attachment stays awake. Parallel over bodies; sequential over
+/// contacts once a body has been still long enough.
 TakenByRest rest_bodies(Executor& executor, const TouchInputs& touches, const RestInputs& bodies,
                         const SleepSettings& settings, Real h, SleepMemory& memory, const RestOutputs& state);
 

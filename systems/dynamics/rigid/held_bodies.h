@@ -17,7 +17,7 @@ struct RigidHolds {
     std::span<const Index> holder;        // RigidBodyTable
     std::span<const Vec3> held_position;  // RigidBodyTable
     std::span<const Mat3> held_rotation;  // RigidBodyTable
-    std::span<const RigidMotion> motion;  // AttachmentTable; motion in this step
+    std::span<const RigidMotion> motion;  // column of AttachmentTable: motion of the attachment in this step
 
     static RigidHolds bind(const Binder& binder, const RigidBodyTable& rigid, const AttachmentTable& attachment) {
         return {.holder = binder.read(rigid.holder),
@@ -30,8 +30,8 @@ struct RigidHolds {
     const RigidMotion& motion_of(std::size_t r) const { return motion[static_cast<std::size_t>(holder[r])]; }
 };
 
-/// Pose of a held body at the end of the step. It agrees with the positions to which drive_nodes moves the body's
-/// nodes.
+/// Pose of a held body at the end of the step. The nodes of the body have the same pose, because drive_nodes moves them
+/// there.
 struct HeldPose {
     Vec3 center;
     Mat3 rotation;  // rotation from the principal frame to the world

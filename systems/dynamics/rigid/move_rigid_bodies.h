@@ -23,8 +23,8 @@ struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Index> body_core_nodes;     // BodyTable; empty: all nodes of round bodies take part in the step
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty: no body is asleep
+    std::span<const Index> body_core_nodes;     // BodyTable; empty if all nodes of round bodies take part in the step
+    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty if no body is asleep
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
     std::span<const Mat3> axes, rotation;
@@ -33,8 +33,8 @@ struct RigidBodies {
     std::span<const Real> inverse_mass;   // by node [1/kg]
     std::span<const Index> holder;        // row of AttachmentTable, or no_index if no attachment holds the body
 
-    /// `forced`: true if the world has force elements. Then all nodes take part in the step, also those that only draw
-    /// round bodies.
+    /// `forced`: true if the world has force elements. Then all nodes take part in the step, including nodes of round
+    /// bodies that are only drawn.
     static RigidBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,
                             const NodeTable& node, const bool& any_asleep, const bool& forced) {
         return {.body = binder.read(rigid.body),
@@ -60,15 +60,15 @@ struct RigidBodies {
         return !body_asleep.empty() && body_asleep[static_cast<std::size_t>(body[r])] != 0;
     }
     Range nodes(std::size_t r) const { return body_nodes[static_cast<std::size_t>(body[r])]; }
-    /// Nodes that need velocities before the step is committed. Nodes that only draw a round body are left out.
+    /// Nodes that need velocities before the step is committed. Nodes of a round body that are only drawn are left out.
     Range step_nodes(std::size_t r) const {
         return body_core_nodes.empty() ? nodes(r)
                                        : step_nodes_of(nodes(r), body_core_nodes[static_cast<std::size_t>(body[r])]);
     }
     /// Rows of ImplicitNodeTable.
     Range implicit(std::size_t r) const { return body_implicit[static_cast<std::size_t>(body[r])]; }
-    /// True if row `r` is the frame of an implicit body that an attachment holds. The nodes of such a body carry all of
-    /// its momentum.
+    /// True if row `r` is the frame of an implicit body that an attachment holds. All momentum of such a body is in the
+    /// velocities of its nodes.
     bool is_led_frame(std::size_t r) const { return holder[r] != no_index && implicit(r).size() > 0; }
 };
 
@@ -78,7 +78,7 @@ struct ElasticMotion {
     // Columns of RigidBodyTable, used only for implicit bodies:
     std::span<const std::uint8_t> large;
     std::span<const Vec3> moments;
-    std::span<const Mat3> axes, rotation;  // `rotation` excludes the rotation of this step
+    std::span<const Mat3> axes, rotation;  // value of `rotation` before the rotation of this step
 
     static ElasticMotion bind(const Binder& binder, const ImplicitNodeTable& implicit, const RigidBodyTable& rigid) {
         return {.displacement = binder.read(implicit.displacement_next),
@@ -92,7 +92,7 @@ struct ElasticMotion {
 
 struct RigidForces {
     Vec3 gravity;                    // [m/s^2]
-    std::span<const Vec3> load;      // applied force by node; empty if there is none [N]
+    std::span<const Vec3> load;      // applied force by node; empty if there are no applied forces [N]
     std::span<const Vec3> position;  // by node [m]
 
     /// `forced`: true if the world has force elements.
@@ -121,15 +121,15 @@ struct RigidKicks {
     }
 };
 
-/// Computes the impulse and moment of gravity and loads on each body, and the node velocities with these impulses, from
-/// which contacts start. Gravity and loads act for the time `kick`, on the frames of implicit bodies for the whole step
-/// `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; the
-/// velocities of its nodes are already set. The frame of a held implicit body has no momentum and no degrees of
-/// freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Computes the impulse and moment of gravity and loads on each body. Also computes the node velocities with these
+/// impulses, which are the start values for contacts. Gravity and loads act for the time `kick`, but on the frames of
+/// implicit bodies for the complete step `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that
+/// moves it with its attachment; the velocities of its nodes are already set. The frame of a held implicit body has no
+/// momentum and no degrees of freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 
-/// Impulses of forces and contacts on rigid bodies in this step, and the velocities that push overlaps out.
+/// Impulses of forces and contacts on rigid bodies in this step, and the velocities that push bodies out of overlaps.
 struct RigidImpulses {
     std::span<const Vec3> kick, moment_kick, contact_impulse, contact_moment, push_velocity, push_spin;
 
@@ -146,7 +146,8 @@ struct RigidImpulses {
 struct RigidTurns {
     std::span<Vec3> center_next;
     std::span<Mat3> rotation_next;
-    std::span<Vec3> velocity_next;  // by node: straight motion to the end position, with push-out [m/s]
+    // For each node: constant velocity that leads to the end position, including push-out [m/s]
+    std::span<Vec3> velocity_next;
 
     static RigidTurns bind(const Binder& binder, RigidBodyTable& rigid, NodeTable& node) {
         return {.center_next = binder.write(rigid.center_next),
@@ -155,7 +156,7 @@ struct RigidTurns {
     }
 };
 
-/// Computes the poses of the bodies at the end of the step, and the node velocities that lead there on straight paths.
+/// Computes the poses of the bodies at the end of the step, and the constant node velocities that lead to these poses.
 /// Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool turn_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidImpulses& impulses, const ElasticMotion& elastic, std::span<const Vec3> position,
@@ -184,14 +185,14 @@ struct RigidMoves {
 };
 
 /// Commits the step: awake bodies and their nodes get the poses `center_next` and `rotation_next` and the momenta at
-/// the end of the step. With `draws_late` only step_nodes() of round bodies move; draw_round_bodies moves the other
-/// nodes later. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// the end of the step. With `draws_late` only the nodes step_nodes() of round bodies move; draw_round_bodies moves the
+/// other nodes later. Parallel over bodies. Returns false if there is no rigid body (skipped).
 bool move_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidImpulses& impulses,
                        const ElasticMotion& elastic, std::span<const Vec3> center_next,
                        std::span<const Mat3> rotation_next, bool draws_late, const RigidMoves& out);
 
-/// Moves the nodes that only draw round bodies to the present poses of these bodies. With `resting` also moves such
-/// nodes of sleeping bodies. Parallel over bodies.
+/// Moves the nodes of round bodies that are only drawn to the present poses of these bodies. With `resting` also moves
+/// such nodes of sleeping bodies. Parallel over bodies.
 void draw_round_bodies(Executor& executor, const RigidBodies& bodies, bool resting, std::span<Vec3> position,
                        std::span<Vec3> velocity);
 

@@ -1,8 +1,8 @@
 // Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K. The nonzero
-// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and
-// L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term becomes a
-// closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). To test for a given c is cheaper:
-// lambda_max(A) < c if c - A is positive definite.
+// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and L
+// L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term contributes a
+// closed-form term to A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test for a given limit c is that
+// lambda_max(A) < c if c I - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>
@@ -13,15 +13,15 @@ namespace skerry {
 
 namespace {
 
-/// Symmetric 9x9 matrix without the entries above the diagonal. It acts on 3x3 matrices Y: row 3 p + i belongs to
-/// component i of column p of Y.
+/// Symmetric 9x9 matrix, stored without the entries above the diagonal. It acts on 3x3 matrices Y: row 3 p + i belongs
+/// to component i of column p of Y.
 template <class T>
 struct Matrix9 {
     T a[9][9];
 };
 
-/// Selects the part `part` of the lanes, as many as a register holds. 9x9 matrices of more lanes would go through
-/// memory twice.
+/// Selects the part number `part` of the lanes, as many lanes as a register contains. 9x9 matrices of more lanes would
+/// go through memory twice.
 [[gnu::always_inline]] inline KernelReal lanes_in(const Real8& x, std::size_t part) {
     Lanes<Real, element_lanes> all;
     store(x, all);
@@ -61,7 +61,7 @@ class StiffnessTerms {
 public:
     StiffnessTerms(const LaneMat3<T>& L, Matrix9<T>& A) : L_(L), A_(A) { A_ = {}; }
 
-    /// Adds s times the identity to H. Block (p, q) of A grows by s (L^T L)_pq I.
+    /// Adds s times the identity to H. Block (p, q) of the 9x9 matrix A grows by s (L^T L)_pq I.
     void add_identity(const T& s) {
         const LaneVec3<T> c[3] = {L_.c0, L_.c1, L_.c2};
         for (int p = 0; p < 3; ++p) {
@@ -72,7 +72,8 @@ public:
         }
     }
 
-    /// Adds s times the dyad X X^T to H, with the matrix X as a vector of nine. A grows by s times the dyad of X L.
+    /// Adds s times the dyad X X^T to H, with the matrix X as a vector of nine entries. The 9x9 matrix A grows by s
+    /// times the dyad of X L.
     template <class Matrix>
     void add_dyad(const T& s, const Matrix& X) {
         const LaneMat3<T> XL = multiply(X, L_);
@@ -81,7 +82,8 @@ public:
             for (int c = 0; c <= r; ++c) A_.a[r][c] += s * x[r] * x[c];
     }
 
-    /// Adds the map X -> s R X^T R to H. Block (p, q) of A grows by s times the dyad of columns q and p of R L.
+    /// Adds the map X -> s R X^T R to H. Block (p, q) of the 9x9 matrix A grows by s times the dyad of columns q and p
+    /// of R L.
     template <class Matrix>
     void add_turned_transpose(const T& s, const Matrix& R) {
         const LaneMat3<T> RL = multiply(R, L_);
@@ -93,7 +95,7 @@ public:
     }
 
     /// Adds s d(cof F)/dF to H. Let e_m be column m of F cof(L), and [e]x the matrix of the cross product with e. Block
-    /// (p, q) of A changes by -s [e_m]x for (p, q, m) cyclic, and by s [e_m]x for (q, p, m) cyclic.
+    /// (p, q) of the 9x9 matrix A changes by -s [e_m]x for (p, q, m) cyclic, and by s [e_m]x for (q, p, m) cyclic.
     void add_cofactor_slope(const T& s, const LaneMat3<T>& F) {
         const LaneMat3<T> E = multiply(F, cofactor(L_));
         const LaneVec3<T> e[3] = {E.c0, E.c1, E.c2};
@@ -116,9 +118,10 @@ private:
     Matrix9<T>& A_;
 };
 
-/// Adds H = dP/dF of the viscous parts, whose stress is P = F S. This H maps X to F (2 mu sym(F^T X) + (lambda + bulk)
-/// tr(F^T X) I) + X S. F F^T and S are replaced by upper bounds on their eigenvalues. The bound for F F^T is the mean
-/// eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is the deviator of F^T F.
+/// Adds H = dP/dF of the viscous parts of the stress. Their stress is P = F S, with the second Piola-Kirchhoff stress
+/// S. This H maps X to F (2 mu sym(F^T X) + (lambda + bulk) tr(F^T X) I) + X S. F F^T and S are replaced by upper
+/// bounds on their eigenvalues. The bound for F F^T is the mean eigenvalue of F^T F plus 2 sqrt(|D|^2 / 6), where D is
+/// the deviator of F^T F.
 template <class T>
 void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const LaneMat3<T>& F, StiffnessTerms<T>& H) {
     const ViscousModuli& moduli = viscous.moduli;
@@ -135,9 +138,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the mass b (R:X)^2 of an element, where X = Y L^T is the displacement gradient. A becomes D A D with
-/// D = (1 + b s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine. The mass of Y was |Y|^2 before, and
-/// R:X = (R L):Y.
+/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. A becomes D A
+/// D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine entries. The mass of Y was |Y|^2
+/// before, and R:X = (R L):Y.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);
@@ -156,8 +159,9 @@ void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>
         for (int k = 0; k <= r; ++k) A.a[r][k] += twice * s[r] * s[k] - c * (s[r] * u[k] + u[r] * s[k]);
 }
 
-/// For each lane of this part: true if all eigenvalues of volume * A are below `limit`. The test is whether limit -
-/// volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding. It ends early if no lane passes.
+/// For each lane of this part: true if all eigenvalues of volume * A are below `limit`. The test is whether limit I -
+/// volume * A has a Cholesky decomposition L D L^T with D > 0, by more than rounding errors. It ends early if no lane
+/// passes.
 template <class T>
 auto is_below(const Matrix9<T>& A, const T& volume, const T& limit) {
     const T rounding = 1e-12 * limit;
@@ -223,8 +227,8 @@ LaneMat3<KernelReal> everywhere(const Mat3& m) {
 using BlockMatrices = std::array<Matrix9<KernelReal>, kernel_parts>;
 using BlockReals = std::array<KernelReal, kernel_parts>;
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high`. The bound
-/// is close to `low` for an eigenvalue below `low`. Every lane is bisected by itself, so that the register width
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, by bisection between `low` and `high`. For an
+/// eigenvalue below `low` the bound is close to `low`. Every lane is bisected by itself, so that the register width
 /// changes no bit.
 BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals low, BlockReals high, int halvings) {
     for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -237,8 +241,8 @@ BlockReals bisected(const BlockMatrices& A, const BlockReals& volume, BlockReals
     return high;
 }
 
-/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that some lanes are above `enough`,
-/// probably by little. The greatest of these bounds is at most 0.3 % too large.
+/// Upper bounds on the largest eigenvalue of volume * A in each lane, for the case that the eigenvalue exceeds `enough`
+/// in some lanes, probably by little. The greatest of these bounds is at most 0.3 % too large.
 BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     const auto all_below = [&](Real limit) {
         for (std::size_t part = 0; part < kernel_parts; ++part)
@@ -263,7 +267,7 @@ BlockReals bisected_bound(const BlockMatrices& A, const BlockReals& volume, Real
 }
 
 /// Upper bound on the largest eigenvalue of volume * A in each lane: the least of the limits enough, 1.1 enough, 1.21
-/// enough ... that is above the eigenvalue. The bound is infinite if no limit is.
+/// enough ... that is above the eigenvalue. The bound is infinite if all limits are below the eigenvalue.
 BlockReals stepped_bound(const BlockMatrices& A, const BlockReals& volume, Real enough) {
     constexpr Real growth = 1.1;
     constexpr int steps = 25;

@@ -9,11 +9,12 @@
 
 namespace skerry {
 
-/// Viscous stiffness of an element in addition to the stiffness of its law. Zero moduli mean no viscous stiffness.
+/// Viscous stiffness of an element in addition to the stiffness of its material law. Zero moduli mean no viscous
+/// stiffness.
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // fractions of the moduli that count
+    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // fractions of the moduli that count in a step
 };
 
 /// Mass b (R:X)^2 of an element in addition to its other mass (frame_masses.h). R is `rotation`, X the gradient of
@@ -25,18 +26,19 @@ struct FramePart {
 
 /// Accuracy of frequency_squared_bound().
 enum class Sharpness {
-    trace,     // bound is at most 15 % too large
-    bisected,  // bound is at most 0.3 % too large; takes twice the time
-    compared,  // bound is infinite unless all eight lanes are below `enough`
+    trace,     // the bound is at most 15 % too large
+    bisected,  // the bound is at most 0.3 % too large, but takes twice the time
+    compared,  // the bound is infinite unless the eigenvalues of all eight lanes are below `enough`
     // The bound is one of `enough`, 1.1 `enough`, 1.21 `enough` ... and at most 10 % too large. It is infinite beyond
     // ten times `enough`.
     stepped
 };
 /// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]. The stiffness is K
-/// = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M holds the mass shares m_a of the corners a,
-/// and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the elements have that additional mass. `q` is
-/// the initial guess of the corotational frame of a law that has one, and receives the frame found. Lanes without
-/// volume get 0. If all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.
+/// = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of the mass shares
+/// m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the elements have that
+/// additional mass. If the material law has a corotational frame, `q` is the initial guess of the frame and receives
+/// the frame found. Lanes without volume get 0. If all eight lanes are below `enough` [1/s^2], all lanes get `enough`
+/// instead, in a tenth of the time.
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,
                               Sharpness sharpness = Sharpness::trace, const FramePart* frame = nullptr);

@@ -56,9 +56,9 @@ Vec3 middle_of(const BlockNodes& nodes, std::size_t lane, std::span<const Vec3> 
     return sum / count;
 }
 
-/// Maps a place, in units of the element size, to a number from 0 to 1. The fractional parts of multiples of these
-/// three constants fill an interval evenly, along a row of elements as well as in a cloud of elements. The constants
-/// are inverse powers of the root of x^4 = x + 1 (Roberts 2018).
+/// Maps the position of an element, in units of the element size, to a number from 0 to 1. The fractional parts of
+/// multiples of these three constants fill an interval evenly, along a row of elements as well as in a cloud of
+/// elements. The constants are inverse powers of the root of x^4 = x + 1 (Roberts 2018).
 Real share_of_place(const Vec3& place) {
     const Real sum = 0.8191725133961645 * place.x() + 0.6710436067037893 * place.y() + 0.5497004779019703 * place.z();
     return sum + 0.38196601125 - std::floor(sum + 0.38196601125);

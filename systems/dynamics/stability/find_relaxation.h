@@ -10,7 +10,7 @@ namespace skerry {
 
 /// Estimate of the lowest frequency at which a free body of this size and shape vibrates [1/s]. The estimate is the
 /// frequency of a beam with the length and the least thickness of the body (from radii of gyration), but at most the
-/// frequency of a ball. `speed`: sqrt(E / rho) [m/s].
+/// frequency of a ball. `speed`: speed of sound sqrt(E / rho) [m/s].
 Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const Real> mass, Real speed);
 
 /// Values that find_relaxation writes for each block of the body.
@@ -22,10 +22,10 @@ struct RelaxationOutputs {
 
 /// Assigns to every element of a body one rate at which its stress relaxes. The rates are spread evenly on a
 /// logarithmic scale. They range from `highest`, the highest frequency of the body, to a twentieth of `lowest`, an
-/// estimate of the lowest frequency [1/s]. The ratio of both ends is limited to 100 to 10,000. Neighbours differ, and
-/// any region of more than a few elements has all rates (coarse-grained memory variables, Day and Bradley 2001). The
-/// rate depends only on the place of an element in the rest shape, not on the order of nodes and elements.
-/// `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
+/// estimate of the lowest frequency [1/s]. The ratio of the highest to the lowest rate is limited to 100 to 10,000.
+/// Neighbours differ, and any region of more than a few elements has all rates (coarse-grained memory variables, Day
+/// and Bradley 2001). The rate depends only on the position of an element in the rest shape, not on the order of nodes
+/// and elements. `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
 void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> rest_position,
                      std::span<const Vec3> position, std::span<const Real> mass, std::span<const Real> stiffness_sum,
                      Real lowest, Real highest, const RelaxationOutputs& out);

@@ -1,8 +1,8 @@
-// H = 2 mu 1 + lambda 1 1^T is an upper bound on dP/dF of the material law at rest. This bound gives stiffness to
-// rotations, the law does not. Since the highest modes of a mesh rotate little, the highest frequency with H is within
-// some per cent of the highest frequency of the body. Each element takes the mass K_e / c, where K_e is its stiffness
-// with H. These masses add up to no more than the masses of the nodes if c is above the highest eigenvalue of the whole
-// body.
+// Finds masses of elements from H = 2 mu 1 + lambda 1 1^T, an upper bound on dP/dF of the material law at rest. This
+// bound gives stiffness to rotations, the law does not. Since the highest modes of a mesh rotate little, the highest
+// frequency with H is within some per cent of the highest frequency of the body. Each element gets the mass K_e / c,
+// where K_e is its stiffness with H. These masses add up to no more than the masses of the nodes if c is above the
+// highest eigenvalue of the complete body.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>
@@ -22,16 +22,16 @@ namespace skerry {
 
 namespace {
 
-// Estimated ratio of the step with frame masses to the step that bounds of single elements allow.
+// Estimated ratio of the step with frame masses to the step that the bounds of single elements allow.
 constexpr Real longer_in_frame = 2;
 
-// The sum is written out, so that the bits do not depend on how a library vectorises it.
+// The sum is written out term by term, so that the bits do not depend on how a library vectorises it.
 Real product_of(const auto& a, const auto& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /// Matrix M^-1/2 K M^-1/2 of a body at rest, with the mass M and the stiffness K for H = 2 mu 1 + lambda 1 1^T. Row 3 n
-/// + i belongs to component i of node n, where nodes are numbered along the body.
+/// + i belongs to component i of node n, where nodes are numbered by position along the longest side of the body.
 class RestStiffness {
 public:
     RestStiffness(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -114,8 +114,8 @@ public:
     }
 
 private:
-    /// Rest volume [m^3], and moduli times volume [Pa m^3], of the elements of a block. Elements that take no mass have
-    /// 0.
+    /// Rest volume [m^3], and moduli times volume [Pa m^3], of the elements of a block. Elements without a mass share
+    /// have 0.
     struct Weights {
         ElementLane volume, shear, volumetric;
     };
@@ -131,7 +131,7 @@ private:
         }
     };
 
-    /// Adds to three zero rows the entries of the node at position `place` along the body. Each row begins at its
+    /// Adds to three zero rows the entries of the node with number `place` along the body. Each row begins at its
     /// diagonal.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
@@ -164,7 +164,7 @@ private:
         const Weights& of_block = weights_[block - static_cast<std::size_t>(blocks_.begin)];
         return {nodes, lane, nodes.count, first_node_, of_block.shear[lane], of_block.volumetric[lane]};
     }
-    /// Calls visit(element, block) for each element that takes mass.
+    /// Calls visit(element, block) for each element with a mass share.
     void for_each_element(auto&& visit) const {
         for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -185,8 +185,8 @@ private:
         }
     }
 
-    /// Numbers the nodes along the body. Finds the bandwidth: the greatest difference between the numbers of two nodes
-    /// of one element, plus 1.
+    /// Numbers the nodes by position along the body. Finds the bandwidth: the greatest difference between the numbers
+    /// of two nodes of one element, plus 1.
     void number(std::span<const Vec3> position) {
         std::vector<char> seen(position.size(), 0);
         std::vector<Index> nodes;
@@ -214,15 +214,15 @@ private:
         });
     }
 
-    /// Data for products of the matrix with a vector, one element after the other. Only elements that take mass are
+    /// Data for products of the matrix with a vector, one element after the other. Only elements with a mass share are
     /// included.
     struct Factors {
         struct Element {
             Real shear, volumetric;
-            std::size_t end;  // end of the element's range in `corner`
+            std::size_t end;  // end of the range of the element's corners in `corner`
         };
         struct Corner {
-            Real4 gradient;  // gradient over the root of the node's mass, then a zero
+            Real4 gradient;  // gradient over the square root of the node's mass; a zero pads the register
             std::size_t node;
         };
         std::vector<Element> element;
@@ -282,7 +282,7 @@ private:
     Range blocks_;
     RestModuli moduli_;
     Index first_node_ = 0;
-    // Inverse root of the mass by node, from the first node of the body [1/sqrt(kg)].
+    // Inverse square root of the mass by node, beginning with the first node of the body [1/sqrt(kg)].
     std::vector<Real> root_;
     std::vector<std::size_t> place_;
     std::size_t nodes_ = 0, width_ = 0;

@@ -10,10 +10,10 @@
 
 namespace skerry {
 
-/// Greatest squared length of `count` vectors minus `origin`. component(3 n + i) is component i of vector n. The result
-/// is infinite or NaN as soon as one squared length is. Bit patterns of squares have the same order as the squares,
-/// with non-finite values on top, so they are compared as integers. Integers can be compared in any order and in the
-/// lanes of a register; comparisons of floating-point numbers would have to wait for each other.
+/// Greatest squared length of the differences of `count` vectors from `origin`. component(3 n + i) is component i of
+/// vector n. The result is infinite or NaN if one of the squared lengths is. The bit patterns of squares have the same
+/// order as the squares, with non-finite values on top, so they are compared as integers. Integers can be compared in
+/// any order and in the lanes of a register; comparisons of floating-point numbers would have to wait for each other.
 template <class Component>
 [[gnu::always_inline]] inline Real largest_squared_length(std::size_t count, Component&& component,
                                                           const Vec3& origin = Vec3::Zero()) {

@@ -1,10 +1,10 @@
-// Chooses the matrix Q of the mass form G Q^-1 G^T of each element. G holds the gradients of the element at rest, V is
-// its volume. For the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W G^T. This
-// stiffness has one number per node, the same for x, y and z. The coupled matrix of all elements is therefore a third
-// as wide as the true stiffness, and its eigenvalues are sharper than the worst case of each single element.
-// W = 2 mu 1 + lambda tr(Z) Z^-1, with Lame's mu and lambda, is an upper bound on dP/dF at rest for every positive
-// definite Z. A good Z is the root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find Z
-// and these modes together.
+// Chooses the matrix Q of the mass form G Q^-1 G^T of each element. G is the matrix of the gradients of the element at
+// rest, V is its volume. With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W
+// G^T. This stiffness has one number per node, the same for x, y and z. The coupled matrix of all elements is therefore
+// a third as wide as the true stiffness. Its eigenvalues are sharper bounds than the worst single element. W = 2 mu 1 +
+// lambda tr(Z) Z^-1, with Lame's mu and lambda, is an upper bound on dP/dF at rest for every positive definite Z. A
+// good Z is the square root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find Z and
+// these modes together.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Symmetric mean_of(const Symmetric& a, const Symmetric& b, Real part_of_b) {
 }
 
 /// Approximate square root of a positive definite matrix of trace 1 (Denman and Beavers 1976). Eigenvalues of the root
-/// below 0.03 come out too large.
+/// that should be below 0.03 come out too large.
 Symmetric root_of(const Symmetric& s) {
     constexpr int passes = 6;
     Symmetric root = s, inverse{Real8{} + 1.0, Real8{} + 1.0, Real8{} + 1.0, {}, {}, {}};
@@ -56,15 +56,16 @@ Real sum_of(const Real4& x) {
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
-// Estimated ratio of the step with mass forms to the step that bounds of single elements allow.
+// Estimated ratio of the step with mass forms to the step that the bounds of single elements allow.
 constexpr Real longer_by_forms = 1.5;
 
-/// Group of elements. The mass that a group has of its nodes is shared among the elements of this group alone.
+/// Group of elements. The group's share of the mass of its nodes is divided among the elements of this group alone.
 struct ElementGroup {
     Range blocks;
-    std::vector<Index> node{};     // nodes along the group, numbered from the first node of the body
-    std::size_t width = 0;         // bandwidth: greatest distance of two nodes of an element, plus 1
-    std::vector<Real> mass{};      // mass that the group has of each of its nodes [kg]
+    // Nodes in the order of their positions along the group; numbers begin at the first node of the body.
+    std::vector<Index> node{};
+    std::size_t width = 0;         // bandwidth: greatest difference of the numbers of two nodes of an element, plus 1
+    std::vector<Real> mass{};      // share of the group in the mass of each of its nodes [kg]
     std::vector<Real> diagonal{};  // diagonal of sum_e G V W G^T
     std::vector<Real4> vector{};   // approximate highest modes
     Real highest = 0;              // lower bound on the highest eigenvalue of the group [1/s^2]
@@ -94,11 +95,11 @@ public:
         place_.resize(count, no_index);
     }
 
-    /// Chooses Z, which form_ holds for now, and computes the weights V W from Z.
+    /// Chooses the matrices Z, stored in form_ until Q is known, and computes the weights V W from Z.
     void choose() {
         constexpr int rounds = 16, products = 5;
         constexpr Real noise_part = 0.3;  // noise added to the vectors in each round, to find missing modes
-        // Z starts as a multiple of the identity. The result is a mean over the rounds.
+        // Z starts as a multiple of the identity. The final Z is a mean over the rounds.
         for (ElementForm& of_block : form_)
             for (std::size_t i = 0; i < 6; ++i)
                 for (Real& lane : of_block[i].lane) lane = i < 3 ? Real{1} / 3 : 0;
@@ -110,7 +111,7 @@ public:
             for (int p = 0; p < products; ++p) {
                 std::ranges::fill(product_, Real4{});
                 add_product(blocks_);
-                Real size = 0;  // squared norm of all vectors; they are scaled to the norm of the noise
+                Real size = 0;  // squared norm of all vectors, which are then scaled to the norm of the noise
                 for (std::size_t n = 0; n < vector_.size(); ++n) {
                     vector_[n] = mass_[n] > 0 ? product_[n] / mass_[n] : Real4{};
                     size += mass_[n] * sum_of(vector_[n] * vector_[n]);
@@ -123,8 +124,8 @@ public:
         weigh();
     }
 
-    /// Upper bound on the squared highest frequency with the stiffness sum_e G V W G^T [1/s^2]. This stiffness, divided
-    /// by the bound, is at most the mass of the nodes.
+    /// Upper bound on the squared highest frequency with the stiffness sum_e G V W G^T [1/s^2]. The stiffness divided
+    /// by this bound is at most the mass of the nodes.
     Real bound() {
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
@@ -186,7 +187,7 @@ private:
                        weight_[i]);
         }
     }
-    /// Gradients of the iterated vectors in one element, by direction.
+    /// Gradients of the iterated vectors (estimates of the highest modes) in one element, by direction.
     std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
         std::array<Real4, 3> t{};
         for (Index k = 0; k < nodes.count; ++k) {
@@ -199,7 +200,7 @@ private:
     void add_product(Range blocks) {
         for_each_element(blocks, [&](std::size_t b, std::size_t l, const BlockNodes& nodes) {
             const ElementForm& w = weight_[b - first_block()];
-            if (w[0][l] == 0) return;  // an implicit element takes no mass
+            if (w[0][l] == 0) return;  // an implicit element gets no mass
             const std::array<Real4, 3> t = gradient_of_vectors(nodes, l);
             const Real4 x = w[0][l] * t[0] + w[3][l] * t[1] + w[5][l] * t[2];
             const Real4 y = w[3][l] * t[0] + w[1][l] * t[1] + w[4][l] * t[2];
@@ -210,10 +211,10 @@ private:
             }
         });
     }
-    /// Moves Z by the fraction `part` towards the square root of the sum of grad v grad v^T over the iterated vectors
-    /// v. Z and the root are scaled to trace 1.
+    /// Moves Z by the fraction `part` towards the square root of the sum of grad v grad v^T over the iterated vectors v
+    /// (estimates of the highest modes). Z and the square root are scaled to trace 1.
     void follow(Real part) {
-        constexpr Real even = 0.03;  // isotropic fraction of the target
+        constexpr Real even = 0.03;  // fraction of the isotropic part in the target
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const std::size_t b = first_block() + i;
             const BlockNodes nodes = elements_.nodes_of(b);
@@ -239,7 +240,7 @@ private:
         }
     }
 
-    /// Splits the elements into compact groups, as large as the allowed cost of decomposing the matrix of a group
+    /// Splits the elements into compact groups. A group is as large as the allowed cost of decomposing its matrix
     /// permits.
     void cut(Range blocks, std::vector<ElementGroup>& groups) {
         ElementGroup group{.blocks = blocks};
@@ -277,8 +278,8 @@ private:
         for (const Index n : group.node) place_[static_cast<std::size_t>(n)] = no_index;
     }
 
-    /// Shares the masses of nodes that several groups have in common. The shares are evened out like the mass shares of
-    /// elements (stable_step.h).
+    /// Divides the masses of nodes that several groups share. The parts are balanced like the mass shares of elements
+    /// (stable_step.h).
     void share(std::vector<ElementGroup>& groups) {
         constexpr int rounds = 4, products = 8;
         std::vector<Real> of_nodes(vector_.size()), share(groups.size(), 1);
@@ -318,8 +319,8 @@ private:
         });
         for (const Index n : group.node) group.diagonal.push_back(sum[static_cast<std::size_t>(n)]);
     }
-    /// Rayleigh quotient of the vectors of a group after some products with its matrix. It is a lower bound on the
-    /// highest eigenvalue of the group [1/s^2].
+    /// Rayleigh quotient of the iterated vectors of a group, after some products with the matrix of the group. It is a
+    /// lower bound on the highest eigenvalue of the group [1/s^2].
     Real highest_of(ElementGroup& group, int products) {
         Real highest = 0;
         for (int p = 0; p < products; ++p) {
@@ -346,7 +347,7 @@ private:
 
     /// Data of the matrix M^-1/2 (sum_e G V W G^T) M^-1/2 of a group.
     struct GroupMatrix {
-        std::vector<Real> scale;        // inverse root of the mass, by node along the group [1/sqrt(kg)]
+        std::vector<Real> scale;        // inverse square root of the mass, by node along the group [1/sqrt(kg)]
         Ragged<ElementCorner> corners;  // corners of elements at each node along the group
     };
     /// Collects the data of the matrix of a group, and numbers the nodes of the group.
@@ -390,7 +391,7 @@ private:
     std::vector<ElementForm> weight_;      // weights V W [Pa m^3]
     std::vector<Real4> vector_, product_;  // by node
     RestModuli moduli_;
-    std::vector<Index> place_;  // number of each node along its group
+    std::vector<Index> place_;  // number of each node in the order along its group
     BandDecomposition decomposition_;
 };
 

@@ -1,5 +1,5 @@
-// Finds mass forms: matrices by which elements take mass from their nodes, for the bound on the step. A mass form
-// couples the nodes of an element (docs/methods/stable_step.md 2.3).
+// Finds mass forms, which are matrices of the mass shares of elements, for the bound on the step. A mass form couples
+// the nodes of an element (docs/methods/stable_step.md 2.3).
 #pragma once
 
 #include <span>
@@ -8,21 +8,22 @@
 
 namespace skerry {
 
-/// Greatest number of multiplications for the decomposition of the matrix of a group. They take about 0.1 s, enough for
-/// some 15,000 tetrahedra of a block-shaped body.
+/// Limit on the number of multiplications for the decomposition of the matrix of a group. So many multiplications take
+/// about 0.1 s, enough for some 15,000 tetrahedra of a block-shaped body.
 inline constexpr Real products_of_group = 4e8;
 
-/// Diagonal of Q for an element that a cluster carries. This element takes no mass and bounds no step [1/(kg m^2)].
+/// Diagonal entries of Q for an element that a cluster carries. This element gets no mass and bounds no step [1/(kg
+/// m^2)].
 inline constexpr Real form_of_implicit = 1e-100;
 
-/// Finds the matrices Q of the explicit elements of a body. An element takes the mass form G Q^-1 G^T from its nodes,
-/// where row k of G is the gradient of node k. These forms add up to no more than the masses of the nodes: sum_e
-/// G Q^-1 G^T <= diag(mass). A Cholesky decomposition verifies this for the whole body. If it would cost more than
-/// `most_products` multiplications, groups of elements are verified one by one. The stiffness K and the mass M of the
-/// body then satisfy K <= max_e lambda_max(A) M with A = V H (Q x 1) and H = dP/dF, as for any other way to share the
-/// mass. The bound is sharp for the rest shape. The matrices do not depend on the shape and are valid for every shape.
-/// `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block; 0 if nothing was found
-/// [1/(kg m^2)]. Sequential, about 10 us per tetrahedron.
+/// Finds the matrices Q of the explicit elements of a body. An element gets the mass form G Q^-1 G^T from its nodes,
+/// where row k of G is the gradient of node k. These forms add up to no more than the masses of the nodes: sum_e G Q^-1
+/// G^T <= diag(mass). A Cholesky decomposition verifies this for the complete body. If the decomposition would cost
+/// more than `most_products` multiplications, groups of elements are verified one by one. The stiffness K and the mass
+/// M of the body then satisfy K <= max_e lambda_max(A) M with A = V H (Q x 1), the volume V and H = dP/dF, as for any
+/// other way to share the mass. The bound is sharp for the rest shape. The matrices do not depend on the shape and are
+/// valid for every shape. `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block;
+/// 0 if nothing was found [1/(kg m^2)]. Sequential, about 10 us per tetrahedron.
 void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, Real most_products, std::span<ElementForm> form);
 

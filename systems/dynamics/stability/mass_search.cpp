@@ -27,7 +27,8 @@ Real8 RestModuli::of_explicit(std::size_t block) const {
 }
 
 RestModuli::Moduli RestModuli::of(std::size_t block) const {
-    constexpr Real least = 1e-9;  // fraction of the greatest modulus, so that elements without stiffness take some mass
+    // Least shear modulus over the greatest modulus; even elements without stiffness get some mass.
+    constexpr Real least = 1e-9;
     const MaterialConstants material = elements_.material_of(block);
     Moduli moduli{Real8{} + std::max(2 * material.shear_modulus, least * stiffest_),
                   Real8{} + std::max(material.lame_lambda, Real{0})};
@@ -105,14 +106,14 @@ void BandDecomposition::take_from_two(const Pivots& of, std::size_t r) {
 bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
     const Real rounding = 1e-10 * limit;
     const std::size_t groups = matrix.size / matrix.group;
-    // The window holds whole groups, so that no group is split at the end of the window. A row begins up to a register
-    // before its diagonal, and ends up to `pivots - 1` numbers and a register after the band. The numbers in these
-    // margins are computed but not used.
+    // The window stores complete groups of rows, so that no group is split at the end of the window. A row begins up to
+    // a register length before its diagonal, and ends up to `pivots - 1` numbers and a register length after the band.
+    // The numbers in these margins are computed but not used.
     rows_ = ((matrix.width + 2 * pivots) / matrix.group + 2) * matrix.group;
     stride_ = (matrix.width + pivots + 3 * row_step) / row_step * row_step;
     window_.resize(rows_ * stride_);
     used_.resize(rows_);
-    std::size_t loaded = 0;  // number of groups in the window so far
+    std::size_t loaded = 0;  // number of row groups loaded so far
     for (std::size_t k = 0; k < matrix.size; k += pivots) {
         const std::size_t count = std::min(pivots, matrix.size - k);
         while (loaded < groups && loaded * matrix.group < k + pivots + matrix.width)
@@ -120,7 +121,7 @@ bool BandDecomposition::is_below(const BandMatrix& matrix, Real limit) {
         Pivots pivot{.first = k, .end = k + 1};
         for (std::size_t p = 0; p < count; ++p) {
             Real* const own = pivot.row[p] = row(k + p);
-            // subtract multiples of the earlier pivot rows
+            // subtract multiples of the earlier pivot rows from this pivot row
             for (std::size_t before = 0; before < p; ++before) {
                 const Real factor = pivot.factor(before, k + p);
                 const Real* const of = pivot.column(before, k + p);

@@ -1,4 +1,4 @@
-// Common parts of the searches for the masses that elements take from their nodes (mass_forms.h, frame_masses.h).
+// Common parts of the searches for the mass shares of elements (mass_forms.h, frame_masses.h).
 #pragma once
 
 #include <array>
@@ -26,12 +26,12 @@ inline LaneSymmetric<Real8> inverse_of(const LaneSymmetric<Real8>& s) {
 }
 
 /// Moduli of explicit elements at rest. Springs of Maxwell elements count with the stiffness that they have in steps of
-/// a certain length: `longer` times the step that bounds of single elements allow.
+/// a certain length: `longer` times the step that the bounds of single elements allow.
 class RestModuli {
 public:
     RestModuli(const ElementInputs& elements, Range blocks, Real longer);
 
-    /// 1 for explicit elements, 0 for implicit elements. An implicit element is carried by a cluster and takes no mass.
+    /// 1 for an explicit element; 0 for an implicit element, which belongs to a cluster and gets no mass share.
     Real8 of_explicit(std::size_t block) const;
 
     struct Moduli {
@@ -41,8 +41,9 @@ public:
 
 private:
     const ElementInputs& elements_;
-    Real stiffest_ = 0;       // greatest modulus [Pa]
-    Real relaxing_step_ = 0;  // step length for which springs of Maxwell elements count [s]
+    Real stiffest_ = 0;  // greatest modulus [Pa]
+    // Step length that determines the relaxed stiffness of the springs of Maxwell elements [s]
+    Real relaxing_step_ = 0;
 };
 
 /// Sorts nodes by position along the longest side of their bounding box.
@@ -54,8 +55,9 @@ struct ElementCorner {
     Index corner;
 };
 
-/// Lists the element corners at each of `places` nodes, in the order of elements. for_each_corner(visit) must call
-/// visit(place, corner) for all corners, in the order of elements.
+/// Lists the element corners at each node, in the order of elements. `places` is the number of nodes.
+/// for_each_corner(visit) must call visit(place, corner) for all corners, in the order of elements, with the number
+/// `place` of the node.
 inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corner) {
     Ragged<ElementCorner> corners;
     corners.offset.resize(places + 1);
@@ -70,26 +72,26 @@ inline Ragged<ElementCorner> corners_at(std::size_t places, auto&& for_each_corn
 }
 
 /// Symmetric band matrix: all entries outside a band around the diagonal are zero. A row is stored from the diagonal to
-/// the end of the band. Rows come in groups, which are computed when they are needed.
+/// the end of the band. Groups of rows are computed when they are needed.
 struct BandMatrix {
     std::size_t size;   // rows; whole groups
-    std::size_t width;  // numbers stored per row
+    std::size_t width;  // number of entries stored per row
     std::size_t group;  // number of rows per group
-    /// Adds the entries of the rows of a group to `rows`, which holds zeros. Each row begins `stride` numbers after the
-    /// row before.
+    /// Adds the entries of the rows of a group to `rows`, which contains zeros. Each row begins `stride` numbers after
+    /// the row before.
     FunctionRef<void(std::size_t of_group, Real* rows, std::size_t stride)> add_rows;
 };
 
-/// Tests if limit I - matrix has a Cholesky decomposition, by more than rounding, where I is the identity. Only rows
-/// that influence each other are stored, in a window that moves along the diagonal.
+/// Tests if limit I - matrix has a Cholesky decomposition, with pivots above rounding errors, where I is the identity.
+/// A window that moves along the diagonal stores only rows that influence each other.
 class BandDecomposition {
 public:
     bool is_below(const BandMatrix& matrix, Real limit);
 
 private:
-    // pivot rows used at once: each other row is loaded and stored once for all
+    // number of pivot rows used at once; every other row is loaded and stored once for all of them
     static constexpr std::size_t pivots = 4;
-    static constexpr std::size_t row_step = 8;  // numbers in the widest register
+    static constexpr std::size_t row_step = 8;  // number of entries in the widest register
 
     /// Consecutive pivot rows, beginning with row `first`. Each row begins at its diagonal.
     struct Pivots {
@@ -105,14 +107,15 @@ private:
         }
     };
     void load_group(const BandMatrix& matrix, std::size_t of_group, Real limit);
-    /// take() subtracts multiples of the pivot rows from row r. take_from_two() does so for rows r and r + 1, and loads
-    /// the pivot rows once.
+    /// take() subtracts multiples of the pivot rows from row r. take_from_two() does the same for rows r and r + 1, but
+    /// loads the pivot rows only once.
     void take(const Pivots& pivots_of, std::size_t r);
     void take_from_two(const Pivots& pivots_of, std::size_t r);
-    /// Pointer to the diagonal of row r. Each column has the same place within a register in all rows.
+    /// Pointer to the diagonal entry of row r. The entries of a column have the same position within a register in all
+    /// rows.
     Real* row(std::size_t r) { return &window_[(r % rows_) * stride_ + r % row_step]; }
 
-    std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and numbers per row
+    std::size_t rows_ = 0, stride_ = 0;  // number of rows in the window, and number of entries per row
     Column<Real> window_;
     std::vector<Real> rows_of_group_;
     std::vector<std::size_t> used_;  // number of used entries in each row of the window; zeros follow

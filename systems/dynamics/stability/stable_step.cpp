@@ -21,7 +21,7 @@ namespace skerry {
 
 namespace {
 
-/// Number of blocks whose stiffness is summed in one piece. This sum takes as long as the bound of one block.
+/// Number of blocks in one piece of the stiffness sum. This sum takes as long as the bound of one block.
 constexpr Index blocks_summed = 8;
 
 Index sums_of(Range blocks) {
@@ -33,15 +33,15 @@ Index sums_of(Range blocks) {
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
 /// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one wave of blocks.
-/// Waves hold 1, 1, 2, 4, 8... blocks, so that few bounds in a wave exceed all bounds of the waves before.
+/// Waves contain 1, 1, 2, 4, 8... blocks, so that few bounds in a wave exceed the greatest bound of the waves before.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
     Range blocks;
-    std::uint64_t end;  // one after the last piece
+    std::uint64_t end;  // number of the piece after the last one
 };
 
-/// Run of pieces that starts at `from` and ends at `until` or before.
+/// Run of pieces that starts at piece `from` and ends at piece `until` or before.
 PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t until) {
     const Index sums = sums_of(blocks);
     const auto place = static_cast<Index>(from);
@@ -61,7 +61,7 @@ PieceRun run_from(Range blocks, bool framed, std::uint64_t from, std::uint64_t u
         in_frame ? PieceWork::bound_in_frame : PieceWork::bound, bound == wave, {first, first + count}, from + count};
 }
 
-/// Does the work of the pieces of a stable-step check.
+/// Computes the pieces of a stable-step check.
 struct Pieces {
     const ElementInputs& elements;
     std::span<const Vec3> position;
@@ -98,8 +98,8 @@ struct Pieces {
     /// Calls visit(block, bound of omega^2 by lane) for each block. Bounds below `enough` [1/s^2] may be given as
     /// `enough`.
     void bound(Range blocks, Real enough, auto&& visit) const {
-        // The search for the frame of a corotational element starts from the same lane of the block before, since
-        // neighbours rotate alike.
+        // The search for the frame of a corotational element starts from the frame in the same lane of the block
+        // before, since neighbours rotate alike.
         LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
         for_each_block(blocks, [&](std::size_t b) {
             const LaneMat3<Real8> F = deformation_of(elements, b, position);
@@ -138,18 +138,18 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
-/// Limit on the bound with frame masses, as a multiple of the bound at rest. Below this limit the body is not bounded
-/// with mass forms and mass shares, because these are hardly sharper.
+/// Limit on the bound with frame masses, as a multiple of the bound at rest. Below this limit the bounds with mass
+/// forms and mass shares are not computed, because they are hardly sharper.
 constexpr Real well_in_frame = 1.25;
 
-/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) cuts the blocks of a wave into
-/// chunks and calls body(begin, end, StepLook of the chunk) for each.
+/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) divides the blocks of a wave into
+/// chunks and calls body(begin, end, StepLook of the chunk) for each chunk.
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
-    std::optional<Mat3> rotation;  // of the body; computed once for all waves of this call
+    std::optional<Mat3> rotation;  // rotation of the body; computed once for all waves of this call
     while (look.piece < until) {
         const PieceRun run = run_from(blocks, at_rest > 0, look.piece, until);
         if (run.opens_wave) look.known = greatest_of(look, run).bound;
@@ -193,7 +193,8 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
 
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
-    // `least`: blocks of a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on the stack.
+    // `least`: number of blocks in a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on
+    // the stack.
     constexpr Index least = 8, most_chunks = 64;
     const auto in_chunks = [&](const PieceRun& run, auto&& body) {
         const Index count = run.blocks.size();
@@ -225,7 +226,7 @@ StableStep result_of(const StepLook& look) {
     StableStep found{infinity, no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
-    // If the body was bounded in both ways, both bounds are valid and the longer step is taken.
+    // If both bounds of the body were computed, both are valid and the longer step is taken.
     const Real step = step_of(look.in_frame);
     if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;
@@ -271,7 +272,8 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;
-    constexpr Real least = 1e-3;  // least factor on a share per round, so that all elements keep some mass
+    // Least factor by which a mass share changes in a round, so that all elements keep some mass.
+    constexpr Real least = 1e-3;
     std::vector<ElementLane> step(mass_share.size());
     for (int round = 0; round < rounds; ++round) {
         element_steps(elements, blocks, position, mass, stiffness_sum, step);

@@ -20,10 +20,10 @@ struct StableStep {
 
 /// Stable step of one body in its present shape. The mass of each node is shared among its elements: by frame_masses.h
 /// or mass_forms.h if the body has such masses, else in proportion to the stiffness of the elements and their
-/// mass_share. With the stiffness K_e and the mass M_e of element e, omega_max^2 <= max_e
-/// lambda_max(M_e^-1/2 K_e M_e^-1/2). The material Hessian in the present shape is bounded as in
-/// docs/methods/stable_step.md 4. The step is rigorous: never above the exact limit. `stiffness_sum` is work memory,
-/// one entry per node. Sequential, deterministic.
+/// mass_share. With the stiffness K_e and the mass M_e of element e, omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e
+/// M_e^-1/2). The material Hessian in the present shape is bounded as in docs/methods/stable_step.md 4. The step is
+/// rigorous: it is never longer than the exact limit. `stiffness_sum` is work memory, one entry per node. Sequential,
+/// deterministic.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
@@ -34,7 +34,7 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks);
 /// the check is interrupted.
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look);
-/// Result of a stable-step check when all of its pieces are done.
+/// Result of a stable-step check, available when all of its pieces are done.
 StableStep result_of(const StepLook& look);
 
 /// Step that each element of these blocks allows by itself, with its mass shares; infinite for elements that limit no
@@ -44,10 +44,10 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 
 /// Sharpens the bound of stable_step() by shifting mass between elements. In each of four rounds the share s of an
-/// element becomes s omega / omega_max, where omega is the frequency of the element alone. So elements of low frequency
-/// give mass to elements of high frequency (docs/methods/stable_step.md 2.1). The bound is rigorous with any positive
-/// shares, so the shares of the rest shape serve for every shape. `mass_share`: shares of the blocks, set by
-/// start_mass_shares() before. Sequential, for new bodies.
+/// element becomes s omega / omega_max, where omega is the frequency of the element alone and omega_max the highest of
+/// these frequencies. So elements of low frequency give mass to elements of high frequency (docs/methods/stable_step.md
+/// 2.1). The bound is rigorous with any positive shares, so the shares of the rest shape serve for every shape.
+/// `mass_share`: shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 

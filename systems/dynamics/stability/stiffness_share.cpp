@@ -41,8 +41,8 @@ ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const
             viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
 }
 
-/// Sets the fractions with which the springs of Maxwell elements count in steps of length `step` [s]. The longer the
-/// step, the less a spring counts.
+/// Sets the fractions of their stiffness with which the springs of Maxwell elements count in steps of length `step`
+/// [s]. In longer steps a spring counts less, because it relaxes more.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
     viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
@@ -53,14 +53,15 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
                LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness, const FramePart* frame = nullptr) {
     const MaterialConstants material = elements.material_of(block);
     const Real8 volume = load(elements.volume[block]);
-    // Zero, or NaN if F is not finite. It is added because not every bound depends on F.
+    // A number that is 0, or NaN if F is not finite. It is added because some bounds do not depend on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
     if (!material.relaxes() || elements.viscous_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step that other elements allow, so that their bound need not be known. With
-    // unrelaxed springs almost no element would pass this test, since all elements allow about the same step at rest.
+    // Most elements are stable at the step that other elements allow. The exact bound of these elements is not needed.
+    // With unrelaxed springs almost no element would pass this test, since all elements allow about the same step at
+    // rest.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =
@@ -145,7 +146,7 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
     }
     return frequency_squared_bound(material, F, viscous, load(elements.volume[block]), form_of(elements, block), q,
                                    enough, Sharpness::stepped) +
-           0.0 * inner_product(F, F);  // NaN if F is not finite
+           0.0 * inner_product(F, F);  // this bound is NaN if F is not finite
 }
 
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,

@@ -11,24 +11,26 @@
 
 namespace skerry {
 
-/// Product of the stable step and the bound on the frequency. It is a tenth below 2, the limit of symplectic Euler.
+/// Product of the stable step and the bound on the highest frequency. It is a tenth below 2, the limit of symplectic
+/// Euler.
 inline constexpr Real step_times_frequency = 0.9 * 2;
 
 /// Deformation gradients F of the elements of a block.
 LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block, std::span<const Vec3> position);
 
-/// Weight of each element for sharing the mass of its nodes: mass_share times the volume. If deformation changes the
-/// stiffness of the material law, the weight also has the bound of the material Hessian as a factor. At node k the
-/// element counts with |g_k|^2 times the weight, where g_k is its gradient.
+/// Weight of each element for sharing the mass of its nodes: mass_share times the volume. If the stiffness of the
+/// material law varies with deformation, the weight also has the bound of the material Hessian as a factor. At node k
+/// the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
 /// Sets the initial mass_share of each element. In a body with several materials, the share is the stiffness of the
 /// material if this stiffness is not already part of the weight. The share is relative to the greatest stiffness of the
-/// body, or in Pa if the weights of other materials include their stiffness. In all other cases the share is 1.
-/// Inversion barriers (guards) get 0, since they act only as implicit elements of a cluster.
+/// body, or in Pa if the weights of elements of other materials include their stiffness. In all other cases the share
+/// is 1. Inversion barriers (guards) get 0, since they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
-/// Adds the stiffness of each element of a block at its nodes to stiffness_sum, for lanes that satisfy counts(lane).
+/// Adds the stiffness of each element of a block to stiffness_sum at the nodes of the element, for lanes with
+/// counts(lane) true.
 template <class Counts>
 void add_stiffness(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                    std::span<Real> stiffness_sum, Counts&& counts) {
@@ -81,7 +83,7 @@ inline Real frame_bound(const ElementInputs& elements, Range blocks) {
 }
 
 /// Upper bound of omega^2 of each element of a block with the masses of frame_masses.h, at most 0.3 % too large
-/// [1/s^2]. `rotation`: rotation of the body as a whole.
+/// [1/s^2]. `rotation`: mean rotation of the body.
 Real8 frequency_squared_in_frame(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                                  const Mat3& rotation, LaneQuaternion<Real8>& q, Real enough = 0);
 

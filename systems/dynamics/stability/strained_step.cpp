@@ -1,9 +1,9 @@
-// Bounds the stiffness K of a strained body. Element e has the mass form M_e and the bound w_e on its omega^2. Since
-// K_e <= w_e M_e, any number `base` satisfies
+// Bounds the stiffness K of a strained body. Element e has the mass form M_e, the stiffness K_e and the bound w_e on
+// its omega^2. Since K_e <= w_e M_e, any number `base` satisfies
 //     K <= base sum M_e + sum (w_e - base)^+ M_e <= base M + E .
-// M is the mass of the nodes, and E the excess over the base. E is below M times max_i ( sum_j |E_ij| d_j )/( m_i d_i )
-// for any positive weights d_i of the nodes (Collatz 1942). Rows of E are scalars, since mass forms are the same for x,
-// y and z.
+// M is the mass of the nodes, and E the sum of the excess (w_e - base)^+ M_e. E is below M times max_i ( sum_j |E_ij|
+// d_j )/( m_i d_i ) for any positive weights d_i of the nodes i with masses m_i (Collatz 1942). Entries of E are
+// scalars, since mass forms are the same for x, y and z.
 #include "systems/dynamics/stability/strained_step.h"
 
 #include <algorithm>
@@ -18,13 +18,15 @@ namespace skerry {
 
 namespace {
 
-// Factor on omega^2 of the requested step. Most elements of a strained body stay below the product.
+// Ratio of the base of the bound to omega^2 of the requested step. Most elements of a strained body have a lower
+// omega^2 than the base.
 constexpr Real above_asked = 1.1;
-// Rounds of the iteration towards weights d for which all row sums have the same ratio to mass times d.
+// Number of rounds of an iteration for node weights d. In the limit, the ratio of the row sum to mass times d is the
+// same for all nodes.
 constexpr int rounds = 4;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
-/// d and row sum of E by node.
+/// d of each node, and row sum of the excess matrix E for each node.
 struct Memory {
     std::span<Real> excess, weight, row;
 
@@ -58,8 +60,8 @@ LaneVec3<Real8> multiply(const LaneSymmetric<Real8>& s, const LaneVec3<Real8>& x
             s.zx * x.x + s.yz * x.y + s.zz * x.z};
 }
 
-/// Adds the elements of a block to the row sums of E: row[i] += sum_j |E_ij| d_j over the nodes i and j of each
-/// element.
+/// Adds the elements of a block to the row sums of the excess matrix E: row[i] += sum_j |E_ij| d_j over the nodes i and
+/// j of each element, with node weights d.
 void add_rows(const BlockNodes& of, const LaneSymmetric<Real8>& form, Index first_node, std::span<const Real> weight,
               std::span<Real> row) {
     for (Index k = 0; k < of.count; ++k) {
@@ -94,7 +96,7 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));
     // Nodes without mass never move and get the weight 0.
     for (std::size_t n = 0; n < of_nodes.size(); ++n) of.weight[n] = of_nodes[n] > 0 ? 1 : 0;
-    Real least = infinity;  // least of the upper bounds on E relative to the mass [1/s^2]
+    Real least = infinity;  // least upper bound so far on the excess matrix E relative to the mass [1/s^2]
     for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(of.row, Real(0));
         for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
@@ -115,8 +117,8 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
         }
         least = std::min(least, bound);
         if (!(bound > 0) || !std::isfinite(bound)) break;
-        // Each weight d is multiplied by the square root of r / r_max, where r is the row sum over mass times d, and
-        // r_max the greatest r. Nodes that E hardly touches need only a small weight.
+        // Each node weight d is multiplied by the square root of r / r_max, where r is the row sum over mass times d,
+        // and r_max the greatest r. Nodes at which the entries of E are small need only a small weight.
         for (std::size_t n = 0; n < of_nodes.size(); ++n)
             of.weight[n] *= std::sqrt(std::max(of.row[n] / bound, Real(1e-6)));
     }

@@ -25,8 +25,8 @@ struct WatchInputs {
     }
 };
 
-/// Numbers of pieces of stable-step checks: for the bodies before the body in progress, for the bodies whose shape is
-/// stored, and for all bodies.
+/// Numbers of pieces of stable-step checks: pieces for all bodies before the body in progress, pieces for the bodies
+/// whose shape is stored, and pieces for all bodies.
 struct WatchPieces {
     std::uint64_t before = 0, kept = 0, total = 0;
 };
@@ -40,7 +40,7 @@ struct WatchPart {
 };
 
 /// Computes the pieces of stable-step checks that are due by the end of this step, for bodies whose shape is stored. A
-/// second call for the same step does nothing. `parts` is scratch whose memory is reused between steps.
+/// second call for the same step does nothing. `parts` is work memory that is reused between steps.
 void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<WatchPart>& parts, StepWatch& watch);
 
 }  // namespace skerry

@@ -1,4 +1,4 @@
-// Selects the elements that bound steps and take mass: all except inversion barriers (guards)
+// Selects the elements that bound steps and get mass: all except inversion barriers (guards)
 // (docs/methods/elasticity.md 7.7).
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// Blocks of a body without inversion barriers (guards), whose blocks come after all others.
+/// Blocks of a body without the blocks of inversion barriers (guards), which come after all other blocks.
 inline Range without_guards(const ElementInputs& elements, Range blocks) {
     while (blocks.size() > 0 && elements.part[static_cast<std::size_t>(blocks.end - 1)] == ElementPart::guard)
         --blocks.end;

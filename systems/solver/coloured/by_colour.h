@@ -1,5 +1,6 @@
-// Parallel walk over a large region: a team of workers visits its contacts in the order of a colouring. The impulses
-// are bitwise those of one thread that visits the contacts in this order. Sums are accumulated block by block.
+// Parallel traversal of a large region: a team of workers visits the contacts of the region in the order of a
+// colouring. The impulses are bitwise equal to those of one thread that visits the contacts in the same order. Sums
+// over contacts are added block by block.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +14,8 @@
 
 namespace skerry {
 
-/// Number of rows per block in loops over nodes, and in loops over contacts before the contacts are ordered. Copying
-/// this many rows of 32 bytes takes several times as long as claiming the block.
+/// Number of rows in one block of a parallel loop over nodes, or over contacts that have no order yet. Copying so many
+/// rows of 32 bytes takes several times as long as claiming the block.
 inline constexpr std::size_t row_block = 256;
 
 inline Index row_block_count(std::size_t rows) {
@@ -30,7 +31,7 @@ void for_row_blocks(Team& team, std::size_t count, Body&& body) {
     });
 }
 
-/// Partial sums of one block. The tuple has one member per type of sum.
+/// Partial sums over the contacts of one block. The tuple has one entry for each type of sum.
 using BlockSum = std::tuple<Real, SweepChange, LoadSums>;
 
 /// Number of blocks of a coloured order.
@@ -47,8 +48,8 @@ public:
         : order_(&order), team_(&team), partial_(partial) {}
 
     std::size_t number_of(std::size_t place) const { return static_cast<std::size_t>(order_->contact[place]); }
-    /// Visits phase after phase even if the visiting order is irrelevant. Each worker then finds its contacts in its
-    /// cache.
+    /// Visits the phases one after the other, even where any order of the contacts would do. Each worker then finds its
+    /// contacts in its cache.
     template <class Body>
     void contacts(std::size_t, Body&& body) const {
         for_blocks([&body](std::size_t begin, std::size_t end, Index) { body(begin, end); });

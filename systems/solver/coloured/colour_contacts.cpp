@@ -7,15 +7,15 @@
 namespace skerry {
 namespace {
 
-constexpr Index colour_limit = 64;        // bits of ColouringMemory::colours_used
-constexpr Index tail_bin = colour_limit;  // bin of the tail; the bins of the hubs follow
+constexpr Index colour_limit = 64;  // bits of ColouringMemory::colours_used
+// Bin of the tail (contacts without a colour); the bins of the hubs (nodes with many contacts) follow.
+constexpr Index tail_bin = colour_limit;
 
-/// Number of blocks into which a colour with this many contacts is divided. A block has at most 64 contacts. The number
-/// is a power of two or a multiple of 16, so that each of 2, 4, 8 or 16 workers, if not more than the blocks, gets an
-/// equal share. Solving a block takes a
-/// microsecond; claiming a block takes a twentieth of a microsecond.
+/// Number of blocks into which the contacts of one colour are divided. A block has at most 64 contacts. The number of
+/// blocks is a power of two or a multiple of 16, so that 2, 4, 8 or 16 workers get equal numbers of blocks. A worker
+/// solves a block in a microsecond and claims a block in a twentieth of a microsecond.
 Index blocks_of_colour(Index contacts) {
-    // `even`: largest number of workers that share a phase without remainder
+    // `even`: greatest number of workers among which the blocks of a phase can be divided evenly
     constexpr std::uint32_t most_contacts = 64, even = 16;
     const std::uint32_t least = (static_cast<std::uint32_t>(contacts) + most_contacts - 1) / most_contacts;
     return static_cast<Index>(least <= even ? std::bit_ceil(least) : (least + even - 1) / even * even);
@@ -29,8 +29,8 @@ void for_each_node(const ContactNodes& nodes, Visit&& visit) {
     }
 }
 
-/// Finds the lowest colour that no excluded node has, or colour_limit if there is none. take() gives this colour to
-/// nodes.
+/// Finds the lowest colour that no contact of the excluded nodes has, or colour_limit if there is none. take() marks
+/// this colour as used at the given nodes.
 struct FreeColour {
     ColouringMemory& memory;
     std::uint64_t used = 0;
@@ -51,8 +51,8 @@ void count_degrees(std::span<const ContactNodes> contact, Index node_count, Colo
     for (const ContactNodes& nodes : contact) for_each_node(nodes, [&](Index node) { ++memory.degree[node]; });
 }
 
-/// Assigns each contact to a bin: the bin of its first hub if it has one, otherwise the bin of a colour. Returns the
-/// number of hubs.
+/// Assigns each contact to a bin. If a node of the contact is a hub (a node with many contacts), the bin belongs to the
+/// first such hub, otherwise to a colour. Returns the number of hubs.
 Index fill_bins(std::span<const ContactNodes> contact, Index node_count, ColouringMemory& memory) {
     const bool has_hubs =
         std::any_of(memory.degree.begin(), memory.degree.end(), [](Index degree) { return degree > hub_degree; });
@@ -88,7 +88,7 @@ Index fill_bins(std::span<const ContactNodes> contact, Index node_count, Colouri
     return hub_count;
 }
 
-/// Lists the contacts of each hub in ascending order.
+/// Lists the contacts of each hub (node with many contacts) in ascending order.
 void list_hubs(Index hub_count, ColouringMemory& memory) {
     memory.hub_offset.assign(static_cast<std::size_t>(hub_count) + 1, 0);
     for (Index hub = 0; hub < hub_count; ++hub)
@@ -101,7 +101,7 @@ void list_hubs(Index hub_count, ColouringMemory& memory) {
     }
 }
 
-/// Gives each hub block a colour, then sorts the hubs by colour and number.
+/// Gives each hub block (the contacts of one hub) a colour, then sorts the hubs by colour and number.
 void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, ColouringMemory& memory) {
     list_hubs(hub_count, memory);
     std::fill(memory.colours_used.begin(), memory.colours_used.end(), 0);
@@ -121,8 +121,9 @@ void colour_hubs(std::span<const ContactNodes> contact, Index hub_count, Colouri
     });
 }
 
-/// Computes the phases and blocks of the order. In bin_begin it replaces the contact count of a bin by the position of
-/// the bin's first contact in the order. For bins that go to the tail it writes no_index.
+/// Computes the phases and blocks of the coloured order. In bin_begin it replaces the contact count of a bin by the
+/// position of the first contact of the bin in the coloured order. For bins whose contacts go to the tail it writes
+/// no_index.
 class Layout {
 public:
     Layout(ColouringMemory& memory, ColouredOrder& order) : memory_(memory), order_(order) {
@@ -217,8 +218,9 @@ void sort_by_node(std::span<const ContactNodes> contact, Index node_count, Colou
         memory.by_node[memory.node_offset[lowest(contact[k]) + 1]++] = static_cast<Index>(k);
 }
 
-/// Writes the contacts to their positions in the order. Contacts of a colour are sorted by node: a worker that gets the
-/// same share of every colour then reuses the same nodes. Contacts of hubs and of the tail stay in ascending order.
+/// Writes the contacts to their positions in the coloured order. Contacts of one colour are sorted by node: a worker
+/// that gets equal shares of all colours then reuses the nodes in its cache. Contacts of hubs and of the tail stay in
+/// ascending order.
 void place_contacts(std::span<const ContactNodes> contact, Index node_count, Index tail, ColouringMemory& memory,
                     ColouredOrder& order) {
     sort_by_node(contact, node_count, memory);

@@ -23,8 +23,9 @@ bool read_nodes(const RegionInputs& inputs, std::span<const Index> row, Team& te
     return same;
 }
 
-/// Numbers the nodes in the order of their first appearance. `place` caches the number of a node by its row of
-/// NodeTable. An entry left from another call is detected because region.node holds a different node at that number.
+/// Numbers the nodes of the region in the order of their first appearance. `place` caches the number of a node by its
+/// row of NodeTable. A cached number from another call is detected: region.node then holds a different node at that
+/// number.
 void number_nodes(std::span<Index> place, ColouredRegion& region) {
     region.node.clear();
     region.local.resize(region.moving.size());

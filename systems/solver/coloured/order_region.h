@@ -16,7 +16,7 @@ struct ColouredRegion {
     Column<Index> node;           // rows of NodeTable
     ColouredOrder order;
     ColouringMemory colouring;
-    Column<BlockSum> partial;         // by block of the order: partial sums of that block
+    Column<BlockSum> partial;  // for each block of the coloured order: partial sums over the contacts of the block
     Column<std::uint8_t> same_nodes;  // by block of contacts: 1 if the moving nodes equal those of the last call
 
     ByColour walk(Team& team) { return {order, team, partial.span()}; }

@@ -27,7 +27,8 @@ void BlockFactor::couple(Index g, Index h) {
     coupled_[pair(g, h)] = coupled_[pair(h, g)] = 1;
 }
 
-/// Returns the remaining part with the cheapest elimination. If several are equally cheap, returns the first of them.
+/// Returns the part (group of unknowns) that is cheapest to eliminate among the parts that are not yet eliminated. If
+/// several are equally cheap, returns the first of them.
 Index BlockFactor::next_to_eliminate() const {
     Index next = no_index;
     Real least = infinity;
@@ -41,7 +42,8 @@ Index BlockFactor::next_to_eliminate() const {
     return next;
 }
 
-/// Eliminates part `next` in the pattern: all remaining parts that are coupled to it become coupled to each other.
+/// Eliminates the part (group of unknowns) `next` in the pattern of nonzero blocks: all remaining parts that are
+/// coupled to `next` become coupled to each other.
 void BlockFactor::eliminate_pattern(Index next) {
     rank_[static_cast<std::size_t>(next)] = static_cast<Index>(order_.size());
     order_.push_back(next);
@@ -86,8 +88,8 @@ bool BlockFactor::analyse() {
     return true;
 }
 
-/// Lays out the entries in memory, part by part: the diagonal block, the blocks to its right, then the blocks below it
-/// as one matrix.
+/// Determines the memory layout of the matrix entries, part by part. The entries of a part (group of unknowns) are the
+/// diagonal block, the blocks to the right of the diagonal, and the blocks below the diagonal as one matrix.
 void BlockFactor::place_blocks() {
     first_.resize(coupled_.size());
     stride_below_.resize(size_.size());

@@ -18,13 +18,13 @@ class BlockFactor {
 public:
     /// Removes all parts.
     void start();
-    /// Adds a part with `size` unknowns. Returns the index of the part.
+    /// Adds a part, which is a group of `size` unknowns. Returns the index of the part.
     Index add_part(Index size);
     /// Marks the blocks of parts g and h as nonzero. Call it after close_parts().
     void couple(Index g, Index h);
     void close_parts();
-    /// Finds the elimination order. Returns false if the factor would need too much memory. No other function may be
-    /// called then.
+    /// Finds the elimination order. Returns false if the factor would need too much memory; no other function may be
+    /// called in this case.
     bool analyse();
     /// Number of multiplications of one factorisation.
     Real work() const { return work_; }
@@ -52,13 +52,15 @@ private:
     void eliminate_pattern(Index next);
     void place_blocks();
 
-    Column<Index> size_;            // by part: number of unknowns
-    Column<std::uint8_t> coupled_;  // by pair of parts: 1 if their blocks are nonzero, including fill-in
-    Column<Index> beside_;          // by part: total size of the coupled parts that are not yet eliminated
-    Column<Index> order_, rank_;    // elimination order, and the position of each part in it
-    Ragged<Index> later_;           // by position in the order: parts that the elimination changes
-    Column<std::size_t> first_;     // by pair of parts: index of the block's first entry in `number_`
-    Column<Index> stride_below_;    // by part: column stride of its blocks below the diagonal
+    Column<Index> size_;  // by part: number of unknowns
+    // For each pair of parts: 1 if the blocks that couple the two parts are nonzero, including fill-in.
+    Column<std::uint8_t> coupled_;
+    Column<Index> beside_;        // by part: total size of the coupled parts that are not yet eliminated
+    Column<Index> order_, rank_;  // elimination order, and the position of each part in it
+    // For each position in the elimination order: parts whose blocks change when the part there is eliminated.
+    Ragged<Index> later_;
+    Column<std::size_t> first_;   // by pair of parts: index of the block's first entry in `number_`
+    Column<Index> stride_below_;  // by part: column stride of the part's blocks below the diagonal
     Column<std::size_t> first_right_;
     Column<Real> number_, right_;
     Column<Index> pivot_;

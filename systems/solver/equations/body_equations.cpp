@@ -8,8 +8,8 @@
 namespace skerry {
 namespace {
 
-/// Jacobian J of a push: it maps the unknowns to the contact velocity. For a node only the first three columns are
-/// used.
+/// Jacobian of the contact velocity with respect to one unknown: velocity of a node, or velocity and spin of a rigid
+/// body. For a node only the first three columns are used.
 Eigen::Matrix<Real, 3, 6> jacobian_of(const BodyPush& push) {
     Eigen::Matrix<Real, 3, 6> jacobian;
     jacobian.leftCols<3>() = push.weight * Mat3::Identity();

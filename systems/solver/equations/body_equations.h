@@ -13,14 +13,15 @@
 
 namespace skerry {
 
-/// Effect of a contact on one unknown: the velocity of a node (three entries of a part), or the velocity and spin of a
-/// rigid body (six entries).
+/// Effect of a contact on one unknown of the equations: on the velocity of a node (three entries of a part), or on the
+/// velocity and spin of a rigid body (six entries).
 struct BodyPush {
     Index part = no_index;
     Index place = 0;  // index of the first entry of the unknown within the part
     bool turns = false;
     Real weight = 0;
-    Vec3 arm = Vec3::Zero();  // for rigid bodies: sum of weight times vector from the centre [m]
+    // For rigid bodies: sum of stencil weight times vector from the centre of mass to the node [m]
+    Vec3 arm = Vec3::Zero();
 };
 
 /// Equations of one region. Memory is reused between regions. Vectors "by number" have the order of BlockFactor::right.
@@ -33,7 +34,7 @@ public:
         void add(const BodyPush& of) { push[static_cast<std::size_t>(count++)] = of; }
         std::span<const BodyPush> all() const { return {push.data(), static_cast<std::size_t>(count)}; }
     };
-    /// A velocity row of the region that contacts change, and its position in the equations.
+    /// A velocity row of the region that contacts can change, and the position of this row in the equations.
     struct Unknown {
         Index body, partner;  // identifiers of the unknown's body and of the other touched body, or no_index
         Index row;
@@ -42,7 +43,7 @@ public:
         Real mass = 0;           // mass of the node, for nodes with their own mass [kg]
         Index part = no_index, place = 0;
     };
-    /// Memory for a square matrix, its inverse and the pivots.
+    /// Memory for a square matrix, the inverse of the matrix and the pivots.
     struct Square {
         DenseBlock matrix, inverse;
         Index* pivot;
@@ -65,7 +66,7 @@ public:
     void add(Index contact, const Mat3& block);
     /// Returns the velocity J v of a contact.
     Vec3 velocity(Index contact, std::span<const Real> v) const;
-    /// Sets the right-hand side to K x. Returns x . K x.
+    /// Sets the right-hand side to K x. Returns the product x . K x.
     Real set_right(std::span<const Real> x);
     /// Adds J^T r to the right-hand side, where r is the impulse of a contact.
     void add_right(Index contact, const Vec3& impulse);
@@ -73,19 +74,19 @@ public:
     /// and marks no contact to be stopped.
     void start_round();
 
-    Real softness = 0;         // compliance of the contacts in a round, as a fraction of D
+    Real softness = 0;         // compliance of the contacts in a round, as a fraction of the mobility D
     bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
-    Column<Vec3> offset;       // by contact: part of its velocity that is not J v [m/s]
+    Column<Vec3> offset;  // by contact: part of the contact velocity that is independent of the unknowns, u - J v [m/s]
 
     // Vectors by number. present: the iterate of the motion; answered: the motion that the impulses for `present`
     // produce; change: answered - present; step: the Newton step; before: `present` before the step [m/s, rad/s]
     Column<Real> present, answered, change, step, before;
-    Column<Mat3> answer;  // by contact: derivative of the impulse in the last matrix
-    // Data by contact. way: sliding direction when the matrix was last built, or zero. stops: 1 if the next step shall
-    // stop the contact.
+    Column<Mat3> answer;  // by contact: derivative of the impulse that the last matrix contains
+    // Data by contact. way: sliding direction for which the last matrix was built, or zero. stops: 1 if the next step
+    // shall stop the contact.
     Column<Vec3> way;
     Column<std::uint8_t> stops;
-    Index rises = 0;  // number of steps in this round that were accepted although they raised the merit
+    Index rises = 0;  // number of steps in this round that were accepted although the merit function rose
 
 private:
     BlockFactor factor_;

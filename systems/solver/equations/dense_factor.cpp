@@ -28,8 +28,8 @@ void subtract(Real what, Real* from) {
     *from -= what;
 }
 
-/// Operations that write one register of a product into a column of c: subtract it, subtract only its last rows (the
-/// rows above are done), or overwrite the column.
+/// Operations that write one register of a product into a column of c: subtract the register, subtract only the last
+/// rows of the register (the rows above are already done), or overwrite the column with the register.
 constexpr auto take_off = [](const auto& what, Real* from) { subtract(what, from); };
 struct TakeOffLast {
     Index count;
@@ -140,8 +140,8 @@ struct TriangleInverse {
         }
         return of;
     }
-    /// Replaces b by this inverse times b. In-place is safe: the columns of b are read four at a time before they are
-    /// written.
+    /// Replaces b by the inverse of the triangle times b. In-place is safe: the columns of b are read four at a time
+    /// before they are written.
     void multiply(const DenseBlock& b) { multiply_rows<Real8>({number, panel, panel, panel}, b, b, 0, put_there); }
 };
 constexpr Index many_columns = panel;  // least number of right-hand columns for which TriangleInverse pays off
@@ -194,8 +194,8 @@ void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
 void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
     for (; row + 8 <= c.rows; row += 8) {
-        // In these rows only a few consecutive columns are nonzero: contacts couple each node of a face to few,
-        // consecutive nodes of the other face.
+        // In the eight rows from `row` on, only a few consecutive columns of a are nonzero: contacts couple each node
+        // of a face to a few consecutive nodes of the other face.
         const auto [first, last] = columns_that_count(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
                              take_off);
@@ -261,7 +261,8 @@ bool factor_dense(const DenseBlock& a, Index* pivot) {
 }
 
 void solve_dense(const DenseBlock& factors, const Index* pivot, const DenseBlock& b) {
-    // The choice depends on the number of all columns. The bits of the result must not depend on the position of zeros.
+    // The use of triangle inverses depends on the number of all columns, not on the lengths of the runs. The bits of
+    // the result must not depend on the position of zeros.
     const bool many = b.columns >= many_columns;
     for_each_run_of_columns(
         b, [&](Index begin, Index count) { solve_all(factors, pivot, b.part(0, begin, b.rows, count), many); });

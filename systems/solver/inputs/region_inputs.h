@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-/// State of the rigid bodies at the start of the step, and the kick: the change of velocity by the forces of the step.
+/// State of the rigid bodies at the start of the step, and the kick (change of velocity by the forces of the step).
 /// Spans have one entry per row of RigidBodyTable, except `position` and `core_nodes`.
 struct RigidInputs {
     RigidNodes nodes{};
@@ -72,8 +72,8 @@ struct RigidInputs {
 struct ImplicitInputs {
     std::span<const Range> body_implicit{};      // by row of BodyTable: rows of ImplicitNodeTable
     const ImplicitCoupling* coupling = nullptr;  // null or empty if no contact touches an implicit body
-    // Velocity after the kick, and velocity at the start of the step, in the mesh frame, by row of ImplicitNodeTable
-    // [m/s]
+    // Velocity after the kick (the change of velocity by forces), and velocity at the start of the step, in the mesh
+    // frame, by row of ImplicitNodeTable [m/s]
     std::span<const Vec3> velocity{}, velocity_before{};
     std::span<const Mat3> axes{}, rotation{};  // rotations by row of RigidBodyTable
 
@@ -101,9 +101,9 @@ struct ImplicitInputs {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Change of a node's velocity by the kick of its implicit body in this step, in world axes; zero for nodes of
-    /// other bodies. The change comes from elastic forces. If the body is in equilibrium, the contact impulses cancel
-    /// this change [m/s]
+    /// Change of a node's velocity by the kick (the forces of the step) on the deformation of its implicit body, in
+    /// world axes; zero for nodes of other bodies. The change comes from elastic forces. If the body is in equilibrium,
+    /// the contact impulses cancel this change [m/s]
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();
@@ -122,7 +122,8 @@ struct RegionInputs {
     std::span<const Real> inverse_mass;  // by node [1/kg]
     std::span<const Vec3> velocity;      // by node, at the start of the step [m/s]
     Real gravity = 0;                    // magnitude of gravity, for the scale of the error measure [m/s^2]
-    // Ascending contact keys. They identify regions across steps. Without keys the scheduler has no history.
+    // Ascending contact keys, which identify regions across steps. Without keys the scheduler cannot use the sweep
+    // counts of earlier steps.
     std::span<const ContactKey> key{};
     // Clusters: groups of nodes with a coupled mass matrix. Null or empty if every node has its own mass.
     const NodeClusters* clusters = nullptr;

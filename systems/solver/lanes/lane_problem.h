@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// The number of contacts in a lane is padded to the next of these sizes.
+/// Possible sizes of a lane problem. The number of contacts of a region is padded to the next of these sizes.
 inline constexpr std::array<int, 6> lane_sizes{2, 3, 4, 6, 8, 12};
 inline constexpr int largest_lane_region = lane_sizes.back();
 
@@ -32,7 +32,7 @@ struct LaneProblem {
     T diagonal[K];                 // mobility D of docs/methods/contact.md 2.1; zero for unused contacts [1/kg]
     T inverse_diagonal[K];         // 1/D; zero for unused contacts [kg]
     T friction[K];
-    T scale;      // scale of e_nat [sqrt(J)]
+    T scale;      // number by which the error e_nat is divided [sqrt(J)]
     T tolerance;  // tolerance of e_nat
 };
 

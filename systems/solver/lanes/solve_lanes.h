@@ -64,7 +64,7 @@ LaneVec3<T> project_lanes_onto_cone(const LaneVec3<T>& z, const LaneVec3<T>& nor
     return select<T>(mu * length <= -along, {zero, zero, zero}, inside);
 }
 
-/// Error e_nat of docs/methods/errors.md 2.
+/// Relative error e_nat of the present impulses in each lane (docs/methods/errors.md 2).
 template <class T, int K>
 T lane_error(const LaneProblem<T, K>& problem) {
     T sum{};
@@ -80,7 +80,7 @@ T lane_error(const LaneProblem<T, K>& problem) {
     return square_root(sum) / problem.scale;
 }
 
-/// Does one sweep. Lanes outside the mask `swept` keep their impulses.
+/// Does one sweep. Lanes outside the mask `swept` keep their impulses unchanged.
 template <class T, int K>
 SweepChangeOf<T> sweep_lanes(LaneProblem<T, K>& problem, const LaneVec3<T>* previous, const LaneMask<T>& swept,
                              Real relaxation) {

@@ -6,8 +6,8 @@
 namespace skerry {
 namespace {
 
-/// Contact velocity at the start of the step, and predicted velocity after the kick. The predicted velocity excludes
-/// the kick of the deformations of implicit bodies [m/s]
+/// Contact velocity at the start of the step, and predicted velocity after the kick (the velocity change by forces).
+/// The predicted velocity excludes the kick of the deformations of implicit bodies [m/s]
 struct AroundKick {
     Vec3 before, now;
 };
@@ -44,11 +44,11 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     if (restitution == 0) return closing;
     const auto [before, coming] = around_kick(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
-    // A contact is an impact only if it approaches clearly faster than the forces of one step change its velocity
+    // A contact is an impact only if its approach speed clearly exceeds the velocity change by the forces of one step
     // (docs/methods/contact.md 3.2). Weight alone gives a resting contact the speed g h. Elastic forces can push a node
-    // down in every step, and rebounds would then keep the node bouncing forever.
+    // down in every step, and rebounds would then make the node bounce forever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
-    constexpr Real clearly = 2;  // factor: an impact is faster than this multiple of the velocity change
+    constexpr Real clearly = 2;  // least ratio of the approach speed of an impact to the velocity change by forces
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});
     const bool impact = approach < -slowest_impact && gap + h * approach <= 0;
     return impact ? std::min(closing, restitution * approach) : closing;

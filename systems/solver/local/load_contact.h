@@ -54,7 +54,8 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
     }
     // If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than the
     // contact. The contact then counts as immovable.
-    constexpr Real smallest_share = 1e-12;  // smallest ratio of squared weights
+    // Least ratio of the mobility to the greatest inverse mass, about a squared weight.
+    constexpr Real smallest_share = 1e-12;
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;
     contact.friction = {inputs.static_friction[row], inputs.dynamic_friction[row]};

@@ -7,9 +7,10 @@
 namespace skerry {
 
 struct LoadSums {
-    Real asked = 0;   // sum of D |F|^2 over closing contacts, where F is the natural map at zero impulses [J]
-    Real moving = 0;  // sum of |u|^2 / D over all contacts, closing or not [J]
-    Real inverse_diagonals = 0;  // sum of 1/D over the contacts [kg]
+    // Sum of D |F|^2 over closing contacts, with the mobility D and the natural map F at zero impulses [J]
+    Real asked = 0;
+    Real moving = 0;             // sum of |u|^2 / D over all contacts, closing or not, with the contact velocity u [J]
+    Real inverse_diagonals = 0;  // sum of 1/D over the contacts, with the mobility D [kg]
     bool separating = true;      // true if no contact closes, so that zero impulses are the solution
     bool frictionless = true;    // true if no contact has friction
     bool one_friction = true;    // true if each contact has equal static and dynamic coefficients

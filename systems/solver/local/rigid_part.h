@@ -27,9 +27,10 @@ struct RigidTerm {
     Index slot = 0;        // index of the body's velocity in the region; the next index is its spin
     Real weight = 0;       // sum of the stencil weights, often 1 or -1
     Real step = 0;         // weight divided by mass [1/kg]
-    Vec4 arm;              // sum of weight times vector from the centre of mass [m]
+    Vec4 arm;              // sum of weight times vector from the centre of mass to the node [m]
     Columns3 spin_step;    // change of spin per unit impulse: I^-1 times the cross-product matrix of `arm` [1/(kg m)]
-    Real turn = 0;  // weight of the spin: 1 or -1 in joint rows of rotation, whose impulses are moments; otherwise 0
+    // Coefficient of the spin: 1 or -1 in joint rows of rotation, whose impulses are moments; otherwise 0.
+    Real turn = 0;
 };
 
 struct RigidPart {

@@ -33,7 +33,8 @@ struct SlipCurve {
         const Real limit = mu * rn;
         return rn > 0 && std::abs(rt_length - limit) <= 8 * std::numeric_limits<Real>::epsilon() * limit;
     }
-    /// Newton step in s for the root of 1/|r_t| - 1/(mu r_n). This function is nearly linear in s. It needs r_n > 0.
+    /// Newton step in s for the root of the function 1/|r_t| - 1/(mu r_n), which is nearly linear in s. The step needs
+    /// r_n > 0.
     Real newton_step() const {
         const Real limit = mu * rn;
         const Real value = 1 / rt_length - 1 / limit;

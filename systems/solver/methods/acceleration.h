@@ -20,10 +20,11 @@ using LaneMask = decltype(T{} < T{});
 template <class T>
 class Acceleration {
 public:
-    /// Returns the extrapolation factor after a sweep with this change; 0 at a restart. `plain` forces a restart.
+    /// Returns the extrapolation factor after a sweep with this change of the impulses; 0 at a restart. `plain` forces
+    /// a restart.
     T next(const SweepChangeOf<T>& change, const LaneMask<T>& plain) {
-        // A restart occurs if the squared change of a sweep exceeds this multiple of the smallest one since the last
-        // restart. The value 10 would be 15 % faster on easy problems, but fails on jammed ones.
+        // A restart occurs if the squared impulse change of a sweep exceeds this multiple of the smallest squared
+        // change since the last restart. The value 10 would be 15 % faster on easy problems, but fails on jammed ones.
         constexpr Real guard = 2;
         const T zero{}, one = zero + 1;
         const T next_momentum = (1 + square_root(T(1 + 4 * momentum_ * momentum_))) / 2;
@@ -58,8 +59,8 @@ public:
     /// Relaxation factor of the next sweep.
     Real relaxation() const { return relaxation_; }
 
-    /// True if the last or the next sweep is a plain (not accelerated) one. `change` is the squared change of the last
-    /// sweep.
+    /// True if the last or the next sweep is plain (not accelerated). `change` is the squared impulse change of the
+    /// last sweep.
     bool plain_after(Index iteration, Real change) {
         const bool was_plain = plain_left_ > 0;
         observe(iteration, change);
@@ -67,7 +68,8 @@ public:
     }
 
 private:
-    static constexpr Real gain = 0.7;  // a squared change below this fraction of the smallest one counts as progress
+    // a squared impulse change below this fraction of the smallest one so far counts as progress.
+    static constexpr Real gain = 0.7;
     // Number of plain sweeps in a phase. It is doubled with each phase, including the first.
     static constexpr Index plain_sweeps = 200;
     static constexpr Index most_doublings = 7, most_plain = 20000;

@@ -40,7 +40,8 @@ private:
     static SweepChangeOf<Number> unknown() { return {Number{} + infinity, Number{}}; }
 
     void extrapolate() {
-        // Number of sweeps between refreshes. Extrapolation accumulates rounding errors; a refresh costs half a sweep.
+        // Number of sweeps between two refreshes, which recompute the velocities from the impulses. Extrapolation
+        // accumulates rounding errors; a refresh costs half a sweep.
         constexpr Index refresh_interval = 64;
         const LaneMask<Number> plain = watchdog_.plain_after(iteration_, change_.size);
         const Number extrapolation = acceleration_.next(change_, plain);

@@ -9,14 +9,15 @@
 
 namespace skerry {
 
-/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. They decide when Newton steps are tried;
-/// only their ratio matters [ns]
+/// Estimated costs of a sweep and of a Newton step, measured on 4 GHz cores. The ratio of the costs decides when the
+/// method changes to Newton steps [ns]
 inline Real sweep_cost(Index contacts, Index couplings) {
     constexpr Real contact_cost = 40, coupling_cost = 2;
     return contact_cost * static_cast<Real>(contacts) + coupling_cost * static_cast<Real>(couplings);
 }
 inline Real newton_step_cost(Index contacts) {
-    // Costs per step, per pair of contacts (to fill the equations), and per triple of contacts (to factor them) [ns]
+    // Costs of a Newton step: fixed cost, cost per pair of contacts (to fill the equations), and cost per triple of
+    // contacts (to factor them) [ns]
     constexpr Real step_cost = 2000, pair_cost = 20, triple_cost = 0.5;
     const Real count = static_cast<Real>(contacts);
     return step_cost + count * count * (pair_cost + triple_cost * count);
@@ -30,7 +31,8 @@ concept KeepsNewtonMemory = requires(Op op, const Op constant) {
     { op.newton_memory() } -> std::same_as<NewtonMemory&>;
     { constant.couplings() } -> std::convertible_to<Index>;  // number of off-diagonal blocks of W
 };
-/// Operators with their own Newton steps. To estimate the cost of a step [ns], they must inspect the whole region.
+/// Operators with their own Newton steps. To estimate the cost of a step [ns], such an operator must inspect the
+/// complete region.
 template <class Op>
 concept HasNewtonSteps = requires(Op op, Real number, Index limit) {
     { op.take_newton_steps(number, number, limit) } -> std::same_as<SolveResult>;
@@ -87,9 +89,9 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
     return result(test.result());
 }
 
-/// Starts with sweeps, which end after about the cost of two Newton steps. The convergence rate of the last sweeps then
-/// predicts whether as many sweeps again, or the remaining ones, would converge. If not, Newton steps are tried. If the
-/// Newton steps fail, the next stretch of sweeps is twice as long.
+/// Starts with sweeps for about the cost of two Newton steps. The convergence rate of the last sweeps then predicts
+/// whether as many sweeps again, or the remaining allowed sweeps, would converge. If not, Newton steps are taken. If
+/// the Newton steps fail, the next group of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     // Newton steps support only the friction cone.
@@ -110,7 +112,8 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
     while (true) {
         const Real next = std::min<Real>(sweeps.iterations() + pause, limits.max_iterations - newton_steps);
         bool ended = false;
-        if (looks_later && trial > 0) {  // measure the rate in the later half: the first sweeps are always fast
+        // Measure the convergence rate in the later half of the sweeps, because the first sweeps are always fast.
+        if (looks_later && trial > 0) {
             ended = sweeps.run_to((sweeps.iterations() + static_cast<Index>(next)) / 2);
             error_before = test.result().error;
             iteration_before = sweeps.iterations();
@@ -122,7 +125,7 @@ SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
         if (result.iterations + newton_steps >= limits.max_iterations) break;
         if (looks_later && trial == 0) {
             trial = newton_trial(op);
-            // Try Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
+            // Take Newton steps after at most half of the allowed sweeps, unless a step is far too expensive.
             constexpr Real out_of_proportion = 10;
             const Real all = limits.max_iterations;
             pause = trial > out_of_proportion * all ? all : std::min(std::max(trial, least_sweeps), all / 2);

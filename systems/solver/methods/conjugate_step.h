@@ -8,7 +8,7 @@
 
 namespace skerry {
 
-/// Formula of the factor beta: equation (17) or (18) of Lazarevych et al. (2010).
+/// Formula of the factor beta in the search direction: equation (17) or (18) of Lazarevych et al. (2010).
 enum class ConjugateBeta { fletcher_reeves, polak_ribiere };
 
 inline Real sum_of_products(std::span<const Vec4> a, std::span<const Vec4> b) {

@@ -15,15 +15,15 @@ struct SolveLimits {
     Real relaxation = 1;
 };
 
-/// A warm start whose error exceeds this value is compared with zero impulses, whose error is about 1.
+/// A warm start with a relative error above this value is compared with zero impulses, whose relative error is about 1.
 inline constexpr Real suspicious_start = 0.5;
 
-/// Next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ..., later whenever the iteration number has
-/// grown by an eighth. A measurement costs half a sweep. Convergence is detected late by at most an eighth of the
-/// iterations plus five.
+/// Next iteration at which the error is measured: 1, 2, 4, 7, 11, 17, ...; later the iteration number grows by an
+/// eighth. A measurement costs half a sweep. Convergence is detected late by at most an eighth of the iterations plus
+/// five.
 inline Index next_check(Index iteration) {
-    // The interval between measurements is half of the iterations so far, later an eighth of the iterations plus an
-    // offset.
+    // The interval between measurements is half of the number of iterations so far; later it is an eighth of this
+    // number plus an offset.
     constexpr Index first = 2, later = 8, offset = 4;
     return iteration + 1 + std::min(iteration / first, offset + iteration / later);
 }
@@ -62,7 +62,8 @@ public:
     }
 
     bool known() const { return known_; }
-    /// Offers the present impulse, which has not been measured before. An error that is not finite is ignored.
+    /// Stores the present impulse if `error`, measured for the first time, is the smallest error so far. An error that
+    /// is not finite is ignored.
     void offer_last(Real error) {
         if (std::isfinite(error)) offer(error);
     }
@@ -80,7 +81,8 @@ private:
     Real error_ = 0;
 };
 
-/// Convergence test shared by all methods. If the number of iterations is fixed, sweeps are not measured.
+/// Convergence test shared by all methods. If the number of iterations is fixed, the error is not measured after
+/// sweeps.
 template <SweptOperator Op>
 class ErrorTest {
 public:
@@ -102,19 +104,19 @@ public:
         if (due(iteration)) check_ = next_check(iteration);
         return false;
     }
-    /// Version for a sweep with this squared change. It measures the error only if a measurement is due, if the change
-    /// suggests convergence, or after the last sweep.
+    /// Variant of ends() for a sweep with the squared impulse change `change`. It measures the error only if a
+    /// measurement is due, if the change suggests convergence, or after the last sweep.
     bool ends_after_sweep(Index iteration, Real change, Index last) {
         if (limits_.fixed_iterations) return false;
         const bool suggested = op_.suggests_check(change, limits_.tolerance);  // must be called exactly once per sweep
         return (suggested || due(iteration) || iteration >= last) && ends(iteration);
     }
 
-    /// Restores the best impulse.
+    /// Restores the best impulse, which is the measured impulse with the smallest error.
     void go_back() { best_.restore(); }
-    /// Offers the present impulse, which another method has found.
+    /// Stores the present impulse, found by another method, if its error is the smallest so far.
     void offer(Real error) { best_.offer(error); }
-    /// Result of the last measurement.
+    /// Result of the last error measurement.
     SolveResult result() const { return {iteration_, error_, error_ <= limits_.tolerance}; }
     /// Ends the method without convergence. Restores the best impulse, or keeps the last one if no error was measured.
     SolveResult give_up(Index iterations) {

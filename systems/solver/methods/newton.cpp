@@ -103,8 +103,8 @@ private:
     /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) and the right-hand side -F. The right-hand side includes
     /// the impulse change of the opening contacts.
     void fill_equations() {
-        // If sticking contacts support each other, the distribution of their impulses is not unique. A small multiple
-        // of the identity makes it unique. This changes the steps but not the solution.
+        // If sticking contacts support each other, several distributions of their impulses are solutions. A small
+        // multiple of the identity selects one. It changes the steps but not the solution.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {
@@ -128,7 +128,7 @@ private:
         memory_.rest = factors.solve(memory_.rest);
     }
 
-    /// Returns the merit, which is the sum of D |F|^2. Writes -u to `pull_` [J]
+    /// Returns the merit function, which is the sum of D |F|^2 over the contacts. Writes -u to `pull_` [J]
     Real merit() {
         op_.residual(pull_);
         Real sum = 0;
@@ -146,11 +146,11 @@ private:
         op_.refresh();
     }
 
-    /// Line search: tries step lengths 1, 1/2, 1/4, ... and takes the first that lowers the merit enough. If there is
-    /// none, takes the length with the smallest merit.
+    /// Line search: evaluates the step lengths 1, 1/2, 1/4, ... and takes the first that lowers the merit enough. If
+    /// there is none, takes the length with the smallest merit.
     void search_along_change() {
         constexpr int halvings = 6;   // docs/decisions/0004
-        constexpr Real enough = 0.9;  // the merit must fall below this fraction of its start value
+        constexpr Real enough = 0.9;  // the merit function must fall below this fraction of its start value
         std::ranges::copy(impulse_, op_.workspace(1).begin());
         const Real start = merit();
         Real least = infinity, best_length = 1;

@@ -32,7 +32,7 @@ void start_conjugate_gradients(AnyOperator& op) {
     std::ranges::copy(residual, op.workspace(2).begin());
 }
 
-/// End criteria of the conjugate gradient phase, apart from the error.
+/// End criteria of the conjugate gradient phase that do not use the error.
 struct ConjugateLimits {
     Index iterations;  // upper limit
     Real tolerance;    // tolerance in (20), (21) of Lazarevych et al. (2010); 0 switches both criteria off

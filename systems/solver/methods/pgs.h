@@ -1,5 +1,5 @@
-// Block projected Gauss-Seidel method: equations (14), (15) of Lazarevych et al. (2010), with an exact solution of each
-// contact in turn.
+// Block projected Gauss-Seidel method: equations (14), (15) of Lazarevych et al. (2010). It solves the contacts
+// exactly, one after the other.
 #pragma once
 
 #include "systems/solver/methods/error_test.h"

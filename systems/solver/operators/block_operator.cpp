@@ -30,8 +30,8 @@ inline Real pressing(Real normal) {
     return std::max(normal, Real(0));
 }
 
-/// Solves the scalar rows of Lazarevych et al. (2010) in turn: the normal, then each tangent with the bound from the
-/// new normal impulse (eq. 6, 15).
+/// Solves the scalar rows of Lazarevych et al. (2010) one after the other: first the normal, then each tangent with the
+/// bound from the new normal impulse (eq. 6, 15).
 Vec4 step_pyramid(const BlockMemory::Columns& block, const Vec4& impulse, Vec4 u, Real mu, Real relaxation) {
     Vec4 next = impulse;
     for (int k = 0; k < 3; ++k) {
@@ -132,8 +132,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (change.isZero(0)) return 0;
     memory_.impulse[place] = next;
     const Real size = change.dot(times(contact.diagonal, change));
-    // |F|^2 for rho = 1 is estimated by the squared impulse change or by the squared velocity change it causes,
-    // whichever is smaller.
+    // |F|^2, the squared natural map for rho = 1, is estimated by the squared impulse change or by the squared velocity
+    // change that it causes, whichever is smaller.
     swept_ += std::min(change.squaredNorm(), mobility(i) * size);
     return size;
 }

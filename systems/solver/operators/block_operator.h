@@ -32,7 +32,7 @@ struct BlockMemory {
     struct Contact {
         Vec4 q;
         std::array<Vec4, 3> diagonal;  // columns of W_ii
-        std::array<Vec4, 3> skew;      // half of W_ii - W_ii^T, which solve_block ignores
+        std::array<Vec4, 3> skew;  // half of W_ii - W_ii^T: skew part of the diagonal block, which solve_block ignores
         LocalBlock local;
         Real mu;
     };
@@ -109,8 +109,8 @@ private:
     Index begin_, end_;
     Friction friction_;
     Real smallest_size_;
-    Real swept_ = 0;        // estimate of |F|^2 from the changes of the present sweep
-    Real last_swept_ = 0;   // estimate of |F|^2 from the last complete sweep
+    Real swept_ = 0;        // estimate of |F|^2, the squared natural map, from the changes of the present sweep
+    Real last_swept_ = 0;   // estimate of |F|^2 from the changes of the last complete sweep
     Real calibration_ = 1;  // measured |F|^2 divided by the estimate, at the last measurement
     Real size_ = 0;         // max(|q|, |r|, |u|) at the last measurement
 };

@@ -101,7 +101,8 @@ void BodyOperator::list_pushes(BodyEquations& equations) const {
         BodyEquations::Pushes& of = pushes[static_cast<std::size_t>(i)];
         of.count = 0;
         for (const RigidTerm& term : part(i).terms()) {
-            // The body is held, or it deforms. The velocities of a deforming body's nodes include its rigid motion.
+            // A held body has no unknown. If the body deforms, its nodes are the unknowns, and their velocities include
+            // the rigid motion.
             if (!moves_rigidly(equations, term)) continue;
             of.add(
                 {.part = unknown_of(term.slot).part, .turns = true, .weight = term.weight, .arm = term.arm.head<3>()});
@@ -148,7 +149,8 @@ BodyEquations& BodyOperator::newton_memory() {
 
 BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     equations.set_cost(infinity);
-    if (touches_clusters()) return equations;  // K is known only for nodes with their own mass and for bodies
+    // The inertia matrix K is known only for nodes with their own mass and for bodies.
+    if (touches_clusters()) return equations;
     list_unknowns(equations);
     list_parts(equations);
     list_pushes(equations);
@@ -159,7 +161,8 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // Inverting the response matrix costs this once; the cost is divided among about ten steps.
+        // Inverting the response matrix of a body has this cost. It arises once, so a tenth is counted for each of
+        // about ten steps.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
     // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per
@@ -374,16 +377,16 @@ std::optional<Real> BodyOperator::step_motion(BodyEquations& equations, std::spa
 
 namespace {
 
-// Softness is the compliance of contacts within a round, as a fraction of D. A smaller value needs fewer rounds, but
-// more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth of it, and a
-// light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to the number
-// of steps of the last round.
+// Softness is the compliance of contacts within a round, as a fraction of the mobility D. A smaller value needs fewer
+// rounds, but more steps per round. Regions of soft bodies converge at the largest value, stiff bodies at a hundredth
+// of it, and a light body under a heavy one at a small fraction of the mass ratio. The softness is therefore adapted to
+// the number of steps of the last round.
 constexpr Real most_softness = 0.3, least_softness = 1e-9;
 // Start value for regions with deformable bodies. Rounds converge there even at a small softness, since contacts that
 // reverse are stopped.
 constexpr Real first_softness = 0.03;
 
-/// Softness of the next round if the last round took this number of steps.
+/// Softness (compliance of contacts) of the next round if the last round took this number of steps.
 Real softness_after(Index steps, Real softness, bool deforming) {
     constexpr Index few = 4;
     const Real change = steps <= few / 2 ? 0.03 : steps > few ? 1.0 : deforming ? 0.1 : 0.3;
@@ -393,12 +396,14 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
+    // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
+    // start of the round.
     constexpr Real enough = 0.1;
-    // Fraction of that limit below which the round ends even if the error has not decreased.
+    // A round also ends, even if the error has not decreased, when the square root of the merit falls below this
+    // fraction of the limit given by `enough`.
     constexpr Real solved = 1e-3;
     constexpr Index most_in_round = 14;  // a longer round is unlikely to converge soon
-    constexpr Real softer = 10;          // factor on the softness after a round that did not converge
+    constexpr Real softer = 10;          // factor by which the softness grows after a round that did not converge
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];

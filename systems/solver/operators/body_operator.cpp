@@ -58,7 +58,7 @@ void BodyOperator::list_runs() const {
 }
 
 void BodyOperator::for_each_in_sweep(auto&& of) {
-    // Both cases share one loop, because compilers would not inline a second copy of the step.
+    // Sweeps with and without runs share one loop, because compilers would not inline a second copy of `of`.
     const ContactRuns::Run all{0, size(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {

@@ -24,7 +24,7 @@ namespace skerry {
 struct BodyMemory : ContactMemory {
     std::span<RigidPart> part;            // by contact
     std::span<const JointLaw> joint;      // laws of the joint rows, which follow the contacts
-    std::span<const Vec4> free_velocity;  // by velocity row: value without impulses [m/s, rad/s]
+    std::span<const Vec4> free_velocity;  // by velocity row: velocity without impulses [m/s, rad/s]
 };
 
 using NewtonPool = Pool<NewtonEquations>;
@@ -35,8 +35,8 @@ class BodyOperator : public RegionOperatorBase<BodyOperator, ThroughGroups, Body
     friend Base;
 
 public:
-    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses. `pool` provides
-    /// memory for Newton steps.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses. `pool`
+    /// provides memory for Newton steps.
     BodyOperator(const BodyMemory& memory, Friction friction, Real scale, const ThroughGroups& walk, NewtonPool& pool,
                  RunPool& runs)
         : Base(memory, friction, scale, walk), pool_(&pool) {
@@ -50,7 +50,7 @@ public:
     SweepChange accelerated_sweep(Real relaxation);
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     Vec4 project(Index i, const Vec4& impulse) const {
-        if (joint(i) != nullptr) return impulse;  // joint impulses are not projected
+        if (joint(i) != nullptr) return impulse;  // joint impulses have no friction law and are not projected
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     void assemble(Eigen::MatrixXd& matrix) const;
@@ -111,7 +111,7 @@ private:
     Real squared_residual(Index i) const;  // uses a third of the trace of W_ii as D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
     /// An impulse on an implicit body moves all touched nodes of the body. Impulses are therefore summed by node before
-    /// they are applied.
+    /// the velocities are updated.
     void add_response(std::span<const Vec4> impulse, std::span<Vec4> velocity) const;
 
     const RigidPart& part(Index i) const { return memory_.part[static_cast<std::size_t>(i)]; }
@@ -125,8 +125,8 @@ private:
     void stop_turned(BodyEquations& equations, std::span<const Vec4> start);
     Real compare_motion(BodyEquations& equations, std::span<const Vec4> start);
     BodyEquations& list_equations(BodyEquations& equations);
-    /// moves_rigidly(): the rigid motion of the term's body is an unknown. is_unknown(): the velocity of the node is an
-    /// unknown.
+    /// moves_rigidly(): true if the rigid motion of the body of `term` is an unknown. is_unknown(): true if the
+    /// velocity of the node is an unknown.
     bool moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const;
     bool is_unknown(const BodyEquations& equations, Index node) const;
     BodyEquations* rigid_mode_memory();
@@ -152,7 +152,7 @@ private:
     /// Calls `of` for all contacts in their order.
     void for_each_in_sweep(auto&& of);
     void list_runs() const;
-    /// Applies an impulse of contact i within a sweep. On implicit bodies it moves only the nodes of the present run
+    /// Applies an impulse of contact i within a sweep. On an implicit body only the nodes of the present run move
     /// (ContactRuns).
     void apply(Index i, const Vec4& impulse);
 

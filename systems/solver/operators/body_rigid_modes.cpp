@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// True if the rigid motion of the term's body is an unknown. A held body has no rigid motion.
+/// True if the rigid motion of the body of `term` is an unknown. A held body has no rigid motion.
 bool BodyOperator::moves_rigidly(const BodyEquations& equations, const RigidTerm& term) const {
     if (!walk_.deforms(term.row)) return true;
     return equations.rigid_modes && walk_.rigid().inverse_mass(static_cast<std::size_t>(term.row)) > 0;
@@ -20,8 +20,8 @@ bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const 
     return !(equations.rigid_modes && walk_.moves_with_rigid(node));
 }
 
-/// With few contacts per body, sweeps alone are faster. Piles of cubes with 27 nodes have about 20 contacts per body,
-/// and the correction would make them a sixth slower.
+/// With few contacts per body, sweeps alone are faster than with the coarse correction. Piles of cubes with 27 nodes
+/// have about 20 contacts per body; with the correction they would take a sixth longer.
 bool BodyOperator::corrects_rigid_modes() const {
     constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
@@ -70,13 +70,15 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    // Compliance of the contacts as a fraction of D. It exceeds the compliance of the bodies; otherwise rounds gain
-    // nothing.
+    // Compliance of the contacts as a fraction of the mobility D. It exceeds the compliance of the bodies; otherwise
+    // rounds gain nothing.
     constexpr Real softness = 0.3;
-    // A round ends when the square root of the merit falls below this fraction of the error at the start of the round.
+    // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
+    // start of the round.
     constexpr Real enough = 0.01;
-    constexpr Real gain = 0.5;           // another round follows if a round reduces the error below this fraction
-    constexpr Index most_in_round = 14;  // limit of steps per round
+    // Another round follows if the error after a round is below this fraction of the error before the round.
+    constexpr Real gain = 0.5;
+    constexpr Index most_in_round = 14;  // upper limit on the number of steps per round
     SolveResult result{0, error, error <= tolerance};
     BodyEquations* const equations = rigid_mode_memory();
     if (equations == nullptr) return result;

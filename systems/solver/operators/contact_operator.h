@@ -25,8 +25,10 @@ struct SolveResult {
 /// Change of the impulses in one sweep. T is Real, or Real8 for eight regions in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
-    T size{};     // sum of change . W_ii change
-    T against{};  // minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the motion
+    T size{};  // sum of change . W_ii change over the contacts
+    // Minus the sum of change . W_ii (impulse - previous); positive if the sweep reverses the previous change of the
+    // impulses.
+    T against{};
 
     SweepChangeOf& operator+=(const SweepChangeOf& other) {
         size += other.size;
@@ -40,7 +42,7 @@ using SweepChange = SweepChangeOf<Real>;
 /// diagonal block of contact i.
 template <class Op>
 concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number number) {
-    // One sweep: solves each contact exactly in turn, with this relaxation factor.
+    // One sweep with this relaxation factor: solves the contacts exactly, one after the other.
     { op.accelerated_sweep(relaxation) } -> std::same_as<SweepChangeOf<typename Op::Number>>;
     { op.error() } -> std::same_as<typename Op::Number>;  // error of the present impulse
     op.suggests_check(number, relaxation);  // call it after each sweep, with the sweep's change and the tolerance

@@ -38,7 +38,7 @@ private:
 /// Runs of the contacts of one region. Memory is reused for the next region.
 class ContactRuns {
 public:
-    /// Consecutive contacts, and the range of patches with their nodes.
+    /// A run: consecutive contacts, and the range of patches with the nodes of these contacts.
     struct Run {
         Index begin, end;
         std::size_t first_patch, last_patch;
@@ -76,10 +76,10 @@ private:
         std::size_t body;  // row of RigidBodyTable
         Index first_row;   // region row of the first touched node of the body
     };
-    /// Nodes of the run that move with an impulse on one node of a contact. `count` is 0 if this node is on no implicit
-    /// body.
+    /// Nodes of the run that move with an impulse on one node of a contact. `count` is 0 if the node of the contact is
+    /// on no implicit body.
     struct Near {
-        std::size_t first, count, self, row;  // `first`, `self`: indices in node_; `row`: index in block_
+        std::size_t first, count, self, row;  // `first`, `self`: indices in node_; `row`: index of a block in block_
     };
 
     void list_patches(std::span<const LumpedContact> contact, const ThroughGroups& walk, std::size_t first_node,

@@ -1,6 +1,6 @@
-// Walks over the contacts of a region. A walk defines the visiting order of the contacts, the number of threads, and
-// the effect of an impulse on the velocities. Walks are types: shared code is written once and compiled separately for
-// each walk.
+// Traversals (walks) of the contacts of a region. A walk defines the visiting order of the contacts, the number of
+// threads, and the effect of an impulse on the velocities. Walks are types: shared code is written once and compiled
+// separately for each walk.
 #pragma once
 
 #include <concepts>
@@ -17,7 +17,7 @@ namespace skerry {
 template <class W>
 concept RegionOrder = requires(const W walk, std::size_t count, void (*body)(std::size_t, std::size_t),
                                Real (*part)(std::size_t, std::size_t)) {
-    // number in the region of the contact at a position
+    // number of the contact in the region, for a position in the visiting order
     { walk.number_of(count) } -> std::convertible_to<std::size_t>;
     walk.contacts(count, body);
     walk.nodes(count, body);
@@ -52,7 +52,7 @@ struct OneThread {
 
 static_assert(RegionOrder<OneThread>);
 
-/// Walk with one thread in ascending order, for regions in which every node has its own mass.
+/// Traversal (walk) by one thread in ascending order, for regions in which every node has its own mass.
 struct InOrder : OneThread {
     static constexpr bool own_masses = true;
 

@@ -14,7 +14,7 @@ struct LumpedMemory : ContactMemory {
 };
 
 /// Operator of a region with lumped masses. For a given order of the contacts, the bits of the impulses do not depend
-/// on the walk, but the bits of sums do.
+/// on the type Walk of the traversal, but the bits of sums do.
 template <RegionWalk Walk>
 class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory> {
     using Base = RegionOperatorBase<LumpedOperatorBy<Walk>, Walk, LumpedMemory>;
@@ -23,7 +23,7 @@ class LumpedOperatorBy : public RegionOperatorBase<LumpedOperatorBy<Walk>, Walk,
 public:
     using Base::size;
 
-    /// `scale` is the scale of e_nat [sqrt(J)]. The velocities in `memory` must match its impulses.
+    /// The error e_nat is divided by `scale` [sqrt(J)]. The velocities in `memory` must match its impulses.
     LumpedOperatorBy(const LumpedMemory& memory, Friction friction, Real scale, const Walk& walk = {})
         : Base(memory, friction, scale, walk) {}
 

@@ -42,7 +42,7 @@ public:
         return sum;
     }
 
-    /// Error e_nat of docs/methods/errors.md 2.
+    /// Relative error e_nat of the present impulses (docs/methods/errors.md 2).
     Real error() const {
         Real sum = 0;
         for (std::size_t i = 0; i < region_.contact.size(); ++i) {
@@ -85,7 +85,7 @@ private:
     static Real wanted(const LumpedContact& contact, Real impulse, Real relaxation, const Vec4* velocity) {
         const Real approach = contact.normal.dot(contact_velocity(contact, velocity));
         const Real next = impulse - relaxation * contact.inverse_diagonal * approach;
-        return next <= 0 ? 0 : next;  // this form of the comparison preserves NaN
+        return next <= 0 ? 0 : next;  // with this form of the comparison NaN stays NaN
     }
     void read_impulses() {
         for (std::size_t i = 0; i < region_.contact.size(); ++i)

@@ -18,7 +18,7 @@ namespace skerry {
 struct ContactMemory {
     std::span<const LumpedContact> contact;
     std::span<Vec4> impulse;      // [N s]
-    std::span<Vec4> velocity;     // includes the effect of the impulse [m/s, rad/s]
+    std::span<Vec4> velocity;     // velocities that include the effect of the impulse [m/s, rad/s]
     std::span<const Index> node;  // by velocity row: row of NodeTable, or no_index for rigid bodies
     std::span<Vec4> scratch;      // by velocity row: velocities of the previous impulses, or temporary in multiply()
     std::array<std::span<Vec4>, workspace_limit> workspace;  // by contact
@@ -47,7 +47,8 @@ public:
     }
     void refresh_all() {
         refresh();
-        refresh(memory_.workspace[1], memory_.scratch);  // refreshing only one would let their difference grow
+        // Refreshing only one of the two velocity arrays would let rounding errors in their difference grow.
+        refresh(memory_.workspace[1], memory_.scratch);
     }
     void remember() {
         own().settle();
@@ -58,7 +59,7 @@ public:
             for (std::size_t n = begin; n < end; ++n) memory_.scratch[n] = memory_.velocity[n];
         });
     }
-    /// Error e_nat of docs/methods/errors.md 2 over all contacts.
+    /// Relative error e_nat of the present impulses over all contacts (docs/methods/errors.md 2).
     Real error() {
         own().settle();
         const Real sum = walk_.template sum<Real>(memory_.contact.size(), [this](std::size_t begin, std::size_t end) {
@@ -116,7 +117,7 @@ protected:
 
     Memory memory_;
     Friction friction_;
-    Real scale_;  // scale of e_nat [sqrt(J)]
+    Real scale_;  // number by which the error e_nat is divided [sqrt(J)]
     Walk walk_;
 
 private:

@@ -1,4 +1,4 @@
-// Walk over a region whose contacts touch clusters. An impulse on a node moves all nodes of its cluster
+// Traversal (walk) of a region whose contacts touch clusters. An impulse on a node moves all nodes of its cluster
 // (docs/methods/clusters.md 4).
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace skerry {
 
 /// Walk with one thread, in ascending order of the contacts. All nodes of a touched cluster must be consecutive rows of
-/// the region, in the order of the cluster, even nodes that no contact has.
+/// the region, in the order of the cluster, including nodes without contacts.
 class ThroughClusters : public OneThread {
 public:
     static constexpr bool own_masses = false;

@@ -1,6 +1,6 @@
-// Walk over a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of clusters, and
-// nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). The velocities of
-// implicit nodes are relative to the motion of the frame.
+// Traversal (walk) of a region whose contacts touch rigid bodies. It supports nodes with their own mass, nodes of
+// clusters, and nodes of implicit bodies, which deform in a moving frame (docs/methods/implicit_bodies.md 4). The
+// velocities of implicit nodes are relative to the motion of the frame.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// Walk with one thread, in ascending order of the contacts. The touched nodes of an implicit body must be consecutive
-/// rows of the region, in the order of ImplicitCoupling.
+/// Traversal (walk) by one thread, in ascending order of the contacts. The touched nodes of an implicit body must be
+/// consecutive rows of the region, in the order of ImplicitCoupling.
 class ThroughGroups : public OneThread {
 public:
     /// `node` lists the rows of NodeTable of the region's nodes.
@@ -22,7 +22,7 @@ public:
 
     bool any_deforms() const { return implicit_->any(); }
     /// Applies an impulse of a contact to all nodes that are on no implicit body. For nodes of implicit bodies it adds
-    /// the weighted impulse to `sum`, by node of the region, for SpreadImpulses.
+    /// the weighted impulse to `sum`, the input of SpreadImpulses, by node of the region.
     void collect(const LumpedContact& contact, const Vec4& impulse, Vec4* sum, Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a) {
             if (deforming_place(contact.node[a]) == no_index)

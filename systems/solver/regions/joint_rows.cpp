@@ -9,7 +9,7 @@
 namespace skerry {
 namespace {
 
-/// Motion of one body at the point of a joint, after the kick.
+/// Motion of one body at the point of a joint, after the kick (the velocity change by forces).
 struct BodyMotion {
     Vec3 arm = Vec3::Zero();  // vector from the centre to the joint point [m]
     // linear and angular velocity [m/s, rad/s]
@@ -30,8 +30,8 @@ struct BodyMotion {
     Vec3 at_point() const { return velocity + turning(); }
 };
 
-/// Half the acceleration of the joint error in the frame of the second body, while both bodies move freely [m/s^2 or
-/// rad/s^2]
+/// Half of the acceleration with which the joint error changes in the frame of the second body while both bodies move
+/// freely [m/s^2 or rad/s^2]
 Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     if (of_spins) return (first.spin_rate - second.spin_rate - second.spin.cross(first.spin - second.spin)) / 2;
     const Vec3 of_first = first.spin.cross(first.turning()) + first.spin_rate.cross(first.arm);
@@ -39,8 +39,8 @@ Vec3 half_acceleration(bool of_spins, const BodyMotion& first, const BodyMotion&
     return (of_first + of_second) / 2 - second.spin.cross(first.at_point() - second.velocity);
 }
 
-/// Upper bound of the correction speed: recovery_speed (translation) or 1 rad/s (rotation), plus the rotational speeds
-/// of both bodies [m/s or rad/s]
+/// Upper bound of the speed at which a joint error is corrected: recovery_speed (translation) or 1 rad/s (rotation),
+/// plus the rotational speeds of both bodies [m/s or rad/s]
 Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& first, const BodyMotion& second) {
     constexpr Real turning = 1;  // [rad/s]
     return of_spins ? turning + first.spin.norm() + second.spin.norm()
@@ -58,13 +58,13 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real way = axis.motor.target - axis.coordinate;
-    // Braking uses half of the motor's strength; the other half is reserved for loads.
+    // Braking uses half of the greatest motor impulse; the other half is reserved for loads.
     const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
     bounds.target = std::copysign(std::min({std::abs(way) / h, axis.motor.most_speed, brakes}), way);
     return bounds;
 }
 
-/// Velocity along the joint rows that corrects the error of the block [m/s or rad/s]
+/// Velocity along the joint rows that corrects the position error of the joint block [m/s or rad/s]
 Vec3 pull_of(const JointBlock& block, Real h, Real fastest) {
     Vec3 pull = block.error / h;
     if (!block.axis.locked) pull.z() = 0;
@@ -82,7 +82,7 @@ struct BodyEnd {
         const RigidInputs& rigid = stage.inputs.rigid;
         const auto r = static_cast<std::size_t>(body);
         center = rigid.center[r];
-        if (slot == no_index) {  // impulses cannot move this body
+        if (slot == no_index) {  // the body has no velocity rows, because impulses cannot move it
             center_next = center + stage.h * rigid.velocity(r);
             turn = rotation_matrix(stage.h * rigid.spins.kicked(r));
             return;

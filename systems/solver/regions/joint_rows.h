@@ -16,14 +16,14 @@ struct JointPlaceInRegion {
 };
 
 /// Fills `place` from `block`. `rigid` lists the rigid bodies of the region. Each body has two velocity rows, in the
-/// order of this list.
+/// order of the list.
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
-/// One Newton step for a joint that shall hold at the end of the step. Predicts the error of the block at the end of
-/// the step from the velocities of the region. Subtracts the error that later steps shall correct, and adds the rest
-/// divided by h to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2
-/// for rows of rotation]
+/// One Newton step for a joint that shall hold at the end of the step. Predicts the error of the joint block at the end
+/// of the step from the velocities of the region, and subtracts the part that later steps shall correct. Adds the
+/// remaining error divided by h to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg
+/// m^2 (rad/s)^2 for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const JointPlaceInRegion& place);
 

@@ -1,5 +1,5 @@
 // Life cycle of a region: load, start, sweep, write back, push out. It is the same for all regions. Regions differ in
-// their operator (lumped masses, clusters, bodies) and in their walk (in order, coloured).
+// their operator (lumped masses, clusters, bodies) and in their walk, the traversal of contacts (in order, coloured).
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,17 @@
 
 namespace skerry {
 
-/// One region and its part of the memory, in the order of the walk. BodyRegion replaces some of the functions.
+/// One region and its rows of the working memory, in the order in which the walk visits the contacts. BodyRegion
+/// replaces some of the functions.
 template <RegionOrder Walk, class Memory>
 struct LoadedRegion {
     std::span<const Index> row;  // rows of ContactTable, by number of the contact in the region
-    Index base = 0;              // position of its first contact in the columns by contact
+    Index base = 0;              // row of the first contact of the region in the columns by contact
     Walk walk{};
     Memory memory{};
     LoadSums sums{};
-    Real scale = 0;      // scale of e_nat [sqrt(J)]
-    Real tolerance = 0;  // tolerance of this region
+    Real scale = 0;      // number by which the error e_nat is divided [sqrt(J)]
+    Real tolerance = 0;  // tolerance of the relative error for this region
 
     Index row_at(std::size_t place) const { return row[walk.number_of(place)]; }
     /// True if the region writes the velocity of its node number n. False if the node moves with the frame of a body.
@@ -32,21 +33,21 @@ struct LoadedRegion {
     void take_joint_impulses(const RegionStage&) const {}
     /// Solves the region again if its joints would not hold at the end of the step.
     void hold_joints(const RegionStage&, auto&, RegionOutcome&) const {}
-    /// Adds the impulse of a contact to its bodies, and writes the velocities of the bodies' nodes.
+    /// Adds the impulse of a contact to the touched bodies, and writes the velocities of the nodes of these bodies.
     void write_contact(const RegionStage&, std::size_t) const {}
     /// Writes the impulses of joints.
     void write_joints(const RegionStage&) const {}
     /// Writes the pseudo velocities of bodies.
     void write_body_push(const RegionStage&) const {}
-    /// Returns the parts of the split impulse other than contacts.
+    /// Returns the parts of the split impulse that do not come from contacts: joints, and rotation of round bodies.
     PushedContacts pushed(const RegionStage&, const auto&) const { return {}; }
     /// Work of the split impulse against the forces of the step [J]
     Real push_work(const RegionStage& stage) const { return push_work_of_nodes(stage, memory, Walk::own_masses); }
 };
 
 /// List of the nodes of a region and their velocities, in the order of their first appearance. RegionMemory::place
-/// caches a node's position in the list. Regions share no moving node, so they do not overwrite each other's entries.
-/// An entry left from another region is detected because this list holds a different node at that position.
+/// caches the position of a node in the list. Regions share no moving node, so they do not overwrite each other's
+/// cached positions. A cached position from another region is detected: this list then holds a different node there.
 class NodeList {
 public:
     /// Uses at most `room` entries of the columns by node, from `first` on.
@@ -83,8 +84,8 @@ private:
 };
 
 /// Load: writes the contacts in the order of the walk, and zero impulses. `load(place, number, contact)` fills a
-/// contact and returns its velocity without impulses; it may add nodes to the list. The sums over contacts are added to
-/// those over the region's joints.
+/// contact and returns the contact velocity without impulses; it may add nodes to the list. Adds the sums over contacts
+/// to the sums over joints.
 template <class Region, class Load>
 void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     RegionMemory& data = stage.memory;
@@ -102,8 +103,8 @@ void load_contacts(const RegionStage& stage, Region& region, Load&& load) {
     region.scale = error_scale(region.sums, stage.inputs.gravity, stage.h, region.tolerance);
 }
 
-/// Sets the impulses to those of the last step, and the velocities accordingly. For a frictionless contact only the
-/// normal part of the impulse is used.
+/// Sets the impulses to those of the last step, and the velocities to those that these impulses cause. For a
+/// frictionless contact only the normal part of the impulse is used.
 template <class Region, RegionOperator Op>
 void take_warm_start(const RegionStage& stage, const Region& region, Op& op) {
     region.walk.contacts(region.row.size(), [&](std::size_t begin, std::size_t end) {

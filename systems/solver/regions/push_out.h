@@ -19,11 +19,12 @@ concept RegionOperator = ContactOperator<Op> &&
     { op.velocity(i) } -> std::same_as<Vec4>;  // velocity u of contact i for the present impulse
     // squared energy norm of a push that changes the normal speed of contact i by this number [J]
     { op.push_size(i, number) } -> std::same_as<Real>;
-    { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;  // one contact step on the pseudo velocities
+    // One contact step of the split impulse, which changes the pseudo velocities.
+    { op.push(i, number, velocity, impulse) } -> std::same_as<Real>;
 };
 
-/// Parts of the split impulse other than contacts. Regions of lumped masses have none. PushedBodies adds joints and the
-/// rotation of capsules and cylinders.
+/// Parts of the split impulse that do not come from contacts. Regions of lumped masses have none. PushedBodies adds
+/// joints and the rotation of capsules and cylinders.
 struct PushedContacts {
     /// True if rotation of bodies may reduce gaps.
     bool any_turns() const { return false; }

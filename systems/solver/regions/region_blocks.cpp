@@ -3,7 +3,7 @@
 namespace skerry {
 namespace {
 
-/// Lists a cluster or rigid body (`block`) at most once per region. `region_of` holds the last region that listed the
+/// Lists a cluster or rigid body (`block`) at most once per region. `region_of` stores the last region that listed the
 /// block.
 void note(Index block, Index region, Column<Index>& region_of, Ragged<Index>& list) {
     if (block == no_index || region_of[static_cast<std::size_t>(block)] == region) return;

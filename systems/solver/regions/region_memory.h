@@ -73,24 +73,27 @@ struct RegionMemory {
     Column<Vec4> velocity;  // [m/s]
     Column<Vec4> scratch;   // [m/s]
     // Data of regions that touch clusters of nodes or rigid bodies.
-    Ragged<Index> region_clusters, region_rigid;  // by region: touched clusters, bodies; may be empty
-    Column<std::size_t> node_base;                // by region: index of its first node row
-    // by cluster, by body: last region that touched the cluster or body
+    // For each region: list of the touched clusters, list of the touched bodies; may be empty.
+    Ragged<Index> region_clusters, region_rigid;
+    Column<std::size_t> node_base;  // by region: index of the first node row of the region
+    // For each cluster and for each body: last region that touched the cluster or body.
     Column<Index> region_of_cluster, region_of_rigid;
-    Column<RigidPart> rigid_part;  // by contact; empty without rigid bodies
-    Column<JointLaw> joint_law;    // by joint row; index 0 is row contact_rows
-    // For regions with joints: index of the region's first row. Its contacts come first, then its joints.
+    Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
+    Column<JointLaw> joint_law;    // by joint row; entry 0 belongs to the row number contact_rows
+    // For regions with joints: index of the first row of the region. The contacts of the region come first, then the
+    // joints.
     Column<std::size_t> joint_base;
-    std::size_t contact_rows = 0, rows = 0;  // number of contact rows; this number plus the rows of regions with joints
-    Column<Vec4> free_velocity;              // by row of `velocity`; empty without rigid bodies [m/s]
+    // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints.
+    std::size_t contact_rows = 0, rows = 0;
+    Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
     // For each row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
     // there.
     Column<Index> place;
     // by region
     Column<Real> cost;           // predicted [microseconds]
-    Column<Real> cost_parts;     // partial sums of `cost`
-    RegionHistoryTable history;  // sweeps of each region up to the last step
-    RegionHistoryTable present;  // sweeps of each region including this step
+    Column<Real> cost_parts;     // partial sums of `cost` over the regions
+    RegionHistoryTable history;  // number of sweeps of each region in earlier steps
+    RegionHistoryTable present;  // number of sweeps of each region, including this step
     // by task
     Column<RegionTask> task;
     LargeRegions large;
