@@ -15,7 +15,7 @@ namespace {
 /// per triangle.
 struct Side {
     std::array<Index, 2> node;    // node numbers in ascending order
-    std::array<Index, 2> corner;  // corners in the order of `node`
+    std::array<Index, 2> corner;  // triangle corners at the two nodes, in the order of `node`
 };
 
 std::vector<Side> sides_of(std::span<const BoundaryTriangle> boundary) {

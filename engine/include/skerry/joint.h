@@ -49,7 +49,8 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
-    // Position error: distance of the two points that should coincide; for a slider, the part normal to the axis [m].
+    // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
+    // part of this distance normal to the axis counts.
     Real error = 0;
 };
 

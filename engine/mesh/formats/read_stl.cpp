@@ -22,7 +22,7 @@ public:
 
 private:
     Index node(const Vec3& x) {
-        // keys that contain -0 and 0 are equal
+        // -0 and 0 count as equal keys
         const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
         if (added) mesh_.nodes.push_back(x);
         return place->second;
@@ -66,7 +66,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
             reader.set_section("facet " + std::to_string(i));
             if (key != "facet") reader.complain({}, in_quotes(key), "facet or endsolid");
             require_word(reader, "normal");
-            for (int a = 0; a < 3; ++a) reader.word("a normal");  // unused: many files have wrong normals
+            // the normal vector is not used, because many files have wrong normals
+            for (int a = 0; a < 3; ++a) reader.word("a normal");
             require_word(reader, "outer");
             require_word(reader, "loop");
             std::array<Vec3, 3> corners;

@@ -18,16 +18,16 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Corners = std::array<Vec3, 3>;
 
-// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller gain does not
-// justify moving the surface.
+// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller increase does
+// not justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Fraction of the tolerance that the distance of a sample point from the other surface may reach. The rest is a margin
-// for the surface between the sample points.
+// Largest distance of a sample point from the other surface, as a fraction of the tolerance. The rest of the tolerance
+// is a margin for the surface between the sample points.
 constexpr Real share_of_tolerance = 0.8;
-// Cosine of the largest angle by which a change may rotate the normal of a triangle (60 degrees).
+// Cosine of 60 degrees, the largest angle by which a change may rotate the normal of a triangle.
 constexpr Real least_turn = 0.5;
-// Smallest cosine between the normal of a triangle that replaces a flat one, and the mean normal of the removed
-// triangles. The normal of a flat triangle itself is noise.
+// A flat triangle has no meaningful normal. A triangle that replaces it is compared with the mean normal of the removed
+// triangles. This is the smallest allowed cosine between the two normals.
 constexpr Real least_turn_of_flat = 0.2;
 // Number of intervals per edge of a triangle, which gives 15 sample points for distances.
 constexpr int parts = 4;
@@ -278,12 +278,13 @@ private:
     KnotSettings settings_;
     TriangleTree original_;
     std::vector<Vec3> nodes_;
-    std::vector<Triangle> triangles_;  // all triangles, including removed ones
+    std::vector<Triangle> triangles_;  // all triangles of the surface, including removed ones
     std::vector<bool> alive_;
-    // Sample points of the old surface, listed by the triangle that now represents them.
+    // Sample points of the old surface, sorted by the triangle of the new surface that is nearest to each point.
     std::vector<std::vector<Vec3>> samples_;
     std::vector<std::vector<Index>> around_;  // numbers of the triangles at each node
-    // Altitude and number of each flat triangle, flattest first. Ties are ordered by number.
+    // Pairs (altitude, triangle number) of all flat triangles, flattest first. Equally flat triangles are ordered by
+    // number.
     std::set<std::pair<Real, Index>> flat_;
 };
 

@@ -12,11 +12,12 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-constexpr Real layer_height = 1.0;  // height of a layer divided by ring spacing; maximises the smallest altitude
-// A layer boundary is placed at a kink of the outline if its angle is larger than this [rad].
+// height of a layer divided by ring spacing; this ratio maximises the smallest altitude
+constexpr Real layer_height = 1.0;
+// Smallest change of direction of the outline at which a kink becomes a layer boundary [rad].
 constexpr Real sharp_turn = 0.25;
-// Smallest distance between layer boundaries, divided by ring spacing. A kink closer than this to another boundary gets
-// no boundary, so it is rounded.
+// Smallest distance between two layer boundaries, divided by ring spacing. A kink that is closer to another boundary
+// does not become a boundary, so it is rounded.
 constexpr Real least_layer = 0.6;
 constexpr Real point_radius = 0.3;  // largest radius of an end that closes to a point, divided by ring spacing
 

@@ -19,7 +19,7 @@ namespace skerry {
 /// itself.
 struct PageCollider {
     std::string name;
-    std::string kind;  // one of plane, sphere, box, capsule, cylinder, bucket, mesh
+    std::string kind;  // kind of shape: plane, sphere, box, capsule, cylinder, bucket or mesh
     SurfaceMesh picture;
 };
 

@@ -126,7 +126,7 @@ std::string escape_html(const std::string& text) {
     return escape_markup(clean);
 }
 
-/// Returns the compressed text of three.js, which has about a fifth of the size.
+/// Returns three.js in compressed form, which has about a fifth of the size of its text.
 std::string packed_three_js() {
     Deflater deflater;
     deflater.add(three_js);
