@@ -51,7 +51,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
         for (std::size_t a = 0; a < 4; ++a)
             if (const Index row = rigid.nodes.row(stencil.node[a]);
                 stencil.weight[a] != 0 && row != no_index &&
-                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // inverse mass 0: held node
+                // inverse mass 0: an attachment holds the node
+                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
                 touched[row].insert(stencil.node[a]);
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {
@@ -68,8 +69,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// For a cylinder: sets the position at which each contact of the problem touches it. `rows` are the rows of these
-/// contacts in the tables of the step.
+/// For a cylinder: sets the touching point of each contact of the problem relative to the centre of mass. `rows` are
+/// the rows of these contacts in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();

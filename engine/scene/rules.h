@@ -51,13 +51,13 @@ struct Withdrawn {
     std::string_view key, instead;
 };
 
-/// A condition on which keys of a group an object may or must have.
+/// A condition on several keys of an object: exactly one, at most one, or all or none of them may be given.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
     std::vector<std::string> keys;
 };
 
-/// Part of a rule that does not depend on the object's type. It is compiled only once, in rules.cpp.
+/// Part of a rule that does not depend on the type of the object. This part is compiled only once, in rules.cpp.
 class RuleTable {
 public:
     const std::string& name() const { return name_; }
@@ -72,7 +72,7 @@ protected:
     struct Key {
         std::string name;
         KeyDoc doc;
-        std::size_t offset;  // offset of the value within the object [bytes]
+        std::size_t offset;  // offset of the key's value within the C++ object [bytes]
         ValueFunctions value;
     };
 

@@ -52,7 +52,7 @@ Json list_schema(Json items, std::size_t count);
 Json named_schema(Json value);
 Json numbered_schema(Json value);
 Json either_schema(Json one, Json other);
-/// Returns a schema reference to the definition of a rule. Adds the definition to `book` if it is missing.
+/// Returns a schema reference to the definition of a rule. Adds the definition to `book` if `book` lacks it.
 Json rule_schema(SchemaBook& book, const RuleTable& rule);
 
 template <>
@@ -118,7 +118,7 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Reads a text, and returns the index of the equal text in `names`.
+/// Reads a text, and returns the index of this text in `names`.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// The cases that one process runs: those with case number mod `of` = `rank`.
+/// The cases that one process runs: all cases whose number modulo `of` is `rank`.
 struct Share {
     int rank = 0, of = 1;
     // Names of the options or environment variables that define the share. If empty, the process runs all cases.
