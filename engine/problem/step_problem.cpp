@@ -51,8 +51,7 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
         for (std::size_t a = 0; a < 4; ++a)
             if (const Index row = rigid.nodes.row(stencil.node[a]);
                 stencil.weight[a] != 0 && row != no_index &&
-                // inverse mass 0: an attachment holds the node
-                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)
+                contacts.inverse_mass[static_cast<std::size_t>(stencil.node[a])] > 0)  // inverse mass 0: held node
                 touched[row].insert(stencil.node[a]);
     std::vector<RigidPoints> bodies;
     for (const auto& [row, nodes] : touched) {

@@ -190,8 +190,8 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Calls item(number, value, place) for each key of a JSON object. The keys must be whole numbers that fit 32 bits: no
-/// sign except minus, no leading zeros.
+/// Calls item(number, value, place) for each key of a JSON object. Each key must be a whole number that fits 32 bits,
+/// written without leading zeros and without a plus sign.
 void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
 
 template <class T>
