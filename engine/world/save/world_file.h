@@ -8,12 +8,12 @@
 
 namespace skerry {
 
-/// Data in a file besides the world: a text of the caller.
+/// Additional data in a file besides the world: a text that the caller provides.
 struct SavedNote {
     std::string text;
 };
 
-/// Does the work of World::save. The world does not change.
+/// Implementation of World::save. The world does not change.
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file);
 
 struct LoadedWorld {
