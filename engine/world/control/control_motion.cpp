@@ -95,8 +95,8 @@ void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, R
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
         return;
     const Vec3 rotation = rotation_vector(from.rotation);
-    // Of all rotation vectors for the new rotation, the vector nearest to the present one is used. Otherwise the object
-    // would make an additional full revolution.
+    // A rotation has many rotation vectors, which differ by full revolutions. The vector nearest to the present one is
+    // used, so that the object makes no additional revolution.
     scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
 }
 

@@ -32,8 +32,8 @@ std::string at_row(Index found, std::size_t row);
 /// Checks that a column has the expected number of rows.
 void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected);
 
-/// Checks that all saved columns of a table have `rows` rows, and gives the unsaved columns this size. Columns with
-/// lists, in which rows have ranges, may have any size.
+/// Checks that all saved columns of a table have `rows` rows, and resizes the unsaved columns to this size. Columns
+/// that contain lists may have any size.
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
 
 /// Checks that every entry is a row number of a table with `count` rows. If `none` is true, no_index is accepted too.
@@ -46,7 +46,7 @@ void expect_between(const Hdf5File& file, std::string_view path, std::span<const
 void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
                     std::uint8_t least, std::uint8_t most);
 
-/// Checks that the ranges follow each other and together cover `count` rows.
+/// Checks that each range begins where the previous range ends, and that the ranges together cover `count` rows.
 void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
 inline std::span<const Index> part(std::span<const Index> rows, Range range) {

@@ -20,8 +20,8 @@ struct LoadedWorld {
     World world;
     SavedNote note;
 };
-/// Reads a file as World::load does. `compare_hash`: refuse a world whose hash differs from the saved hash. Tests of
-/// the reading code pass false, so that all consistent values are accepted.
+/// Implementation of World::load. If `compare_hash` is true, a world whose hash differs from the saved hash is refused.
+/// Tests of the reading code pass false, so that all consistent values are accepted.
 LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings, bool compare_hash = true);
 
 }  // namespace skerry
