@@ -35,7 +35,7 @@ MassParts separate(const MatrixEntries& mass) {
     return parts;
 }
 
-/// Returns the entries of a matrix, grouped by the part to which their row belongs.
+/// Returns the entries of a matrix, grouped by the part of M (see MassParts) to which the row of each entry belongs.
 std::vector<std::vector<MatrixEntry>> by_part(const MassParts& parts, const MatrixEntries& matrix) {
     std::vector<std::vector<MatrixEntry>> entries(parts.size.size());
     for (const MatrixEntry& e : matrix.entry) entries[parts.part[e.row]].push_back(e);

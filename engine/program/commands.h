@@ -59,7 +59,7 @@ struct InspectOptions {
     std::filesystem::path repair;  // file for the repaired mesh; empty: only inspect
     // Largest allowed distance between the old and the new surface, divided by the diagonal of the bounding box.
     Real tolerance = 2e-3;
-    // Name of the body whose mesh is repaired. If empty, the body with the smallest stable step is chosen.
+    // Name of the body whose mesh is repaired. If the name is empty, the body with the smallest stable step is chosen.
     std::string body;
     bool overwrite = false;  // the repaired mesh may replace the input file
 };

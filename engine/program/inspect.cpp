@@ -19,7 +19,7 @@ namespace {
 
 using Problems = std::vector<std::string>;
 
-// Tetrahedra below this quality are slivers, which shorten the step and reduce accuracy.
+// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
 constexpr Real poor_quality = 0.1;
 // Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
@@ -267,7 +267,7 @@ std::string materials_text(const BodyKindReport& kind) {
 /// A scene in the state in which a run starts, and its overlaps before the run resolves them.
 struct SceneStart {
     Scene scene;
-    WorldReport as_written;  // report of the world in which overlaps are not resolved
+    WorldReport as_written;  // report of a world in which the overlaps at the start are not resolved
     std::string outcome;     // how a run resolves the overlaps, as text; empty if there are none
 };
 

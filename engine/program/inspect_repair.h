@@ -12,8 +12,9 @@ struct RepairTask {
     std::string what;  // name of the mesh in messages: the mesh file, or the scene and the body
     StepCase of;
     std::string step_of;  // description of the material for which the stable step is computed
-    bool scaled = false;  // true: the scene scales the mesh, and the repaired file contains scaled nodes, so the scene
-                          // must drop `scale`
+    // true if the scene scales the mesh: the repaired file contains scaled nodes, so `scale` must be removed from the
+    // scene
+    bool scaled = false;
 };
 
 /// Checks the options before any computation: the output file is a writable .msh file, it does not replace the input

@@ -41,7 +41,7 @@ private:
         BodyHandle body;
         std::vector<char> inside;  // for each node of the body: nonzero if the node belongs to the probe
         State last_closed = State::open;
-        std::size_t stressed = 0;                   // index of the probe's body in `stressed_`
+        std::size_t stressed = 0;                   // index in `stressed_` of the probe's body
         std::vector<std::size_t> stressed_nodes{};  // indices of the probe's nodes in Stressed::nodes
     };
     /// A body, and the nodes of all probes on this body. The stress of these nodes is evaluated in one call, because
@@ -57,7 +57,7 @@ private:
 };
 
 Json to_json(const ProbeRecord& record);
-/// Reads all members of a record except the name.
+/// Reads all members of a record except its name.
 void from_json(const Json& json, ProbeRecord& record);
 
 }  // namespace skerry

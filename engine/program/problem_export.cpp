@@ -28,7 +28,7 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
 /// exported.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    // The upper limit is needed because `steps` may be infinite.
+    // The upper limit is needed because the number of steps may be infinite.
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 

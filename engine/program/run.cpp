@@ -85,7 +85,7 @@ public:
                 advance(duration);
             }
             if (result_.status != "ok" && !(world_.time() > begin))
-                break;  // the run stopped before the first step of this frame
+                break;  // the run stopped before the first step of this frame, so the frame is not written
             add_frame();
             const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());

@@ -8,8 +8,8 @@
 
 namespace skerry {
 
-/// All data, apart from the mesh, on which the stable step of a single body depends. By default the default material
-/// and elements.
+/// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
+/// default material and elements.
 struct StepCase {
     Settings settings;
     MaterialSettings material;

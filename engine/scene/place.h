@@ -31,7 +31,7 @@ public:
     const std::filesystem::path& file() const { return file_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Throws SceneError with the message of an inner function that does not know files and keys.
+    /// Throws SceneError with the message of an inner function that does not know the file and the key.
     [[noreturn]] void refuse_inner(const std::string& message) const;
 
 private:

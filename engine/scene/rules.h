@@ -29,7 +29,7 @@ inline Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
-/// Documentation of a key in a scene file. The texts must live as long as the program.
+/// Documentation of a key in a scene file. The texts must exist until the program ends.
 struct KeyDoc {
     std::string_view meaning;
     std::string_view unit = {};   // SI unit
@@ -85,7 +85,7 @@ protected:
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     /// Returns the location of the object in the file, with the object's own name if it has one.
     Place place_of(const Json& json, const Place& outer) const;
-    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys break the
+    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys violate the
     /// rule.
     void read_keys(const Json& json, const Place& place, void* object) const;
 

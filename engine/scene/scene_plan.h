@@ -45,7 +45,7 @@ struct ProbePlan {
     std::size_t body = 0;      // index in ScenePlan::bodies
     std::vector<Index> nodes;  // local numbers
 };
-/// A time series to be recorded. The quantity determines which members are used.
+/// A time series to be recorded. The recorded quantity determines which of the following members are used.
 struct SeriesPlan {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::energy;

@@ -18,7 +18,7 @@ namespace skerry {
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation, stored as axis times angle. A scene file may write it in three forms.
+/// A rotation, stored as axis times angle. In a scene file a rotation can be written in three forms.
 struct Rotation {
     Vec3 value = Vec3::Zero();  // [rad]
 };
@@ -37,7 +37,7 @@ template <class T>
 struct OneOrMore {
     std::vector<T> items;
 };
-/// A rotation that a scene file gives by the rows of its 3 x 3 matrix.
+/// A rotation that a scene file gives as the rows of a 3 x 3 matrix.
 struct RotationRows {
     Vec3 value = Vec3::Zero();  // rotation axis times angle [rad]
 };

@@ -1,4 +1,4 @@
-// The kernels (for one instruction set) that this process runs.
+// Selects the kernels (for one instruction set) that this process runs.
 #pragma once
 
 #include <span>

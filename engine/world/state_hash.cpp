@@ -119,7 +119,7 @@ void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe
     if (script.start != 0) add_row(hash, script.start);
 }
 
-/// Hashes a collision filter unless it is the default filter.
+/// Hashes the collision filter of an object unless it is the default filter.
 void add_filter(Hash& hash, const CollisionFilter& filter) {
     if (filter != CollisionFilter{}) add_row(hash, filter);
 }

@@ -31,7 +31,7 @@ void validate(const SurfaceSettings& surface, const std::string& object);
                          const std::string& expected);
 /// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
-/// Checks that local node numbers exist in `object`, a body with `count` nodes.
+/// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 

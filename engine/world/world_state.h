@@ -22,8 +22,8 @@ namespace skerry {
 
 /// Changes of a world that are still to be completed by WorldState::settle.
 struct OpenEdits {
-    bool rows = false;  // bodies, colliders or attachments were added or removed
-    // Bodies with elements were added or removed, or nodes became held or free.
+    bool rows = false;  // true if bodies, colliders or attachments were added or removed
+    // True if bodies with elements were added or removed, or nodes became held or free.
     bool elements = false;
     // nonzero for each removed row; rows beyond the end are not removed
     std::vector<std::uint8_t> bodies_gone, colliders_gone;
@@ -72,7 +72,8 @@ struct WorldAccess {
     }
 };
 
-/// Name of the column or value at an address inside a WorldState, such as "nodes.velocity". It is used in messages.
+/// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is
+/// used in messages.
 std::string name_of_column(void* world, const void* place);
 
 }  // namespace skerry

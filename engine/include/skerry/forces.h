@@ -69,14 +69,15 @@ public:
     /// `pressing_impulse`.
     ForceReport on(BodyHandle body) const;
     ForceReport on(ColliderHandle collider) const;
-    /// Forces between two given partners; zero if the two did not touch. For a body with itself the impulses cancel.
+    /// Forces between two given partners; zero if the two did not touch. If the two partners are one body, the impulses
+    /// cancel.
     ForceReport on(BodyHandle body, BodyHandle by) const;
     ForceReport on(BodyHandle body, ColliderHandle by) const;
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
-    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, its
-    /// force counts for the attachment added last. Damping of a held body is not included, because it acts on all
-    /// nodes, like a medium at rest.
+    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
+    /// force on this node counts for the attachment added last. Damping of a held body is not included, because it acts
+    /// on all nodes, like a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
     /// All pairs of objects that touched during the call: first body-collider pairs, then body-body pairs, each sorted
     /// by handles.

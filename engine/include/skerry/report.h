@@ -52,8 +52,8 @@ struct Contact {
     BodyHandle first{};
     BodyHandle second{};        // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};  // the collider; a stale handle if both partners are bodies
-    // Node numbers within each body: node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] < 0.
-    // node[a] is -1 if weight[a] is 0.
+    // Number of each node within its body. node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] <
+    // 0. node[a] is -1 if weight[a] is 0.
     std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
     Vec3 point = Vec3::Zero();   // contact point on the second body or the collider [m]
@@ -91,7 +91,7 @@ struct Energy {
     Real dissipated = 0;  // energy dissipated by contacts, damping and material losses since the start [J]
 };
 
-/// Report of one call of `advance`. Making it allocates no memory unless something went wrong.
+/// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
 class StepReport {
 public:
     /// False if a step could not be completed, or if the call was asked to stop.
@@ -216,7 +216,7 @@ struct StartOverlap {
     std::string message() const;
 };
 
-/// A body that was translated before its first step, so that it overlaps nothing.
+/// A body that was moved before its first step, so that it overlaps no other object.
 struct StartMove {
     BodyHandle body{};
     std::string name;
@@ -228,7 +228,7 @@ struct RunCounters {
     std::uint64_t steps = 0;
     // Number of steps with so little work that they run on one thread, because waking other threads would take longer.
     std::uint64_t inline_steps = 0;
-    std::uint64_t resting_steps = 0;  // steps in which all bodies are asleep and nothing moves; no stage runs
+    std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
     // Number of bodies whose elements are skipped because they fly freely and undeformed, summed over all steps.
     std::uint64_t unstrained = 0;
     std::uint64_t shortened = 0;   // number of attempts at a step that were repeated with a shorter step

@@ -47,7 +47,7 @@ struct Scene {
     World world;
     std::vector<Probe> probes;
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
-    // Time between two samples of `probes`, or between two rows of `recorded` [s].
+    // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
 };
 

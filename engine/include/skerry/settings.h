@@ -1,5 +1,5 @@
-// Settings of materials, bodies, colliders and the step, in SI units. Every member has an initialiser: compilers then
-// do not warn about members that a designated initialiser leaves out.
+// Settings of materials, bodies, colliders and the step, in SI units. Every member has an initial value, so that
+// compilers do not warn about members that a designated initialiser leaves out.
 #pragma once
 
 #include <array>
@@ -71,22 +71,23 @@ struct BodySettings {
     // Material of all tetrahedra whose label is not in `materials`. The whole body has the friction, restitution and
     // damping of this material, even where tetrahedra at the surface have another one.
     MaterialHandle material{};
-    // Materials of tetrahedra by label (Mesh::label). They set elasticity, density and losses. Each label must occur in
-    // the mesh.
+    // Materials of tetrahedra by label (Mesh::label). These materials determine elasticity, density and losses of the
+    // tetrahedra. Each label must occur in the mesh.
     std::map<int, MaterialHandle> materials{};
-    Vec3 position = Vec3::Zero();            // [m]
-    Vec3 rotation = Vec3::Zero();            // rotation axis times angle [rad]
-    Vec3 velocity = Vec3::Zero();            // [m/s]
-    Vec3 angular_velocity = Vec3::Zero();    // about the centre of mass [rad/s]
-    std::optional<Real> contact_distance{};  // >= 0; default: 2 % of the mean edge length of the surface [m]
+    Vec3 position = Vec3::Zero();          // [m]
+    Vec3 rotation = Vec3::Zero();          // rotation axis times angle [rad]
+    Vec3 velocity = Vec3::Zero();          // [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // angular velocity about the centre of mass [rad/s]
+    // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
+    std::optional<Real> contact_distance{};
     bool self_contact = false;
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
-    // Each object has a set of groups and a mask, both as bits. Two objects can touch only if the mask of each contains
-    // a group of the other.
+    // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
+    // masks contains a group of the other object.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
     ElementKind element = ElementKind::smoothed;
-    std::string name{};  // used in messages and output
+    std::string name{};  // name of the body in messages and output
 };
 
 struct Plane {
@@ -118,7 +119,7 @@ using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, Surfac
 /// One keyframe of a scripted motion. Between keyframes the position moves linearly and the rotation is about a fixed
 /// axis.
 struct MotionKey {
-    Real time = 0;                 // must increase from key to key [s]
+    Real time = 0;                 // time, which must increase from key to key [s]
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
@@ -135,8 +136,8 @@ struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
     Motion motion{};
-    // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If
-    // not, it uses the value of the body.
+    // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
+    // given, it uses the value of the body.
     std::optional<Real> friction{};
     std::optional<Real> static_friction{}, dynamic_friction{};
     // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not

@@ -66,11 +66,11 @@ public:
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid. The sphere cannot
     /// be attached or become another kind of body.
     BodyHandle add_body(const Sphere& sphere, const BodySettings& body);
-    /// Adds a rigid capsule; the rules of a sphere apply, see add_body() above. The axis is z of the capsule's frame,
+    /// Adds a rigid capsule. The rules for a sphere apply, see add_body() above. The axis is z of the capsule's frame,
     /// and the first two nodes are the ends of the axis (mesh::capsule_picture). `capsule.length` must be > 0.
     BodyHandle add_body(const Capsule& capsule, const BodySettings& body);
-    /// Adds a rigid cylinder with flat ends and sharp rims; the rules of a sphere apply, see add_body() above. The axis
-    /// is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
+    /// Adds a rigid cylinder with flat ends and sharp rims. The rules for a sphere apply, see add_body() above. The
+    /// axis is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
@@ -113,7 +113,7 @@ public:
     Real stable_step() const;
 
     // State of a body. The spans are valid until bodies are added or removed. advance() changes the positions and
-    // velocities that the spans refer to.
+    // velocities in the spans.
     std::span<const Vec3> positions(BodyHandle body) const;                   // [m]
     std::span<const Vec3> velocities(BodyHandle body) const;                  // [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
@@ -199,7 +199,7 @@ public:
     /// a joint, or is a sphere, capsule or cylinder; and for a body with self-contact that is to become rigid or
     /// implicit.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
-    /// Sets external forces on the nodes of a body [N]. They act until they are set again.
+    /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     /// Reads or changes a material. Bodies of this material keep their shapes and velocities and get new masses, stable
     /// steps and clusters. Throws SceneError if the material model would change, and for values with which one of these
@@ -216,7 +216,7 @@ public:
     /// For a body with itself it sets self_contact. Settings::start_overlaps applies to a pair that is switched on.
     void set_collision(BodyHandle a, BodyHandle b, bool on);
     void set_collision(BodyHandle body, ColliderHandle collider, bool on);
-    /// True if the collision groups and set_collision() let the two collide.
+    /// True if the collision groups and the settings of set_collision() allow the two objects to collide.
     bool may_collide(BodyHandle a, BodyHandle b) const;
     bool may_collide(BodyHandle body, ColliderHandle collider) const;
 

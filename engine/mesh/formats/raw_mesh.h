@@ -47,7 +47,7 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
             if (nodes[a] == nodes[b]) reader.complain("nodes", "the same node twice", "different nodes");
 }
 
-// Readers of the file formats. All throw SceneError.
+// Readers of the mesh file formats. All of them throw SceneError for invalid files.
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
 RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructured grids or polygons
 // reads TetGen files .node and .ele of the same name; `path` may name either file

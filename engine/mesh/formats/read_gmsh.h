@@ -10,7 +10,7 @@ struct GmshTags {
     std::int64_t physical = 0, elementary = 0;
 };
 
-/// Maps the tag of a geometric volume to the number of its physical group.
+/// Map from the tag of a geometric volume to the number of its physical group.
 using GmshVolumes = std::unordered_map<std::int64_t, std::int64_t>;
 
 /// A mesh with the group numbers of its tetrahedra.

@@ -35,8 +35,8 @@ Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_by
     return header;
 }
 
-/// Reads the header of a block of nodes or elements: dimension, tag, third number (parametric or element type), and
-/// number of rows.
+/// Reads the header of a block of nodes or elements: the dimension and tag of the entity, the parametric flag (nodes)
+/// or the element type (elements), and the number of rows.
 Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning) {
     const Numbers4 block = read_four(reader, binary, {4, 4, 4, 8}, "block header", meaning);
     if (block[0] < 0 || block[0] > 3) reader.complain("dimension", std::to_string(block[0]), "0 to 3");

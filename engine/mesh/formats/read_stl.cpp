@@ -89,8 +89,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
 RawMesh read_stl(FileReader& reader) {
     RawMesh mesh;
     Welder welder(mesh);
-    // The header of a binary file may begin with "solid", too. Only the file size tells the two forms apart: the size
-    // of a binary file follows exactly from the number of triangles.
+    // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: the size
+    // of a binary file follows exactly from its number of triangles.
     const std::string_view bytes = reader.rest();
     bool binary = false;
     if (bytes.size() >= header_bytes + 4) {

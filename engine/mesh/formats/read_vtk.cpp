@@ -325,8 +325,8 @@ private:
         return false;
     }
 
-    /// Reads the array, or the field of several arrays, that follows its keyword. Returns false for an unknown keyword
-    /// or type.
+    /// Reads one array, or a field of several arrays, according to the keyword before it. Returns false for an unknown
+    /// keyword or type.
     bool read_attribute(const std::string& keyword, std::size_t rows, bool of_cells) {
         reader_.set_section(keyword);
         if (keyword == "METADATA") {
@@ -440,7 +440,7 @@ private:
     std::vector<std::size_t> offsets_{0};
     std::vector<Index> cell_nodes_;
     std::vector<std::int64_t> types_;
-    std::vector<int> cell_label_;  // label of each cell, or empty
+    std::vector<int> cell_label_;  // label of each cell; empty: no labels
     RawMesh mesh_;
 };
 

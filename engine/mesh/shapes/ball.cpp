@@ -129,7 +129,8 @@ Mesh ball(Real radius, int resolution) {
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
     const SurfaceMesh skin = boundary(ball(radius, resolution));
-    // Corners of the icosahedron have five triangles instead of six. They become the first nodes after the centre.
+    // The corners of the icosahedron become the first nodes after the centre. Each of these nodes has five surface
+    // triangles, whereas other surface nodes have six.
     std::vector<int> faces(skin.nodes.size(), 0);
     for (const auto& triangle : skin.triangles)
         for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];

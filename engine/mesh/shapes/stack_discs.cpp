@@ -96,8 +96,9 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// True if the diagonal of the wall over the edge (`from`, `to`) rises from `from` to `to`. In even layers it rises
-    /// towards the node of higher colour, in odd layers towards the node of lower colour.
+    /// True if the diagonal of the wall (rectangular side face of a prism) over the edge (`from`, `to`) rises from
+    /// `from` to `to`. In even layers it rises towards the node of higher colour, in odd layers towards the node of
+    /// lower colour.
     bool cut_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }

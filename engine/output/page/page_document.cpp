@@ -120,7 +120,7 @@ std::string describe(const PageData& data, const PageSummary& summary) {
 }
 
 std::string escape_html(const std::string& text) {
-    // Converting the text to JSON and back replaces bytes that are not UTF-8.
+    // The text is converted to JSON and back, because this conversion replaces bytes that are not UTF-8.
     std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
     clean = Json::parse(clean).get<std::string>();
     return escape_markup(clean);

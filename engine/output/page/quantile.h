@@ -14,7 +14,8 @@ namespace skerry {
 class Quantile {
 public:
     void add(Real value) {
-        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero, so only positive values matter
+        // values up to zero are ignored, because a legend starts at zero
+        if (!(value > 0) || !std::isfinite(value)) return;
         ++bins_[static_cast<int>(std::floor(std::log(value) / log_width))];
         ++count_;
         if (value > max_) max_ = value;

@@ -157,7 +157,7 @@ struct Recorder::Impl {
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
-        // Truncating the file removes the incomplete row.
+        // The file is truncated to remove the incomplete row.
         std::error_code ignored;
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         Complaint{.file = stream_file.string(),

@@ -49,7 +49,7 @@ private:
     void write_index_if_possible() {
         try {
             writer_->close();
-        } catch (const SceneError&) {  // the caller reports the error of the frame instead
+        } catch (const SceneError&) {  // the caller reports the error of the frame, so this error is ignored
         }
     }
 

@@ -37,7 +37,7 @@ public:
         const int number = sigtimedwait(&held_, nullptr, &patience);
         return number > 0 ? number : 0;
     }
-    /// Restores the signal mask from before the pool. Child processes call this.
+    /// Restores the signal mask that was set before the pool was created. Child processes call this function.
     void let_go() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
 
 private:

@@ -37,7 +37,7 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
     return edges.determinant();
 }
 
-/// Makes the attachments of a body hold their nodes at the present positions.
+/// Changes the attachments of a body so that they hold their nodes at the present positions.
 void hold_here(Model& model, std::size_t body, Real now) {
     AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {

@@ -1,4 +1,4 @@
-// Adds, removes and drives joints between steps (docs/methods/joints.md).
+// Functions that add, remove and drive joints between steps (docs/methods/joints.md).
 #include <Eigen/Geometry>
 #include <cmath>
 #include <vector>

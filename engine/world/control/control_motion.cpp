@@ -36,7 +36,7 @@ struct Scripted {
             }
         script().key_begin = script().key_end = static_cast<Index>(table.keyframe.size());
     }
-    /// Replaces the script by constant velocities that start at `pose` at the time `now`.
+    /// Replaces the script of a collider or attachment by constant velocities that start at `pose` at the time `now`.
     void start(const RigidPose& pose, const Vec3& velocity, const Vec3& angular_velocity, Real now) const {
         if (has_keys()) erase_keys();
         script().velocity = velocity;
@@ -71,7 +71,7 @@ bool is_at(const RigidPose& pose, const Pose& target) {
            (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
 }
 
-/// Sets constant velocities from now on. Returns false if the script already has them.
+/// Sets constant velocities from now on. Returns false if the script already has these velocities.
 template <class Table>
 bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
     const MotionScript& script = scripted.script();

@@ -1,4 +1,4 @@
-// Adds bodies between steps. Each body has a range of rows in every table.
+// Functions that add bodies between steps. Each body has a range of rows in every table.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -52,8 +52,8 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// The element kind that all material zones share; linear if there are no zones. If `smoothed` became edge_smoothed in
-/// some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
+/// The element kind that all material zones of a body have in common; linear if there are no zones. If `smoothed`
+/// became edge_smoothed in some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)

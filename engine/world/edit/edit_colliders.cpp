@@ -1,4 +1,4 @@
-// Adds and removes colliders and attachments between steps.
+// Functions that add and remove colliders and attachments between steps.
 #include <cmath>
 #include <numbers>
 

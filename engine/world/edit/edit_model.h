@@ -30,7 +30,7 @@ struct NewBody {
     Real round_radius = 0;  // [m]
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
-    std::span<const std::array<Index, 3>> triangles;  // surface of a body without tetrahedra
+    std::span<const std::array<Index, 3>> triangles;  // surface triangles of a body without tetrahedra
     Vec3 position;
     Mat3 rotation;
     Vec3 velocity, angular_velocity;
@@ -105,7 +105,7 @@ void take_steps(const KnownElements& known, Index row, Model& model);
 /// blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
 
-// edit_colliders.cpp; `now` is the time at which the row is added [s]
+// In edit_colliders.cpp. The argument `now` is the time at which the row is added [s].
 
 /// Returns surface properties, in which -1 marks a value that the settings leave out.
 SurfaceProperties surface_properties(const SurfaceSettings& settings);

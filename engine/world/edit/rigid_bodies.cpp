@@ -178,7 +178,7 @@ struct NearestFrame {
     Mat3 rotation;
 };
 
-/// Finds the best rigid motion. `weight(n)`: weight of the node with local number n.
+/// Fits a rigid motion to the node positions of a body. `weight(n)`: weight of the node with local number n.
 NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const Vec3> position, auto&& weight) {
     NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
     Real mass = 0;
@@ -199,7 +199,7 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
     return frame;
 }
 
-/// Finds the best rigid motion, weighted with the masses of the nodes.
+/// Fits a rigid motion to the node positions of a body, weighted with the masses of the nodes.
 NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
     const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
     return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
@@ -225,8 +225,8 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
 
 namespace {
 
-/// Finds the best rigid motion of the nodes that an attachment holds. `position`: positions of these nodes, in the
-/// order of the attachment.
+/// Fits a rigid motion to the nodes that an attachment holds. `position`: positions of these nodes, in the order of the
+/// attachment.
 NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span<const Vec3> position) {
     std::vector<Vec3> rest;
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment]))
@@ -234,7 +234,7 @@ NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span
     return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
 }
 
-/// Computes displacements and velocities of a held body, in the frame of its attachment, from its nodes.
+/// Computes the displacements and velocities of a held body, relative to the frame of its attachment, from its nodes.
 void write_held_shape(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);

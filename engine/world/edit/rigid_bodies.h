@@ -12,7 +12,8 @@ namespace skerry {
 /// Appends the row of RigidBodyTable for a body whose nodes are already in the tables.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Recomputes mass and inertia of a body after densities have changed. Its velocity and spin stay the same.
+/// Computes mass and inertia of a body again after densities have changed. The velocity and angular velocity of the
+/// body do not change.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
 /// The pose of a rigid body that is nearest to given node positions. `misfit`: largest distance of a node in this pose
@@ -38,8 +39,8 @@ void find_holders(Model& model);
 /// keep their positions and velocities.
 void follow_attachments(Model& model, std::size_t body);
 
-/// Must be called after the mass of a free implicit body was recomputed. Updates the inertia to the deformed shape. The
-/// velocity and spin of the body stay the same.
+/// Must be called after the mass of a free implicit body was computed again. Computes the inertia of the deformed
+/// shape. The velocity and angular velocity of the body do not change.
 void follow_weight(Model& model, std::size_t body);
 
 /// Momenta and inertia of the nodes of a body, treated as point masses, about a given centre.

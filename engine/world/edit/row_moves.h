@@ -1,5 +1,5 @@
-// Rows that are removed with bodies and colliders, and the new numbers of all other rows. They are found in one pass
-// over the tables, before any table changes.
+// Rows that are removed with bodies and colliders, and the new numbers of all remaining rows. Both are found in one
+// pass over the tables, before any table changes.
 #pragma once
 
 #include <array>
@@ -33,11 +33,11 @@ struct RowMoves {
     OfBodyTables<std::vector<Range>> gone;  // removed rows of each table, ascending
     // for each old body row: number of rows by which its rows in each table move towards the start
     std::vector<OfBodyTables<Index>> down;
-    std::vector<Index> body_now;          // new body row for each old row; no_index: removed
+    std::vector<Index> body_now;          // for each old body row: its new row; no_index: removed
     std::vector<Range> colliders_gone;    // ascending
-    std::vector<Index> collider_now;      // new collider row for each old row; no_index: removed
+    std::vector<Index> collider_now;      // for each old collider row: its new row; no_index: removed
     std::vector<Range> attachments_gone;  // rows of the attachments of removed bodies
-    std::vector<Index> attachment_now;    // new attachment row for each old row; no_index: removed
+    std::vector<Index> attachment_now;    // for each old attachment row: its new row; no_index: removed
 
     bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
 };

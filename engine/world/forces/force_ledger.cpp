@@ -56,8 +56,8 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// True for an implicit body: forces act on it during the whole step, not during a kick (docs/methods/time_stepping.md
-/// 1.5).
+/// True for an implicit body, on which forces act during the whole step and not during a kick
+/// (docs/methods/time_stepping.md 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
 }

@@ -18,8 +18,8 @@ struct Model;
 struct StepScratch;
 struct ForceReport;
 
-/// Key of a pair. It names both partners by slot, as handles do, so that it stays valid when table rows move. Pairs
-/// with a collider are sorted first.
+/// Key of a pair of contact partners. It names each partner by its slot, as handles do, so that the key stays valid
+/// when table rows move. Pairs with a collider are sorted first.
 struct PairKey {
     bool bodies = false;                  // true: the second partner is a body; false: it is a collider
     std::uint32_t first = 0, second = 0;  // slots
@@ -34,7 +34,7 @@ public:
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
-        // Sums over the present step. end_step sets them to zero.
+        // Impulse and number of contacts in the present step. end_step sets both to zero.
         Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
         void add(const Vec3& more, Index of_contacts) {
@@ -47,8 +47,8 @@ public:
     };
     struct PairRow {
         PairKey key{};
-        ContactSums sums{};   // sums over the call
-        ContactSums still{};  // sums over the time in which both objects were still
+        ContactSums sums{};   // sums of contact impulses over the call of advance
+        ContactSums still{};  // sums of contact impulses over the time in which both objects were still
         Real still_seconds = 0;
         Index still_contacts = 0;  // number of contacts in the last step in which a body of the pair was awake
         Peak peak{};
@@ -69,8 +69,8 @@ public:
     /// implicit, it is the sum of the step lengths. Otherwise it is the sum of the kicks of the steps.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
-    /// Starts measuring. Sleeping bodies get the contact and attachment forces of the last step before they fell
-    /// asleep.
+    /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they
+    /// fell asleep are used.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
     /// Must be called before the first step of a call, and again after a call that made no step. Stores the velocities
@@ -108,7 +108,7 @@ private:
         Real whole = 0, kick = 0;
     };
     Seconds step_, call_;
-    Real measured_seconds_ = 0;   // time since measuring began [s]
+    Real measured_seconds_ = 0;   // time since the start of the measurement [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // by slot
     std::vector<Peak> bodies_, colliders_;

@@ -31,7 +31,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
-/// Checks that each row has a handle, and that each live handle has a row.
+/// Checks that each row has a handle, and that each handle in use has a row.
 template <class Handle>
 void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {

@@ -44,7 +44,7 @@ bool may_be_infinite(std::string_view path) {
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 
-/// The archive that reads from a file.
+/// The archive (see list_state.h) that reads from a file.
 class Reader final : public Archive {
 public:
     explicit Reader(const Hdf5File& file) : file_(file) {}

@@ -1,4 +1,4 @@
-// Values of a world that are in no table, with their names in a file.
+// Values of a world that are not stored in tables, with their names in a file.
 #pragma once
 
 #include <array>

@@ -142,7 +142,7 @@ void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T
                       "ascending offsets from 0 to the number of items");
 }
 
-/// Checks that a saved mesh could be added to a world.
+/// Checks that a saved mesh is valid, so that it could be added to a world.
 void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) {
     const std::string path = "/meshes/nodes";
     const MeshParts parts = parts_of(meshes, m);

@@ -32,7 +32,7 @@ struct SavedStart {
 };
 
 struct SavedRows {
-    Real step_size = 0;  // Settings::step_size; 0: no value [s]
+    Real step_size = 0;  // value of Settings::step_size [s]; 0 if it is not set
     SavedMeshes meshes;
     std::uint32_t world = 0;  // world number that is part of all handles of this world
     Column<ElementKind> body_element, body_asked;
@@ -61,9 +61,9 @@ SavedRows rows_to_save(const WorldState& world);
 // The following functions throw SceneError with the name of `file` if saved data are inconsistent with each other or
 // with the columns of the world.
 
-/// Restores meshes and names of bodies and colliders. The ranges of the bodies must have been checked.
+/// Restores meshes and names of bodies and colliders. Must be called after the ranges of the bodies were checked.
 void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
-/// Restores the contact candidates of pairs. Surfaces must have been built.
+/// Restores the contact candidates of pairs. Must be called after the surfaces were built.
 void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
 void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
 void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);

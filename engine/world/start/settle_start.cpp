@@ -1,5 +1,5 @@
-// Finds overlaps before the first step after objects were added. The overlaps are resolved, refused or left, as the
-// settings say.
+// Finds overlaps before the first step after objects were added. Depending on the settings, overlaps are resolved,
+// refused or left unchanged.
 #include <algorithm>
 #include <map>
 

@@ -14,7 +14,7 @@ namespace skerry {
 /// A pair of objects to search for overlaps. The first is a body. The second is another body, the body of a mesh
 /// collider, or an analytic collider.
 struct StartPair {
-    Index first;       // row of BodyTable with the kind `deformable`
+    Index first;       // row of BodyTable; the kind of this body is `deformable`
     Index second;      // row of BodyTable; for an analytic collider, row of ColliderTable
     bool is_analytic;  // true: `second` is a row of ColliderTable
 
@@ -36,8 +36,9 @@ public:
     /// Finds all overlapping pairs, sorted by table rows. Pairs of two objects that an earlier search has checked are
     /// skipped.
     std::vector<PairOverlap> find_all();
-    /// Finds pairs whose bounding boxes overlap. At least one object of a pair must be marked, and at least one must
-    /// not have been checked by an earlier search. `marked`: by row of BodyTable.
+    /// Finds pairs of objects whose bounding boxes overlap. At least one object of a pair must be marked, and at least
+    /// one must not have been checked by an earlier search. `marked`: for each row of BodyTable, nonzero if the body is
+    /// marked.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> look_at(const StartPair& pair);
 

@@ -41,7 +41,7 @@ namespace skerry {
 /// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
-/// Data of a body for users and files.
+/// Data of a body that are not stored in tables. They serve users and files.
 struct BodyRecord {
     std::string name;
     ElementKind element;  // element kind in use, never `smoothed`
@@ -125,7 +125,7 @@ struct Model {
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
-    /// The elements of all bodies that are neither asleep nor unstrained.
+    /// The elements of all bodies that are neither asleep nor marked as unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
     /// Returns the number of a tetrahedron in the mesh given by the user. `place`: position of the tetrahedron in the
@@ -169,7 +169,7 @@ struct Model {
     /// Builds the elements of an implicit body, because no table contains them. Their node numbers are local to the
     /// body.
     ElementList elements_of_implicit(std::size_t body) const;
-    /// Computes the entry of an implicit body in stiff_bodies from its record, masses and materials.
+    /// Computes the matrices of an implicit body (its entry in stiff_bodies) from its record, masses and materials.
     void stiffen(std::size_t body);
     /// Computes the derived columns of newly appended rows. Existing rows do not change.
     void extend_derived();

@@ -8,10 +8,10 @@
 namespace skerry {
 
 struct QueryTrees {
-    Column<Aabb> box;             // bounding box for each row of BvhTable [m]
+    Column<Aabb> box;             // present bounding box of each row of BvhTable [m]
     Column<std::uint8_t> fitted;  // for each body, nonzero if its boxes fit its present surface; empty: no boxes fit
 
-    /// Must be called after nodes or table rows have moved.
+    /// Marks all boxes as out of date. Must be called after nodes or table rows have moved.
     void forget() { fitted.clear(); }
 };
 

@@ -1,4 +1,4 @@
-// Records of a run for users. No step depends on these records.
+// Records of a run that users can read. No step depends on these records.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Causes that limited the length of the steps of a run.
+// Counts of the causes that limited the length of the steps of a run.
 #pragma once
 
 #include <string>

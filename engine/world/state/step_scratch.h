@@ -78,7 +78,7 @@ struct StepFindings {
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
     return inversions.first && !parameters.let_invert;
 }
-/// True if a step can be committed.
+/// True if the attempt has found no reason against committing the step.
 inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inversions& inversions,
                          const StepParameters& parameters) {
     return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);

@@ -16,7 +16,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;                        // sum of the magnitudes of all momenta [kg m/s]
+    Real momentum_size = 0;  // sum of the magnitudes of the momenta of all nodes and bodies [kg m/s]
 };
 
 Present measure(const Model& model, Real lag) {
@@ -131,7 +131,7 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
     }
     // checked again, because elements may become implicit during a run
     balance.momentum_known &= !holds_implicit_element(model);
-    // Only the change of the potential energy counts, since its zero point is arbitrary.
+    // Only the change of the potential energy counts as exchanged, since the zero point of this energy is arbitrary.
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
     balance.energy_scale = std::max(balance.energy_scale, exchanged);

@@ -1,5 +1,5 @@
-// Choice of the implicit elements: the few elements that would make the steps of all bodies much shorter
-// (docs/methods/clusters.md 5).
+// Choice of the elements to be integrated implicitly: the few elements that would make the steps of all bodies much
+// shorter (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -264,7 +264,8 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
     std::vector<Real> stands(twin.size());
     for (const PlannedBody& body : plan.body) {
-        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have equal plans
+        // equal bodies have equal plans, so the values of the first body are copied
+        if (const std::size_t first = twin[body.row]; stands[first] > 0) {
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
@@ -328,7 +329,7 @@ bool clusters_allowed(const Settings& settings) {
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
     // computing time for inverting a matrix, divided by the cube of its width [ns]
     constexpr Real inversion_cost = 0.4;
-    constexpr Real lasts = 128;  // assumed number of steps between two inversions
+    constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();

@@ -40,7 +40,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
-    const bool pushed = false;  // no contact pushes positions during a drift
+    const bool pushed = false;  // false, because no contact pushes positions during a drift
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);

@@ -1,5 +1,5 @@
-// Interfaces for extensions of a step: force elements, motion models and constraint laws. step.cpp visits the lists of
-// all three kinds and names no entry of these lists.
+// Interfaces for extensions of a step: force elements, motion models and constraint laws. step.cpp iterates over one
+// list for each of these three kinds, and does not name any entry.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct MotionModel {
     ListStages predict = nullptr;     // computes the velocities at the end of the step, without contacts
     // prepares the response of bodies to contact impulses, if it is more than that of lumped masses
     ListStages couple = nullptr;
-    ListStages apply = nullptr;      // moves internal degrees of freedom by the solved contact impulses
+    ListStages apply = nullptr;  // changes internal degrees of freedom by the contact impulses that the solver found
     ListStages find_pose = nullptr;  // computes the pose at the end of the step, before the checks
     ListStages check = nullptr;      // checks the state at the end of the step, and measures losses
     ListStages integrate = nullptr;  // moves the bodies if the step can be committed
@@ -45,9 +45,9 @@ struct MotionModel {
 /// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
 struct ConstraintLaw {
     ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
-    ListStages measure = nullptr;   // measures work, losses and errors of the solved rows
-    ListStages check = nullptr;     // checks that the end of the step violates no constraint
-    ListStages remember = nullptr;  // stores the impulses for the next step if the step can be committed
+    ListStages measure = nullptr;   // measures work, losses and errors of the rows after the solve
+    ListStages check = nullptr;     // checks that no constraint is violated at the end of the step
+    ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
 extern const ForceElement nodal_loads;
@@ -64,13 +64,13 @@ inline constexpr std::array<const MotionModel*, 4> motion_models{&explicit_nodes
 /// All constraint laws.
 inline constexpr std::array<const ConstraintLaw*, 2> constraint_laws{&contact_law, &joint_law};
 
-/// Condition of a stage that changes the state of the world: the step can be committed.
+/// Condition of a stage that changes the state of the world: the stage runs only if the step can be committed.
 inline auto if_taken(const WorldState& world) {
     const StepFindings& found = world.scratch.findings;
     return only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions),
                    value(world.scratch.parameters));
 }
-/// Condition of a stage that checks the end of the step: no fault has been found so far.
+/// Condition of a stage that checks the end of the step: the stage runs only if no fault has been found so far.
 inline auto if_possible(const WorldState& world) {
     return only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; },
                    read(world.scratch.findings.verdict));

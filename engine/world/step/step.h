@@ -64,7 +64,7 @@ Real follow_stiffening(Model& model);
 /// Computing time of an element in a step, including its share of nodes and contacts [ns]. It serves only to compare
 /// costs.
 inline constexpr Real element_cost = 70;
-/// True if elements of this world may be implicit.
+/// True if the settings allow clusters, so that elements of explicit bodies may be integrated implicitly.
 bool clusters_allowed(const Settings& settings);
 /// Must be called after a change of the world. Chooses the step length and the implicit elements for which the
 /// estimated computing time of a simulated second is smallest.
@@ -86,7 +86,7 @@ struct StepPlan {
     Real h = 0;                 // s
     Real steps = 1;             // number of steps of length `h` until the end of the planned interval
     Real stable = 0;            // longest step that stability and the settings allow [s]
-    Index stiffest = no_index;  // row of BodyTable: the body with the shortest stable step
+    Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
 };
 /// Plans the next step of an interval of which `left` seconds remain. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
@@ -96,7 +96,8 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);
 /// Returns the length of the current long step of the implicit bodies, and whether the planned step is the first or the
 /// last step within this long step.
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan);
-/// Updates the clock of long steps after a committed step.
+/// Updates the time that is left in the current long step, after a committed step. Ends the long step after its last
+/// step.
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 
 // leave_out_step.cpp
@@ -106,7 +107,7 @@ void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 bool nothing_moves(WorldState& world);
 /// Sets the contact and attachment forces to zero after a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
-/// Calls check_balance, unless nothing has moved since the last call.
+/// Checks the balance of energy and momentum (check_balance), unless nothing has moved since the last check.
 void look_at_balance(WorldState& world);
 
 // drift_state.cpp
@@ -136,7 +137,7 @@ struct KeptFrames {
                 .deforming_before = binder.read(implicit.velocity)};
     }
 };
-/// Copies the data that define the contact problem of this step.
+/// Copies the data from which the contact problem of this step can be exported.
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                      std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept);
 /// Passes the contact problem of the last step to the function of the subscriber. Does nothing without a subscriber.

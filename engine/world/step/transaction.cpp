@@ -142,8 +142,8 @@ void keep_frames(WorldState& world) {
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, which can
-/// deform any body.
+/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, because this
+/// can deform any body.
 void forget_unstrained(BodyTable& bodies) {
     std::ranges::fill(bodies.unstrained, std::uint16_t{0});
 }

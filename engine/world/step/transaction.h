@@ -30,12 +30,11 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
-    again_with_longer_lists,  // repeated with longer contact lists, because features near enough to cross were not in
-                              // the lists
+    again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
-    again_shorter,            // the next attempt is half as long, or as long as the speed limit allows
+    again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows
     again_letting_through,    // the next attempt accepts crossings and inversions, and reports them
-    refused,                  // the cause is in world.scratch.findings
+    refused,                  // the step cannot be taken; the cause is in world.scratch.findings
 };
 
 /// Limits of the next attempt at a step. They come from attempts at this step and at earlier steps.
@@ -103,9 +102,9 @@ public:
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
-    Column<Vec3> driven_velocity_;          // velocities of attachments.node [m/s]
+    Column<Vec3> driven_velocity_;          // velocities of the nodes in attachments.node [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
-    Column<Vec3> position_, velocity_;      // all nodes [m, m/s]
+    Column<Vec3> position_, velocity_;      // positions and velocities of all nodes [m, m/s]
     Column<Vec3> center_;                   // rigid bodies [m]
     Column<Vec3> moments_;                  // rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // rigid bodies

@@ -1,4 +1,4 @@
-// Contact problems for subscribers, mostly other solvers.
+// Passes contact problems to subscribers, mostly for comparison with other solvers.
 #include <algorithm>
 #include <functional>
 #include <string>

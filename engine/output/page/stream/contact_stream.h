@@ -13,7 +13,8 @@
 
 namespace skerry {
 
-/// The partners of a contact, as body and collider numbers of the page; -1 means that there is no such partner.
+/// The partners of a contact: numbers of bodies and of a collider on the page. The number -1 means that the contact has
+/// no such partner.
 struct ContactSides {
     Index first = -1, second = -1, collider = -1;
 
