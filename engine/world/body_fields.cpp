@@ -151,9 +151,9 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
     kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // These steps are computed with mass shares. They are shorter than the steps with mass forms, but their ratios
-        // between elements are right. All steps are therefore multiplied by one factor, so that the shortest equals the
-        // stable step with mass forms.
+        // The steps of single elements are computed with mass shares. They are shorter than the steps with mass forms,
+        // but their ratios are right. All of them are therefore multiplied by one factor, so that the shortest step
+        // equals the stable step with mass forms.
         Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

@@ -24,11 +24,11 @@ struct Tuning {
     WarmStart warm_start = WarmStart::on;
     bool fixed_iterations = false;  // true: the solver always makes max_iterations sweeps
     Real relaxation = 1;            // relaxation factor of solver methods that sweep, > 0 and < 2
-    // Shortcuts of the contact solver. Switching a shortcut off changes the impulses by no more than the tolerance.
-    // the solver skips a region if the impulses of the last step solve it accurately enough
-    bool certify_warm_start = true;
-    bool skip_separating = true;    // the solver sets the impulses of a region to zero if none of its contacts closes
-    bool frictionless_rows = true;  // the solver uses one row per contact instead of three in a region without friction
+    // Shortcuts of the contact solver, which it takes where possible. Switching a shortcut off changes the impulses by
+    // no more than the tolerance.
+    bool certify_warm_start = true;  // skips a region if the impulses of the last step solve it accurately enough
+    bool skip_separating = true;     // sets the impulses of a region to zero if none of its contacts closes
+    bool frictionless_rows = true;   // solves one row per contact instead of three in a region without friction
     // solves eight regions of 2 to 12 contacts in parallel in vector lanes (method ags, friction cone)
     bool small_regions_in_lanes = true;
 

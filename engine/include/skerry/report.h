@@ -190,7 +190,7 @@ struct DynamicsEstimate {
 struct DynamicsChoice {
     BodyHandle body{};
     std::string name;
-    BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the chosen kind
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the kind that was chosen
     DynamicsEstimate estimate{};
 
     /// Returns a text such as "implicit: 0.8 s of CPU time per simulated second, in steps of 0.00833 s; explicit: 9 s

@@ -54,7 +54,7 @@ private:
     }
 
     std::filesystem::path folder_;
-    std::string name_;  // of the scene
+    std::string name_;  // name of the scene
     std::vector<std::string> materials_;
     std::unique_ptr<VtkWriter> writer_;
 };

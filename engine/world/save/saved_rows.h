@@ -45,7 +45,7 @@ struct SavedRows {
     Column<ColliderShape> shape_kind;               // alternative of Shape
     // members of the shape in the order of their declaration, filled up with zeros
     Column<std::array<Real, 6>> shape_size;
-    Ragged<Candidate> candidates;  // by pair
+    Ragged<Candidate> candidates;  // contact candidates of each pair
     Column<Real> asleep_until;     // by candidate [m]
     Column<StepLimit> limit;
     Column<std::uint32_t> limit_slot, limit_generation;

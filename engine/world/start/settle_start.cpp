@@ -84,7 +84,7 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Largest depth of an overlap that can be resolved: half the thickness of the thinner object [m]. If the bodies
+    /// Largest depth of an overlap that can be resolved [m]: half the thickness of the thinner object. If two objects
     /// overlap more deeply, the shorter way out may lead to the wrong side.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();

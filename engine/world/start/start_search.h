@@ -11,8 +11,8 @@
 
 namespace skerry {
 
-/// A pair of objects to search for overlaps. The first is a body. The second is another body, the body of a mesh
-/// collider, or an analytic collider.
+/// A pair of objects to search for overlaps. The first object is a body. The second object is another body, the body of
+/// a mesh collider, or an analytic collider.
 struct StartPair {
     Index first;       // row of BodyTable; the kind of this body is `deformable`
     Index second;      // row of BodyTable; for an analytic collider, row of ColliderTable
@@ -69,7 +69,7 @@ private:
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;
 
     const Model& model_;
-    std::vector<RigidMotion> collider_;  // their poses
+    std::vector<RigidMotion> collider_;  // poses of the colliders
     std::vector<Aabb> box_;              // bounding boxes of bodies before their shifts [m]
     std::vector<Vec3> shift_;
     std::vector<std::unique_ptr<Solid>> solid_;  // surfaces by body; null until the body is searched

@@ -96,8 +96,8 @@ struct Model {
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
     StepWatch watch;
-    std::vector<BodyRecord> body_records;          // by row
-    std::vector<ColliderRecord> collider_records;  // by row
+    std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
+    std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
     std::vector<KnownElements> known_elements;     // results for meshes that were added since the last call of settle()
 
     Column<Real> body_mass;  // mass of all nodes of each body, including held nodes [kg]; computed by extend_derived

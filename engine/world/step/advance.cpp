@@ -292,7 +292,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
-        // the next call would otherwise make this update, so its energy would be missing here
+        // otherwise the next call would make this update and gain its energy
         stiffened += follow_stiffening(model);
         world.record.balance.work += stiffened;
     }
