@@ -24,8 +24,8 @@ struct Tuning {
     WarmStart warm_start = WarmStart::on;
     bool fixed_iterations = false;  // true: the solver always makes max_iterations sweeps
     Real relaxation = 1;            // relaxation factor of solver methods that sweep, > 0 and < 2
-    // Shortcuts of the contact solver, which it takes where possible. Switching a shortcut off changes the impulses by
-    // no more than the tolerance.
+    // Shortcuts that the contact solver uses where possible. Switching a shortcut off changes the impulses by no more
+    // than the tolerance.
     bool certify_warm_start = true;  // skips a region if the impulses of the last step solve it accurately enough
     bool skip_separating = true;     // sets the impulses of a region to zero if none of its contacts closes
     bool frictionless_rows = true;   // solves one row per contact instead of three in a region without friction

@@ -114,7 +114,7 @@ struct RigidPoints {
 /// motion of the same body.
 struct StrainedPoints {
     std::vector<Index> node;
-    // velocity change of one node per impulse on another, for each pair of nodes, row by row, symmetric [1/kg]
+    // velocity change of a node per impulse on a node, for each pair of nodes, row by row, symmetric [1/kg]
     std::vector<Mat3> response;
 };
 

@@ -35,8 +35,8 @@ Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If all bodies are rigid or implicit, and therefore stable at any step length, it is the
 /// result of trusted_step.
 Real told_step(const Model& model, Index* body = nullptr);
-/// The longest step that is taken [s]: the stable step times Tuning::step_safety, or the step length that the settings
-/// ask for, whichever is shorter.
+/// The longest step that is taken [s]: the stable step times Tuning::step_safety, or the step length from the settings
+/// (with rigid or implicit bodies at most 1/120 s by default), whichever is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Longest step that would be taken after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
