@@ -1,4 +1,5 @@
-// Replacement for engine/hdf5, engine/world/save, and the files of contact problems and series, if SKERRY_HDF5=OFF.
+// Replacement for engine/hdf5, engine/world/save, and the files of contact problems and series, if SKERRY_HDF5=OFF. All
+// functions throw SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/problem.h"
 #include "skerry/recorder.h"

@@ -1,4 +1,4 @@
-// Replacement for engine/output/page if SKERRY_PAGES=OFF.
+// Replacement for engine/output/page if SKERRY_PAGES=OFF. Creating a PageWriter then throws SceneError.
 #include "engine/absent/refuse_absent.h"
 #include "skerry/output.h"
 

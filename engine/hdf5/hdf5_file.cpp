@@ -46,7 +46,8 @@ Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expecte
     : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
 
 bool Hdf5File::can_hold(hsize_t bytes) const {
-    // Highest possible compression ratio of the deflate filter, the strongest filter that is common in such files.
+    // Largest compression ratio that the deflate filter can reach. No other filter that is common in such files
+    // compresses more.
     constexpr hsize_t largest_ratio = 1032;
     hsize_t size = 0;
     return H5Fget_filesize(file_.id(), &size) >= 0 && bytes / largest_ratio <= size;
@@ -81,8 +82,8 @@ void Hdf5File::expect_group(const std::string& path, const std::string& hint) co
 
 namespace {
 
-/// True if the file stores at least as many bytes as the values need. If a compact data set were shorter, libhdf5 would
-/// read past its end. Chunked data sets may be compressed, so their size is not checked.
+/// True if the file stores at least as many bytes as the values of the data set need. libhdf5 would read past the end
+/// of a compact data set that is too short. Chunked data sets may be compressed, so their size is not checked.
 bool all_stored(const Hdf5Handle& data, const Hdf5Handle& type, hssize_t count) {
     const Hdf5Handle creation(H5Dget_create_plist(data.id()), H5Pclose);
     const H5D_layout_t layout = H5Pget_layout(creation.id());
@@ -189,7 +190,7 @@ std::string Hdf5File::text_or_nothing(const std::string& path) const {
     if (!all_stored(data, type, 1)) return {};
     std::string text(H5Tget_size(type.id()), '\0');
     if (H5Dread(data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return {};
-    return text.substr(0, text.find('\0'));  // the text may or may not end with a terminating zero
+    return text.substr(0, text.find('\0'));  // the stored text may or may not end with a zero byte
 }
 
 }  // namespace skerry

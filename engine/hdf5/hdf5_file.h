@@ -33,7 +33,7 @@ private:
     herr_t (*close_)(hid_t);
 };
 
-/// Disables HDF5's own messages during the lifetime of this object. Then restores the previous error handler.
+/// While this object exists, HDF5 prints no messages of its own. The destructor restores the previous error handler.
 class QuietHdf5 {
 public:
     QuietHdf5() {
@@ -49,7 +49,7 @@ private:
     void* data_ = nullptr;
 };
 
-/// Returns the HDF5 type, in memory and in files, of a number type.
+/// Returns the HDF5 type that represents the given number type in memory and in files.
 hid_t hdf5_type(NumberType type);
 
 /// An open HDF5 file. Paths are absolute, in the form "/group/field". All functions that read throw SceneError if an
@@ -64,20 +64,20 @@ public:
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all values must be finite
-    /// Reads rows of `width` numbers, bitwise unchanged. The data set must have exactly the type `memory_type`; it has
-    /// two dimensions if `width` is more than one. `place` allocates memory for the given number of rows and returns
-    /// its address.
+    /// Reads rows of `width` numbers, bitwise unchanged. The data set must have exactly the type `memory_type`, and two
+    /// dimensions if `width` is more than one. `place` allocates memory for the given number of rows and returns the
+    /// address of this memory.
     void read_rows(const std::string& path, hid_t memory_type, std::size_t width,
                    FunctionRef<void*(std::size_t)> place) const;
-    /// Reads an optional text. Returns an empty text if the file does not have it.
+    /// Reads an optional text. Returns an empty text if the file does not contain the text.
     std::string text_or_nothing(const std::string& path) const;
 
     [[noreturn]] void complain(const std::string& path, const std::string& found, const std::string& expected,
                                const std::string& hint = {}) const;
 
 private:
-    /// True if the file is large enough to contain this number of bytes, even compressed. Without this check a small
-    /// corrupt file could claim any size.
+    /// True if the file is large enough to contain this number of bytes, even if the bytes are compressed. Without this
+    /// check a small corrupt file could claim to contain data of any size.
     bool can_hold(hsize_t bytes) const;
     template <class T>
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;

@@ -11,7 +11,7 @@ SurfaceMesh boundary(const Mesh& mesh) {
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     for (const BoundaryTriangle& t : triangles)
         for (const Index n : t.node) row[static_cast<std::size_t>(n)] = 0;
-    // Surface nodes keep the order of the nodes in the mesh, not the order in which triangles use them.
+    // Surface nodes are numbered in the order of the nodes in the mesh, not in the order in which triangles use them.
     for (std::size_t n = 0; n < row.size(); ++n) {
         if (row[n] == no_index) continue;
         row[n] = static_cast<Index>(surface.nodes.size());

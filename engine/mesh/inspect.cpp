@@ -12,7 +12,7 @@
 namespace skerry {
 namespace {
 
-using Edge = std::pair<Index, Index>;  // the lower node number comes first
+using Edge = std::pair<Index, Index>;  // nodes of an edge, the lower number first
 
 std::vector<Edge> unique_edges(const Mesh& mesh) {
     std::vector<Edge> edges;

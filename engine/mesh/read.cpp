@@ -37,7 +37,7 @@ RawMesh read_raw(const std::string& path, bool surface) {
     return extension == ".obj" ? read_obj(reader) : read_stl(reader);
 }
 
-/// Returns only the nodes that the rows use, in their old order, and renumbers the entries of the rows accordingly.
+/// Removes nodes that no row uses. The remaining nodes stay in order, and the node numbers in the rows are updated.
 template <std::size_t N>
 std::vector<Vec3> drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
     std::vector<Index> place(nodes.size(), no_index);

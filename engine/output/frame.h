@@ -30,7 +30,7 @@ struct BodyFrame {
 struct ColliderFrame {
     ColliderHandle handle;
     std::string name;
-    const Shape* shape = nullptr;  // shape in the frame of the collider
+    const Shape* shape = nullptr;  // shape in the collider's own frame
     // Pose of the collider in the world. In the frame of the collider a plane is z = 0, and its normal is +z.
     MotionKey pose;
 };

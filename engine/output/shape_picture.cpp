@@ -8,11 +8,13 @@
 namespace skerry {
 namespace {
 
-constexpr int sectors = 48;      // facets around the axis: 7.5 degrees each, so that corners are hardly visible
-constexpr int arc_steps = 12;    // facets per quarter circle of a profile, also 7.5 degrees each
-constexpr int plane_cells = 10;  // cells per edge of the displayed square of a plane; they appear as a grid
+// number of facets around the axis; each covers 7.5 degrees, so that corners are hardly visible
+constexpr int sectors = 48;
+constexpr int arc_steps = 12;    // number of facets per quarter circle of a profile; each covers 7.5 degrees
+constexpr int plane_cells = 10;  // number of grid cells per edge of the displayed square of a plane
 
-using Profile = std::vector<std::array<Real, 2>>;  // points (radius, z) in an order that has the outside on the right
+// points (radius, z), ordered so that the outside of the shape lies on the right
+using Profile = std::vector<std::array<Real, 2>>;
 
 Mat3 rotation_of(const Vec3& axis_angle) {
     const Real angle = axis_angle.norm();
@@ -44,7 +46,7 @@ void revolve(const Profile& profile, SurfaceMesh& mesh) {
         for (int s = 0; s < sectors; ++s) {
             const Index a = first + static_cast<Index>(ring) * sectors + s,
                         b = first + static_cast<Index>(ring) * sectors + (s + 1) % sectors;
-            // At a pole the ring has radius 0, so one of the two triangles is degenerate and left out.
+            // At a pole the ring has radius 0, so one of the two triangles has no area and is left out.
             if (profile[ring][0] > 0) mesh.triangles.push_back({a, b, b + sectors});
             if (profile[ring + 1][0] > 0) mesh.triangles.push_back({a, b + sectors, a + sectors});
         }
@@ -66,8 +68,8 @@ void add_patch(const Vec3& corner, const Vec3& u, const Vec3& v, int cells, Surf
 struct Picture {
     const PlanePatch& patch;
 
-    /// The pose of the collider contains the normal and the point of the plane. In the frame of the collider the plane
-    /// is z = 0.
+    /// The pose of the collider already includes the normal and the point of the plane. In the frame of the collider
+    /// the plane is therefore z = 0.
     SurfaceMesh operator()(const Plane&) const {
         SurfaceMesh mesh;
         const Real half = patch.half_size;

@@ -43,10 +43,10 @@ const char* name_of(std::filesystem::file_type type) {
     }
 }
 
-/// Destination of the bytes, with symbolic links resolved.
+/// File or stream to which the bytes are written. Symbolic links are resolved.
 struct Target {
     std::filesystem::path path;
-    bool takes_bytes = false;  // the file is a pipe or a terminal, which is written directly
+    bool takes_bytes = false;  // true for a pipe or a terminal, which is written directly
     std::filesystem::perms permissions = std::filesystem::perms::unknown;  // permissions of the file to be replaced
 };
 

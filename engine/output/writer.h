@@ -13,7 +13,7 @@ namespace skerry {
 /// State of a run at the moment when its outputs are opened.
 struct RunStart {
     double step_count = 0;   // estimated number of remaining steps
-    std::size_t frames = 0;  // frames already written before a resumption; 0 for a new run
+    std::size_t frames = 0;  // number of frames written before a resumption; 0 for a new run
     Real frame_step = 0;     // time between two frames [s]
 
     bool resumed() const { return frames > 0; }
@@ -25,7 +25,8 @@ class Writer {
 public:
     virtual ~Writer() = default;
 
-    /// True if this output may write a file with this path. No other output or input may then use the path.
+    /// True if this output may write a file with this path. No other output may then write this path, and no input may
+    /// be read from it.
     virtual bool may_write(const std::filesystem::path&) const { return false; }
     /// Starts the output, or continues it if the run is resumed. Called once, before the first step.
     virtual void open(World&, const RunStart&) {}

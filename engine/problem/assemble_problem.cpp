@@ -16,13 +16,14 @@ Mat3 frame_of(const Vec3& normal) {
     return frame;
 }
 
-/// Weight of a node in the stencil of a contact.
+/// Weight of a node in the stencil of a contact (see LumpedContacts).
 struct Touch {
     Index node, contact;
     Real weight;
 };
 
-/// Lists the stencil weights of all free nodes that are not coupled to other nodes, sorted by node, then by contact.
+/// Lists the stencil weights of all nodes that can move and whose mass is not coupled to other nodes. The list is
+/// sorted by node, then by contact.
 std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     std::vector<bool> is_coupled(contacts.inverse_mass.size(), false);
     for (const CoupledNodes& group : contacts.coupled)
@@ -41,8 +42,8 @@ std::vector<Touch> list_touches(const LumpedContacts& contacts) {
     return touches;
 }
 
-/// Finds the stencil weights of a group of nodes in all contacts. Touch::node is then the position of the node in the
-/// group.
+/// Finds the stencil weights of a group of nodes in all contacts. In the result Touch::node is the position of the node
+/// in the group.
 class GroupTouches {
 public:
     explicit GroupTouches(const LumpedContacts& contacts) : contacts_(contacts), place_(contacts.inverse_mass.size()) {}
@@ -151,8 +152,8 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
         for (std::size_t a = begin; a < end; ++a)
             for (std::size_t b = begin; b < end; ++b) {
                 const Index i = touches[a].contact, j = touches[b].contact;
-                // Block S_ij of docs/methods/contact.md 2.1. It is bitwise symmetric. A diagonal block is a multiple of
-                // the identity, so it is the same in every frame.
+                // Block S_ij of docs/methods/contact.md 2.1, which is bitwise symmetric. A diagonal block is a multiple
+                // of the identity, so it is equal in every contact frame.
                 const Real coupling = touches[a].weight * touches[b].weight * inverse_mass;
                 parts.push_back(
                     {i, j,

@@ -13,10 +13,11 @@ namespace {
 using SparseMatrix = Eigen::SparseMatrix<Real>;
 using Factors = Eigen::SimplicialLDLT<SparseMatrix>;
 
-/// Independent parts of the mass matrix M, such as bodies: no entry of M connects two parts.
+/// Independent blocks of the mass matrix M, here called parts. A part is usually a body: no entry of M connects two
+/// parts.
 struct MassParts {
-    std::vector<Index> part, place;  // for each degree of freedom: number of its part, and its index in the part
-    std::vector<Index> size;         // number of degrees of freedom of each part
+    std::vector<Index> part, place;  // for each degree of freedom: number of its part of M, and its index in this part
+    std::vector<Index> size;         // number of degrees of freedom of each part of M
 };
 
 MassParts separate(const MatrixEntries& mass) {
@@ -34,7 +35,7 @@ MassParts separate(const MatrixEntries& mass) {
     return parts;
 }
 
-/// Returns the entries of a matrix, grouped by the part to which their row belongs.
+/// Returns the entries of a matrix, grouped by the part of M (see MassParts) to which the row of each entry belongs.
 std::vector<std::vector<MatrixEntry>> by_part(const MassParts& parts, const MatrixEntries& matrix) {
     std::vector<std::vector<MatrixEntry>> entries(parts.size.size());
     for (const MatrixEntry& e : matrix.entry) entries[parts.part[e.row]].push_back(e);
@@ -57,7 +58,8 @@ std::string freedom_text(const MassParts& parts, Index part, Index place) {
 }
 
 MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass) {
-    // Tolerance for rounding in an assembled matrix. A matrix that is really unsymmetric exceeds it by far.
+    // Tolerance for rounding in an assembled matrix, which should be symmetric. A matrix that is really unsymmetric
+    // exceeds the tolerance by far.
     constexpr Real rounding = 1e-9;
     const SparseMatrix difference = mass - SparseMatrix(mass.transpose());
     const Eigen::VectorXd diagonal = mass.diagonal();
@@ -78,7 +80,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
         if (!(diagonal[i] > 0))
             return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
     factors.compute(mass);
-    // A pivot of the factorisation at rounding level indicates a singular matrix.
+    // A pivot of the factorisation that is as small as rounding errors indicates a singular matrix.
     constexpr Real rounding = 1e-14;
     const Eigen::VectorXd in_order = factors.permutationP() * diagonal;
     bool definite = factors.info() == Eigen::Success;
@@ -87,11 +89,11 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     return {"a matrix that is not positive definite in the block of " + freedom_text(parts, part, 0), expected};
 }
 
-/// Adds the contributions of one part of M to W and q of the contact problem.
+/// Adds the contributions of one independent part of the mass matrix M to W and q of the contact problem.
 void condense_part(const MassParts& parts, Index part, const Factors& factors,
                    const std::vector<MatrixEntry>& directions, const std::vector<Real>& force,
                    std::vector<BlockPart>& blocks, ContactProblem& problem) {
-    std::vector<Index> contact;  // numbers of the contacts that move this part, ascending
+    std::vector<Index> contact;  // numbers of the contacts that move this part of M, ascending
     for (const MatrixEntry& e : directions) contact.push_back(e.column / 3);
     std::sort(contact.begin(), contact.end());
     contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
@@ -106,18 +108,18 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
     const Eigen::VectorXd free = factors.solve(Eigen::Map<const Eigen::VectorXd>(force.data(), parts.size[part]));
     const Eigen::VectorXd velocity = h.transpose() * free;
     for (Index i = 0; i < count; ++i) problem.q[contact[i]] += velocity.segment<3>(3 * i);
-    // Processes contacts in batches, because all of M^-1 H at once would be too large for a big body with many
-    // contacts.
+    // Contacts are processed in batches. The matrix M^-1 H of all contacts at once would be too large for a big body
+    // with many contacts.
     constexpr Index batch = 32;
     for (Index begin = 0; begin < count; begin += batch) {
         const Index end = std::min(count, begin + batch);
-        // The matrix gets its size before the assignment. With automatic resizing disabled, Eigen would otherwise clear
-        // the dense matrix before it has the size of the sparse one.
+        // The dense matrix gets its size before the assignment. With automatic resizing disabled, Eigen would otherwise
+        // set its entries to zero before it has the size of the sparse matrix.
         Eigen::MatrixXd pushed(parts.size[part], 3 * (end - begin));
         pushed = h.middleCols(3 * begin, 3 * (end - begin));
         const Eigen::MatrixXd moved = factors.solve(pushed);
         const Eigen::MatrixXd w = h.transpose() * moved;
-        // Computes one half of W and mirrors it, so that W is bitwise symmetric.
+        // Computes one triangle of W and mirrors it, so that W is bitwise symmetric.
         for (Index j = begin; j < end; ++j)
             for (Index i = 0; i <= j; ++i) {
                 Mat3 block = w.block<3, 3>(3 * i, 3 * (j - begin));
@@ -128,7 +130,7 @@ void condense_part(const MassParts& parts, Index part, const Factors& factors,
     }
 }
 
-/// Drops blocks of W that are at rounding level relative to the diagonal blocks of their two contacts.
+/// Drops blocks of W that are as small as rounding errors, compared with the diagonal blocks of their two contacts.
 void drop_rounding(ContactProblem& problem) {
     constexpr Real rounding = 1e-14;
     const std::size_t count = problem.q.size();

@@ -18,14 +18,14 @@ struct GlobalProblem {
     std::vector<Real> force;   // f
 };
 
-/// Reason why the mass matrix cannot be used; empty if it can.
+/// Reason why the mass matrix cannot be used. Both texts are empty if it can be used.
 struct MassFault {
     std::string found, expected;
 };
 
-/// Computes blocks, q and freedoms of `problem`. On input problem.q must contain w. M is divided into independent parts
-/// (the bodies), between which it has no entries. Each part is factorised separately, and only contacts on the same
-/// part are coupled. Blocks that are zero up to rounding are omitted.
+/// Computes blocks, q and freedoms of `problem`. On input problem.q must contain w. The mass matrix M is divided into
+/// independent parts (the bodies), which no entry of M connects. Each part is factorised separately, and only contacts
+/// on the same part are coupled. Blocks of W that are zero up to rounding are omitted.
 MassFault condense_problem(const GlobalProblem& global, ContactProblem& problem);
 
 }  // namespace skerry

@@ -10,8 +10,8 @@ void expect_index(const Hdf5File& file, const std::string& path, Index index, In
         file.complain(path, "index " + std::to_string(index), "0 to " + std::to_string(size - 1));
 }
 
-/// Reads compressed columns (nz = -1) or rows (nz = -2). Array p contains the offset of each column (row), array i the
-/// row (column) index of each entry.
+/// Reads a matrix stored by compressed columns (nz = -1) or compressed rows (nz = -2). Array p contains the offset of
+/// each column (row), array i the row (column) index of each entry.
 void read_compressed(const Hdf5File& file, const std::string& group, bool by_rows, MatrixEntries& matrix) {
     const Index lines = by_rows ? matrix.rows : matrix.columns, places = by_rows ? matrix.columns : matrix.rows;
     const std::vector<Index> begin = file.integers(group + "/p"), place = file.integers(group + "/i");
@@ -33,8 +33,8 @@ void read_compressed(const Hdf5File& file, const std::string& group, bool by_row
         }
 }
 
-/// Reads nz triplets. Array p contains columns and array i rows, as in CSparse, whose arrays Siconos writes. (Comments
-/// in fclib.h state the opposite; for the symmetric matrices W and M there is no difference.)
+/// Reads a matrix stored as nz triplets. Array p contains columns and array i rows, as in CSparse, whose arrays Siconos
+/// writes. (Comments in fclib.h state the opposite; for the symmetric matrices W and M there is no difference.)
 void read_triplets(const Hdf5File& file, const std::string& group, Index nz, MatrixEntries& matrix) {
     const std::vector<Index> column = file.integers(group + "/p"), row = file.integers(group + "/i");
     const std::vector<Real> value = file.reals(group + "/x");

@@ -95,7 +95,7 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
         file.complain(root + "/M", fault.found, fault.expected);
 }
 
-/// Throws SceneError unless W and q are finite. All numbers in the file are finite, but sums and products of large
+/// Throws SceneError unless W and q are finite. The numbers in the file are finite, but sums and products of large
 /// numbers may overflow.
 void expect_finite(const Hdf5File& file, const std::string& root, const ContactProblem& problem) {
     const auto finite = [](const auto& entries) {

@@ -23,7 +23,7 @@ BlockSystem view(const ContactProblem& problem) {
 /// order of their first contacts.
 struct ProblemRegions {
     std::vector<Index> offset, contact;
-    UnionFind joined;  // joins contacts that a block couples
+    UnionFind joined;  // union-find structure that joins contacts coupled by a block of W
 
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
     std::span<const Index> operator[](Index region) const {
@@ -38,7 +38,7 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     for (std::size_t i = 0; i < count; ++i)
         for (Index k = problem.row_offset[i]; k < problem.row_offset[i + 1]; ++k)
             joined.join(static_cast<Index>(i), problem.column[k]);
-    // The first pass numbers the regions and counts the contacts of each region. The second pass sorts the contacts by
+    // A first pass over the contacts numbers the regions and counts their contacts. A second pass sorts the contacts by
     // region.
     regions.offset.assign(1, 0);
     for (Index i = 0; i < static_cast<Index>(count); ++i) {
@@ -53,16 +53,16 @@ void separate(const ContactProblem& problem, ProblemRegions& regions) {
     regions.offset[0] = 0;
 }
 
-/// All data that a solve writes. Repetitions of the solve reuse the memory.
+/// Results and working memory of a solve. Repetitions of the solve reuse the memory.
 struct Work {
     ProblemRegions regions;
     BlockMemory memory;
-    std::vector<Index> used;  // number of iterations of each region
+    std::vector<Index> used;  // number of iterations that each region needed
 };
 
-/// Solves all regions. The error is measured over all regions together, so each region gets its share of the tolerance.
-/// The norms by which the error is divided are only known at the end. If the total error is then too large, the regions
-/// continue with half the tolerance.
+/// Solves all regions. The tolerance applies to the error of all regions together, so each region gets a share of it.
+/// The error is divided by norms that are known only at the end. If the total relative error is then too large, the
+/// regions continue with half the tolerance.
 void solve_once(const ContactProblem& problem, const ProblemSettings& settings, const BlockMethod& method, Work& work) {
     const ProblemRegions& regions = work.regions;
     separate(problem, work.regions);
@@ -89,7 +89,7 @@ void solve_once(const ContactProblem& problem, const ProblemSettings& settings, 
     }
 }
 
-/// Returns the impulses in the order of the contacts of the problem.
+/// Returns the impulses, sorted like the contacts of the problem.
 std::vector<Vec3> reactions(const Work& work) {
     std::vector<Vec3> reaction(work.regions.contact.size());
     for (std::size_t i = 0; i < reaction.size(); ++i)

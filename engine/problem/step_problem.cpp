@@ -68,8 +68,8 @@ std::vector<RigidPoints> rigid_points(const RegionInputs& contacts) {
     return bodies;
 }
 
-/// For a cylinder: sets the position at which each contact of the problem touches it. `rows` are the rows of these
-/// contacts in the tables of the step.
+/// For a cylinder: sets the touching point of each contact of the problem relative to the centre of mass. `rows` are
+/// the rows of these contacts in the tables of the step.
 void add_touches(const RegionInputs& contacts, const std::vector<Index>& rows, RigidPoints& body) {
     const RigidNodes& rigid = contacts.rigid.nodes;
     const Index middle = body.node.front();

@@ -9,8 +9,8 @@
 
 namespace skerry {
 
-/// Contacts of a step before the solve, and the result of the solve. `contacts.velocity` and `free_velocity` are the
-/// values before the solve.
+/// Contacts of a step before the solve, and the impulses that the solve has found. `contacts.velocity` and
+/// `free_velocity` are the values before the solve.
 struct StepContacts {
     RegionInputs contacts;
     std::span<const Vec3> free_velocity;  // predicted velocity of each node without contacts [m/s]
@@ -18,10 +18,10 @@ struct StepContacts {
     std::span<const Index> region;        // region number of each contact
 };
 
-/// Computes W from stencils and inverse masses, and q from the predicted velocity and the bias of the gap, both in
-/// contact frames. This is the problem that solve_regions solves, except where static and dynamic friction differ (mu
-/// is the dynamic coefficient). Fills problem (without its name and the start of its description), impulse, contact and
-/// region of the result.
+/// Exports the contact problem that solve_regions solves. W is computed from stencils and inverse masses, q from the
+/// predicted velocity and the bias of the gap, both in contact frames. If static and dynamic friction differ, the
+/// exported problem has only the dynamic coefficient, as mu. Fills problem (without its name and the start of its
+/// description), impulse, contact and region of the result.
 StepProblem step_problem(const StepContacts& step, const SolverSettings& settings, Real h);
 
 }  // namespace skerry

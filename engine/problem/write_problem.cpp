@@ -11,7 +11,7 @@
 namespace skerry {
 namespace {
 
-/// Compressed columns (nz = -1) of the nonzero entries of W, with ascending row indices in each column.
+/// The nonzero entries of W as compressed columns (nz = -1), with ascending row indices in each column.
 struct CompressedColumns {
     std::vector<Index> begin, row;
     std::vector<Real> value;
@@ -21,8 +21,8 @@ CompressedColumns compress(const ContactProblem& problem) {
     const std::size_t contacts = problem.q.size();
     CompressedColumns w;
     w.begin.assign(3 * contacts + 1, 0);
-    // Because block rows are visited in order, the entries of every column are visited by ascending row. The first pass
-    // counts the entries, the second one stores them.
+    // The block rows are visited in order, so the entries of every column are visited by ascending row. A first pass
+    // counts the entries, a second pass stores them.
     const auto for_each_entry = [&](auto&& visit) {
         for (std::size_t i = 0; i < contacts; ++i)
             for (int a = 0; a < 3; ++a)

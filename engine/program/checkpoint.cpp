@@ -77,8 +77,8 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what;
 }
 
-/// Sets the world number in all handles of a probe. They then refer to the same bodies, colliders and attachments of
-/// the world with this number.
+/// Sets the world number in all handles of a probe. The handles then refer to the same bodies, colliders and
+/// attachments of the world with this number.
 void rename_world(RecordedProbe& probe, std::uint32_t number) {
     const auto rename = [number](auto& handle) { handle.world = number; };
     std::visit(
@@ -124,7 +124,7 @@ void put_in_place(const std::filesystem::path& file, World world, Scene& scene) 
         if (world.name(colliders[c]) != scene.world.name(colliders_of_scene[c]))
             refuse(file, "collider \"" + world.name(colliders[c]) + "\"",
                    "\"" + scene.world.name(colliders_of_scene[c]) + "\"", hint);
-    // Handles of the old world are not valid in the new one.
+    // Handles of the replaced world are not valid in the new world.
     for (Probe& probe : scene.probes)
         probe.body = bodies[static_cast<std::size_t>(std::ranges::find(of_scene, probe.body) - of_scene.begin())];
     const std::uint32_t number = bodies.empty() && colliders.empty() ? 0

@@ -11,7 +11,7 @@
 
 namespace skerry {
 
-/// State of a run, apart from its world, that a checkpoint stores.
+/// Progress of a run that a checkpoint stores in addition to the world.
 struct RunMemory {
     std::filesystem::path scene;           // absolute path of the scene file
     std::vector<std::string> assignments;  // SceneOverrides::assignments

@@ -20,9 +20,10 @@ enum ExitCode : int {
     exit_bad_input = 2,  // error in an input file or on the command line
     exit_output = 3,     // the computation succeeded, but an output could not be written
 };
-inline constexpr int exit_signal = 128;  // base of the exit codes for signals: 128 + number of the signal
+// a run that a signal stopped ends with this exit code plus the number of the signal
+inline constexpr int exit_signal = 128;
 
-/// Content of one file of exported contact problems: a whole step, or one contact region of a step.
+/// Content of one file of exported contact problems: either a whole step, or one contact region of a step.
 enum class ProblemsOf { step, region };
 template <>
 struct EnumNames<ProblemsOf> {
@@ -37,13 +38,14 @@ struct RunOptions {
     std::optional<Real> seconds;
     std::optional<Real> frames_per_second;
     SceneOverrides overrides;
-    // File or folder of each output, by option of output_formats(). An empty path means that the output is not written.
+    // File or folder of each output, by the output's option in output_formats(). If the path is empty, the output is
+    // not written.
     std::map<std::string, std::filesystem::path> outputs;
     ProblemsOf problems_of = ProblemsOf::step;
     std::optional<int> problems_every;  // number of steps between two exported steps
     bool quiet = false;
-    bool profile = false;              // also print step limits, solver figures, energies and stage times
-    bool strict = false;               // warnings make the run end with exit_failed
+    bool profile = false;              // also print step limits, solver statistics, energies and stage times
+    bool strict = false;               // warnings count as failure: the run ends with exit_failed
     std::filesystem::path checkpoint;  // file for checkpoints; empty: no checkpoints
     std::optional<Real> every;         // simulated time between two checkpoints [s]
     std::filesystem::path restart;     // checkpoint from which the run resumes; empty: a new run
@@ -55,9 +57,9 @@ struct InspectOptions {
     std::vector<std::string> assignments;  // assignments PLACE=VALUE that change a scene
     bool json = false;
     std::filesystem::path repair;  // file for the repaired mesh; empty: only inspect
-    // Largest allowed distance between the old and the new surface, as a fraction of the diagonal of the bounding box.
+    // Largest allowed distance between the old and the new surface, divided by the diagonal of the bounding box.
     Real tolerance = 2e-3;
-    // Name of the body whose mesh is repaired. If empty, the body with the smallest stable step is chosen.
+    // Name of the body whose mesh is repaired. If the name is empty, the body with the smallest stable step is chosen.
     std::string body;
     bool overwrite = false;  // the repaired mesh may replace the input file
 };
@@ -75,12 +77,12 @@ struct SweepOptions {
     // Folder of the results. If empty, it is out/NAME for the file of cases NAME.json.
     std::filesystem::path out;
     std::optional<int> jobs;      // number of cases that run at the same time
-    std::optional<int> rank, of;  // rank of this process, number of processes that share the cases
+    std::optional<int> rank, of;  // rank of this process, and number of processes that share the cases
     bool probes = false;          // also write the time series of the probes of each case
-    bool redo = false;            // also run cases whose files hold outdated results, and replace these files
+    bool redo = false;            // also run cases whose result files are outdated, and replace these files
     bool dry_run = false;         // list the cases without running them
     bool table = false;           // write the table of the existing results without running cases
-    // A case that fails, is refused or has warnings makes the sweep end with exit_failed.
+    // True: the sweep ends with exit_failed if a case fails, is refused or has warnings.
     bool strict = false;
     bool quiet = false;
 };

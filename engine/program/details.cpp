@@ -1,4 +1,4 @@
-// Details of a run that --profile prints: step limits, solver figures, energies and times of the stages.
+// Details of a run that --profile prints: step limits, solver statistics, energies and times of the stages.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -52,7 +52,8 @@ std::string stage_table(const RunResult& result) {
     return text;
 }
 
-/// Lists the causes that limited the length of at least 1 % of the steps, except for the setting step_size.
+/// Returns one line for each cause that limited the length of at least 1 % of the steps, except for the setting
+/// step_size.
 std::string limit_lines(const WorldReport& r) {
     const auto why = [](const StepLimitReport& of) -> std::string {
         switch (of.limit) {
@@ -83,8 +84,7 @@ std::string limit_lines(const WorldReport& r) {
     return text;
 }
 
-/// Lines with the stable step, and the numbers of attempts at a step that were repeated and of steps that were
-/// shortened.
+/// Returns lines with the stable step, the number of repeated attempts at a step, and the number of shortened steps.
 std::string step_length_lines(const WorldReport& r) {
     std::string text;
     if (!r.stable_step_body.empty())

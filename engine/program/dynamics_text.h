@@ -12,11 +12,11 @@
 
 namespace skerry {
 
-/// Returns one text for each kind of choice (the chosen dynamics and its reason). The text describes the first body of
-/// this kind and counts the others.
+/// Returns one text for each combination of chosen dynamics and reason. The text describes the first body with this
+/// choice and counts the other bodies.
 inline std::vector<std::string> choice_texts(const WorldReport& report) {
     std::vector<std::string> texts;
-    // First choice of each kind, and number of bodies of this kind.
+    // First choice of each kind, and number of bodies with this kind of choice.
     std::vector<std::pair<const DynamicsChoice*, std::size_t>> kinds;
     for (const DynamicsChoice& choice : report.dynamics_choices) {
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {

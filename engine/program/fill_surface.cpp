@@ -63,14 +63,14 @@ Mesh read_mesh(std::FILE* in) {
     return mesh;
 }
 
-/// Redirection of standard input, file descriptor 3 and the messages of a child process.
+/// File redirection for a child process: its standard input, its file descriptor 3 and its messages.
 struct FileActions {
     posix_spawn_file_actions_t actions;
 
     FileActions(int in, int out) {
         posix_spawn_file_actions_init(&actions);
-        // The descriptors are first duplicated to high numbers. Otherwise the first redirection could overwrite the
-        // other file, if that file has the number 0 or 3.
+        // The descriptors are first duplicated to high numbers. Without this the first redirection could overwrite the
+        // second file, if that file has the number 0 or 3.
         posix_spawn_file_actions_adddup2(&actions, in, 100);
         posix_spawn_file_actions_adddup2(&actions, out, 101);
         posix_spawn_file_actions_adddup2(&actions, 100, STDIN_FILENO);

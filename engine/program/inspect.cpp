@@ -19,11 +19,11 @@ namespace {
 
 using Problems = std::vector<std::string>;
 
-// Tetrahedra below this quality are slivers, which shorten the step and reduce accuracy.
+// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
 constexpr Real poor_quality = 0.1;
-// A problem is reported if the smallest stable step is smaller than the second smallest by more than this factor.
+// Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
-constexpr Real hardly_longer = 1.03;  // ratios of step lengths between 1 and this value count as a small gain
+constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
 constexpr int timed_steps = 20;
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
@@ -76,15 +76,16 @@ Json bound_json(const StepBound& bound) {
     return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
 }
 
-/// Describes the ratio of the step without the worst tetrahedra to the present step. The ratio may be below 1: removing
-/// tetrahedra reduces the mass of their nodes, and this shortens the steps of the neighbouring tetrahedra.
+/// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
+/// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
+/// the neighbouring tetrahedra.
 std::string compared(Real ratio) {
     if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter";
     if (ratio < 1) return "hardly shorter";
     return ratio < hardly_longer ? "hardly longer" : short_number(ratio) + " times as long";
 }
 
-/// Prints the tetrahedra that limit the stable step, and the stable step without the worst tetrahedra.
+/// Prints the tetrahedra that limit the stable step, and the stable step of the mesh without its worst tetrahedra.
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
         std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
@@ -129,7 +130,8 @@ int inspect_mesh(const InspectOptions& options) {
                               options);
     const MeshReport report = inspect(mesh);
     const Problems problems = problems_of(report);
-    // A mesh without tetrahedra, or with inverted or flat ones, cannot be added to a world and has no stable step.
+    // A mesh without tetrahedra, or with inverted or flat tetrahedra, cannot be added to a world and has no stable
+    // step.
     const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
     const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
     if (options.json) {
@@ -165,13 +167,13 @@ int inspect_mesh(const InspectOptions& options) {
 /// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
     std::string first_name;
-    // Name of each material, and number of tetrahedra of this material, which is above 0.
+    // Name of each material of the bodies, and number of tetrahedra of this material (always above 0).
     std::vector<std::pair<std::string, std::size_t>> materials;
     std::size_t count = 0;
-    std::size_t body = 0;  // index in ScenePlan::bodies of the first body of this kind
+    std::size_t body = 0;  // index in ScenePlan::bodies of the first of these bodies
     MeshReport mesh;
     BodyDynamics dynamics;
-    StepBound bound;  // for rigid and implicit bodies: empty, with an infinite step
+    StepBound bound;  // for rigid and implicit bodies: no worst tetrahedra, and an infinite step
 
     bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
@@ -209,9 +211,8 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Groups the bodies by mesh, materials, elements and dynamics. The stable step of each explicit kind is computed in a
-/// separate world. `became` holds the dynamics that each body has in the world. If it is empty, the dynamics of the
-/// plan are used.
+/// Groups the bodies by mesh, materials, elements and dynamics. The stable step of each explicit group is computed in a
+/// separate world. `became`: dynamics of each body in the world; if empty, the dynamics of the plan are used.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
@@ -263,11 +264,11 @@ std::string materials_text(const BodyKindReport& kind) {
     return text;
 }
 
-/// A scene in the state in which a run starts, and its overlaps before they are resolved.
+/// A scene in the state in which a run starts, and its overlaps before the run resolves them.
 struct SceneStart {
     Scene scene;
-    WorldReport as_written;  // report of the world in which overlaps are not resolved
-    std::string outcome;     // how a run treats the overlaps, as text; empty if there are none
+    WorldReport as_written;  // report of a world in which the overlaps at the start are not resolved
+    std::string outcome;     // how a run resolves the overlaps, as text; empty if there are none
 };
 
 SceneStart start_of(const ScenePlan& plan) {
@@ -290,16 +291,17 @@ SceneStart start_of(const ScenePlan& plan) {
 struct SceneCost {
     double seconds_per_second = 0;  // wall time per simulated second, measured over the first steps
     Real overlap = 0;               // deepest overlap at the start [m]
-    // Largest penetration into the contact distance minus the largest overlap, at the start [m].
+    // Largest penetration into the contact distance at the start, minus the largest overlap [m].
     Real into_shell = 0;
     Index contacts = 0;  // number of contacts at the start
     std::string failure{}, turning{};
 };
 
-/// Runs the first steps and measures cost, overlaps and contacts. `overlap` is the deepest overlap already known [m].
+/// Runs the first steps, and measures their cost, overlaps and contacts. `overlap`: deepest overlap known so far [m].
 SceneCost try_steps(World& world, Real overlap) {
     SceneCost cost{.overlap = overlap};
-    constexpr Real hardly = 1e-9;  // duration of a step that finds the contacts but hardly moves anything [s]
+    // duration of a step that is long enough to find the contacts but moves hardly anything [s]
+    constexpr Real hardly = 1e-9;
     const StepReport first = world.advance(hardly);
     cost.overlap = std::max(overlap, first.max_penetration);
     cost.into_shell = first.max_gap_violation - first.max_penetration;

@@ -6,14 +6,15 @@
 
 namespace skerry {
 
-/// A mesh to repair, and the body for which its stable step is computed.
+/// A mesh to repair, and the properties of the body for which the stable step is computed.
 struct RepairTask {
     const Mesh& mesh;
-    std::string what;  // name in messages: the mesh file, or the scene and the body
+    std::string what;  // name of the mesh in messages: the mesh file, or the scene and the body
     StepCase of;
     std::string step_of;  // description of the material for which the stable step is computed
-    bool scaled = false;  // true: the scene scales the mesh, and the repaired file contains scaled nodes, so the scene
-                          // must drop `scale`
+    // true if the scene scales the mesh: the repaired file contains scaled nodes, so `scale` must be removed from the
+    // scene
+    bool scaled = false;
 };
 
 /// Checks the options before any computation: the output file is a writable .msh file, it does not replace the input

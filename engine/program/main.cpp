@@ -355,7 +355,7 @@ int run_command_line(int argc, char** argv) {
 /// much memory, and the system would have to clear every page that it hands out again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    // Sizes in bytes. The C library would adapt these limits on its own, but later.
+    // Sizes in bytes. The C library would adapt these two limits by itself, but later.
     constexpr int largest_kept = 32 << 20, most_kept = 64 << 20;
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, most_kept);

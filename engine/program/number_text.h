@@ -29,11 +29,12 @@ inline std::string grouped(std::uint64_t value) {
 
 /// Formats an estimated count that is given as a double.
 inline std::string count_text(double count) {
-    constexpr double most_written_out = 1e15;  // counts from here on are written with a power of ten
+    constexpr double most_written_out = 1e15;  // counts of at least this size are written with a power of ten
     return count < most_written_out ? grouped(static_cast<std::uint64_t>(count)) : short_number(count);
 }
 
-/// Formats a value with the SI prefix that leaves one to three digits before the point: (0.00031, "s") gives "310 us".
+/// Formats a value with an SI prefix, so that one to three digits stand before the decimal point: (0.00031, "s") gives
+/// "310 us".
 inline std::string with_unit(double value, const char* unit) {
     struct Prefix {
         double factor;
@@ -53,7 +54,7 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    constexpr double enough = 2;  // a unit is used for durations of at least two units
+    constexpr double enough = 2;  // a duration is given in the largest unit of which it contains at least this many
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");

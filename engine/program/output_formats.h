@@ -12,12 +12,13 @@
 
 namespace skerry {
 
-/// Data from which a Writer is constructed. The referenced objects outlive the writer.
+/// Data from which a Writer is constructed. The objects that it refers to outlive the writer.
 struct OutputRequest {
     std::filesystem::path place;
     const Scene& scene;
     const RunOptions& options;
-    // Result of the run. When a writer is closed, the result is complete, except for the writers that are closed later.
+    // Result of the run. It is complete when a writer is closed, except for the results of writers that are closed
+    // later.
     const RunResult& result;
 };
 

@@ -13,10 +13,11 @@ namespace {
 
 struct Sample {
     int sticking = 0, sliding = 0;
-    Real slip = 0;  // sum of the slip speeds of the contacts, later their mean [m/s]
+    Real slip = 0;  // slip speeds of the contacts: first their sum, later their mean [m/s]
 };
 
-/// True if the contact acts on a node of the probe. `inside` has a flag for each node of the body `body`.
+/// True if the contact acts on a node of the probe. `inside`: for each node of `body`, nonzero if the node belongs to
+/// the probe.
 bool touches(const Contact& contact, BodyHandle body, const std::vector<char>& inside) {
     for (std::size_t a = 0; a < 4; ++a) {
         const bool ours =

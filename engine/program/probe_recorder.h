@@ -11,7 +11,7 @@ namespace skerry {
 
 struct ProbeRecord {
     std::string name;
-    Real stick_time = 0, slide_time = 0, open_time = 0;  // times in each state [s]
+    Real stick_time = 0, slide_time = 0, open_time = 0;  // time of sticking, of sliding and without contact [s]
     Real slide_alone_time = 0;           // time during which this probe slides and no other probe does [s]
     int changes = 0;                     // number of changes between sticking and sliding
     Real max_slip = 0;                   // largest value of `slip` [m/s]
@@ -39,13 +39,13 @@ private:
     enum class State { open, stick, slide };
     struct Tracked {
         BodyHandle body;
-        std::vector<char> inside;  // by node of the body: nonzero if it is a node of the probe
+        std::vector<char> inside;  // for each node of the body: nonzero if the node belongs to the probe
         State last_closed = State::open;
-        std::size_t stressed = 0;                   // index of the probe's body in `stressed_`
+        std::size_t stressed = 0;                   // index in `stressed_` of the probe's body
         std::vector<std::size_t> stressed_nodes{};  // indices of the probe's nodes in Stressed::nodes
     };
-    /// A body and the nodes of all probes on it. The stress of these nodes is evaluated in one call, because each call
-    /// has to find the tetrahedra around the nodes.
+    /// A body, and the nodes of all probes on this body. The stress of these nodes is evaluated in one call, because
+    /// each call has to find the tetrahedra around the nodes.
     struct Stressed {
         BodyHandle body;
         std::vector<Index> nodes{};  // node numbers within the body
@@ -57,7 +57,7 @@ private:
 };
 
 Json to_json(const ProbeRecord& record);
-/// Reads all members of a record except the name.
+/// Reads all members of a record except its name.
 void from_json(const Json& json, ProbeRecord& record);
 
 }  // namespace skerry

@@ -24,10 +24,11 @@ std::string numbered(const char* what, int digits, std::int64_t number) {
     return text;
 }
 
-/// Returns the interval between exported steps for which about `file_count` of all `steps` steps are exported.
+/// Returns the number of steps between two exports for which about `file_count` of the `steps` steps of a run are
+/// exported.
 std::uint64_t default_every(double steps) {
     constexpr double file_count = 20;
-    // The upper limit is needed because `steps` may be infinite.
+    // The upper limit is needed because the number of steps may be infinite.
     return static_cast<std::uint64_t>(std::clamp(std::ceil(steps / file_count), 1.0, 1e18));
 }
 
@@ -80,7 +81,7 @@ void ExportedProblems::write_step(const StepProblem& step) {
     if (of_ == ProblemsOf::step) {
         write(step.problem, step, name + numbered("contacts", 1, step.problem.contacts()), step.impulse);
     } else {
-        // Pairs of region and contact number. Sorting them brings the contacts of each region together.
+        // Pairs (region, contact number). Sorting these pairs brings the contacts of each region together.
         std::vector<std::pair<Index, Index>> order;
         for (std::size_t i = 0; i < step.region.size(); ++i) order.emplace_back(step.region[i], static_cast<Index>(i));
         std::sort(order.begin(), order.end());

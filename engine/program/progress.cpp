@@ -12,9 +12,10 @@ namespace skerry {
 namespace {
 
 constexpr double refresh_interval = 0.1;  // time between two updates of the bar [s]
-constexpr double first_line = 1;          // wall time of the first line; by then the time left can be estimated [s]
-constexpr double longest_silence = 600;   // longest time between two lines [s]
-constexpr int bar_width = 24;             // [characters]
+// wall time after which the first line is printed, when the time left can be estimated [s]
+constexpr double first_line = 1;
+constexpr double longest_silence = 600;  // longest time between two lines [s]
+constexpr int bar_width = 24;            // [characters]
 
 double share_of(double time, double seconds) {
     return time < seconds ? time / seconds : 1;

@@ -25,8 +25,8 @@ void clear_bar();
 
 class Progress {
 public:
-    /// `seconds`: simulated time of the run [s]. `steps`: estimated number of steps. `step`: step length [s]. If
-    /// `wanted` is false, nothing is displayed. All output goes to standard error.
+    /// `wanted`: if false, nothing is displayed. `seconds`: simulated time of the run [s]. `steps`: estimated number of
+    /// steps. `step`: step length [s]. All output goes to standard error.
     Progress(bool wanted, double seconds, double steps, double step);
     ~Progress();
     Progress(const Progress&) = delete;

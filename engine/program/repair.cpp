@@ -17,17 +17,18 @@ namespace skerry {
 
 namespace {
 
-// Smallest ratio of the new to the old stable step for which the new mesh is written.
+// Least ratio of the new to the old stable step for which the new mesh is written.
 constexpr Real least_gain = 1.05;
-// Triangles of the surface with an altitude below this fraction of its mean edge are knots (measured:
-// docs/decisions/0012).
+// Largest altitude of a knot, which is a nearly flat surface triangle, as a fraction of the mean edge of the surface
+// (measured: docs/decisions/0012).
 constexpr Real knot_altitude = 0.4;
-// Smallest ratio of new to old number of tetrahedra. With fewer tetrahedra the mesh would be coarser, not better.
+// Least ratio of the new to the old number of tetrahedra. With fewer tetrahedra the mesh would be coarser, not better.
 constexpr Real least_count = 0.7;
-// Sizes of tetrahedra to be tried, as multiples of the mean edge of the old mesh. A finer surface leads to smaller
-// tetrahedra.
+// Edge lengths of tetrahedra to be tried, as multiples of the mean edge of the old mesh. A finer surface leads to
+// smaller tetrahedra.
 constexpr Real largest_edges[] = {1.5, 1, 0.7};
-// Largest accepted difference between the volume inside a surface and the volume of its tetrahedra, as a fraction.
+// Largest accepted difference between the volume inside a surface and the volume of its tetrahedra, as a fraction of
+// the volume inside the surface.
 constexpr Real volume_rounding = 1e-6;
 
 using Corners = std::array<Vec3, 3>;
@@ -46,8 +47,8 @@ Real area_of(const SurfaceMesh& surface) {
     return area;
 }
 
-/// Volume inside a closed surface by the divergence theorem. Positions are taken relative to a point of the surface, so
-/// that the rounding error depends on the size of the surface and not on its position.
+/// Computes the volume inside a closed surface by the divergence theorem. Positions are measured from a point of the
+/// surface. The rounding error thus depends on the size of the surface and not on its position.
 Real volume_inside(const SurfaceMesh& surface) {
     Real volume = 0;
     for (const auto& t : surface.triangles) {
@@ -67,7 +68,7 @@ Real mean_edge_of(const SurfaceMesh& surface) {
     return sum / static_cast<Real>(3 * surface.triangles.size());
 }
 
-/// Returns the stable step [s], or 0 if the mesh cannot be a body.
+/// Returns the stable step of a body with this mesh [s], or 0 if the mesh is not valid for a body.
 Real step_of(const Mesh& mesh, const MeshReport& report, const StepCase& of) {
     return report.tetrahedra > 0 && report.inverted + report.flat == 0 ? step_bound(mesh, of, false).step : 0;
 }
@@ -78,11 +79,11 @@ MeshFigures figures_of(const Mesh& mesh, const SurfaceMesh& surface, const StepC
     return figures;
 }
 
-/// A new mesh for the body, and the numbers of edges of the surface that were changed.
+/// A new mesh for the body, and the numbers of surface edges that were collapsed and flipped.
 struct Candidate {
     Mesh mesh;
     SurfaceMesh surface;
-    MeshFigures figures;  // a step of 0 means that no mesh was found
+    MeshFigures figures;  // properties of the new mesh; a step of 0 means that no mesh was found
     std::size_t collapsed = 0, flipped = 0;
 };
 
@@ -196,7 +197,7 @@ private:
         result_.collapsed = result_.flipped = 0;
     }
 
-    /// Sets result_.refusal if the new mesh is not good enough to be written.
+    /// Sets result_.refusal to a reason if the new mesh is not good enough to be written.
     void judge(const SurfaceMesh& surface) {
         if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
             result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"

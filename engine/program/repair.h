@@ -20,15 +20,15 @@ struct MeshFigures {
 struct RepairedMesh {
     Mesh mesh;
     MeshFigures before, after;
-    mesh::SurfaceDistance distance;          // first surface: old; second surface: new
-    Real tolerance = 0;                      // largest allowed distance [m]
+    mesh::SurfaceDistance distance;          // distance between the old surface (first) and the new surface (second)
+    Real tolerance = 0;                      // largest allowed distance between the two surfaces [m]
     std::size_t collapsed = 0, flipped = 0;  // numbers of surface edges that were collapsed or flipped
     // Number of nodes that were split because some of their tetrahedra were not connected by faces.
     std::size_t parted = 0;
-    // Reason why no new tetrahedra were accepted. It is set if the mesh has the old tetrahedra and only nodes were
-    // split.
+    // Reason why no new tetrahedra were accepted. The mesh then has the old tetrahedra, and only nodes were split.
+    // Otherwise empty.
     std::string kept;
-    std::string refusal;  // reason why the mesh must not be written; empty if it is better
+    std::string refusal;  // reason why the mesh must not be written; empty if it is better than the old mesh
 };
 
 /// Fills the surface of the mesh with new tetrahedra, and returns the mesh with the longest stable step.

@@ -43,7 +43,7 @@ void require_writable_file(const std::filesystem::path& file) {
 void require_distinct(std::span<const NamedFile> files) {
     const auto place = [](const std::filesystem::path& file) {
         std::error_code error;
-        // If the file does not exist yet, weakly_canonical would leave a relative name relative.
+        // If the file does not exist yet, weakly_canonical does not convert a relative name to an absolute one.
         const std::filesystem::path full = std::filesystem::absolute(file);
         const std::filesystem::path found = std::filesystem::weakly_canonical(full, error);
         return error ? full : found;

@@ -9,8 +9,8 @@ namespace skerry {
 /// Throws SceneError unless the file can be created or replaced. The folder may be missing if it can be created. The
 /// check does not change any file or folder.
 void require_writable_file(const std::filesystem::path& file);
-/// Throws SceneError unless the folder can be created, or exists and can be written. The check does not change any file
-/// or folder.
+/// Throws SceneError unless the folder exists and is writable, or can be created. The check does not change any file or
+/// folder.
 void require_writable_folder(const std::filesystem::path& folder);
 
 /// A file, and the name by which messages call it. An empty path means that there is no such file.

@@ -51,9 +51,9 @@ private:
 const char* const advice =
     "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps";
 
-/// Runs all frames, from the state in `memory` on. An error is stored in result.status. If a run stops within a call of
-/// advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a resumed run could not
-/// reproduce the remaining steps of that call.
+/// Simulates the frames of a run, from the progress in `memory` on. An error is stored in result.status. If a run stops
+/// within a call of advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a
+/// resumed run could not reproduce the remaining steps of that call.
 class FrameLoop {
 public:
     FrameLoop(Scene& scene, const RunPlan& plan, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
@@ -85,7 +85,7 @@ public:
                 advance(duration);
             }
             if (result_.status != "ok" && !(world_.time() > begin))
-                break;  // the run stopped before the first step of this frame
+                break;  // the run stopped before the first step of this frame, so the frame is not written
             add_frame();
             const bool whole = length >= (1 - RunPlan::slack) * plan_.frame_step;
             const bool due = frame + 1 == plan_.frames() || checkpoints_.due(world_.time());
@@ -149,7 +149,7 @@ private:
     Progress& progress_;
     RunResult& result_;
     ProbeRecorder probes_;
-    std::uint64_t steps_ = 0;  // number of steps since the start or the resumption
+    std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 
 void count_bodies(const World& world, RunResult& result) {
@@ -162,11 +162,11 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
-/// Returns a text for each mesh whose boundary is not a closed manifold, with one of its bodies as example. At such
-/// places a contact cannot tell the inside of a body from the outside.
+/// Returns one text for each mesh whose boundary is not a closed manifold. The text names one body with this mesh.
+/// Where the boundary is not a manifold, a contact cannot tell the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
-    const std::vector<BodyHandle> bodies = world.bodies();  // bodies in the order of ScenePlan::bodies
+    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
     std::vector<bool> seen(plan.meshes.size(), false);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];

@@ -20,10 +20,10 @@ std::filesystem::path place_of(const OutputFormat& format, const RunOptions& opt
     return found == options.outputs.end() ? std::filesystem::path() : found->second;
 }
 
-/// Throws SceneError unless all outputs can be written and no file has two uses. Returns all files that the user has
+/// Throws SceneError unless all outputs can be written and no file is used twice. Returns all files that the user has
 /// named, for reading or for writing.
 std::vector<NamedFile> check_places(const RunOptions& options) {
-    // The run may write its checkpoint to the file from which it resumes.
+    // The checkpoint file may be the file from which the run resumes.
     std::error_code error;
     const bool same = std::filesystem::equivalent(options.restart, options.checkpoint, error);
     std::vector<NamedFile> files{{"the scene", options.scene},

@@ -7,10 +7,11 @@
 namespace skerry {
 
 struct RunPlan {
-    // Tolerance for rounding, as a fraction of a frame: 0.1 s must be six frames of 1/60 s, not seven.
+    // Tolerance for rounding when a run is divided into frames, as a fraction of a frame: 0.1 s must give six frames of
+    // 1/60 s, not seven.
     static constexpr double slack = 1e-9;
 
-    double seconds = 0, frame_step = 0;  // duration of the run, time between two frames [s]
+    double seconds = 0, frame_step = 0;  // duration of the run, and time between two frames [s]
     int samples = 1;                     // number of probe samples per frame; each sample is one call of advance
 
     long frames() const;
@@ -31,7 +32,8 @@ RunPlan plan_run(const Scene& scene, const RunOptions& options);
 /// the calls of advance are the same as without the interruption. Throws SceneError if nothing is left to simulate.
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time);
 
-/// True if a run of `planned` seconds would end within this frame, and the frame has another length in `run_plan`.
+/// True if a run with a duration of `planned` seconds would end within this frame, and `run_plan` gives the frame
+/// another length.
 bool cut_short(const RunPlan& run_plan, long frame, double planned);
 
 }  // namespace skerry

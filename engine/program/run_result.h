@@ -27,15 +27,16 @@ struct RunResult {
     double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]
-    int checkpoints = 0, checkpoints_failed = 0;  // numbers of checkpoints since the start or resumption
+    int checkpoints = 0, checkpoints_failed = 0;  // number of checkpoints written since the run was started or resumed
     std::size_t rigid_bodies = 0, implicit_bodies = 0;
     Real peak_kinetic_energy = 0;  // largest kinetic energy at the end of a frame [J]
     Real mean_edge = 0;            // mean edge length of the surfaces, averaged over the bodies [m]
     WorldReport report;
     std::uint64_t state_hash = 0;
     std::vector<ProbeRecord> probes;
-    std::vector<std::pair<std::string, std::string>> outputs_failed;  // option and error message
-    std::vector<std::string> bad_boundaries;  // one sentence for each mesh with an invalid boundary
+    // option and error message of each output that failed
+    std::vector<std::pair<std::string, std::string>> outputs_failed;
+    std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
     std::vector<std::string> written;         // description of each written output
 };
 
@@ -51,7 +52,8 @@ Json statistics_of(const RunResult& result);
 std::unique_ptr<Writer> statistics_file(const std::filesystem::path& file, const RunResult& result);
 /// Returns the short text that is printed at the end of a run.
 std::string summary_of(const RunResult& result);
-/// Returns the additional lines for --profile: step limits, solver figures, energies, times of the stages, state hash.
+/// Returns the additional lines for --profile: step limits, solver statistics, energies, times of the stages, state
+/// hash.
 std::string details_of(const RunResult& result);
 
 }  // namespace skerry

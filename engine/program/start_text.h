@@ -22,8 +22,8 @@ inline Json overlaps_json(const WorldReport& report) {
     return overlaps;
 }
 
-/// Depth of an overlap, or of a penetration into the contact distance, above which a warning is given. It is a fraction
-/// of the mean edge length.
+/// Depth of an overlap, or of a penetration into the contact distance, above which a warning is given, as a fraction of
+/// the mean edge length.
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {

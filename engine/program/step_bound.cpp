@@ -50,9 +50,9 @@ CostlyTetrahedron describe(const Mesh& mesh, Index tetrahedron, Real step) {
     return found;
 }
 
-/// Sorts all tetrahedra by the step that they allow, smallest first. Steps within 10 % of the smallest one count as
-/// equal, and are sorted by altitude. The reason: a bad tetrahedron reduces the steps of its neighbours almost to its
-/// own step, because they share nodal masses, and only its small altitude distinguishes it.
+/// Sorts all tetrahedra by the step that they allow, smallest first. Steps within 10 % of the smallest step count as
+/// equal, and such tetrahedra are sorted by altitude. The reason: a bad tetrahedron also shortens the steps of its
+/// neighbours, because they share nodal masses. Only its small altitude shows that it is the bad one.
 std::vector<Index> worst_first(const Mesh& mesh, std::span<const Real> step) {
     constexpr Real about = 1.1;
     const Real least = about * *std::min_element(step.begin(), step.end());
@@ -90,11 +90,11 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
-/// Computes the stable step of the mesh without its worst tetrahedra. These are removed in several rounds, because each
-/// removal changes the nodal masses and therefore the order of the remaining tetrahedra. `order` lists all tetrahedra
+/// Computes the stable step of the mesh without its worst tetrahedra. Tetrahedra are removed in several rounds, because
+/// each removal changes the nodal masses and so the ranking of the remaining tetrahedra. `order` lists all tetrahedra
 /// of the mesh, worst first.
 std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
-    constexpr std::size_t rounds = 3;  // number of rounds for each fraction in `shares`
+    constexpr std::size_t rounds = 3;  // number of rounds in which each fraction in `shares` is removed
     std::vector<StepWithout> without;
     Mesh rest = mesh;
     std::size_t gone = 0;

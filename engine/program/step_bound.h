@@ -8,20 +8,20 @@
 
 namespace skerry {
 
-/// All data, apart from the mesh, on which the stable step of a single body depends. By default the default material
-/// and elements.
+/// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
+/// default material and elements.
 struct StepCase {
     Settings settings;
     MaterialSettings material;
     BodySettings body;
-    std::map<int, MaterialSettings> labelled;  // material by label of the tetrahedra
+    std::map<int, MaterialSettings> labelled;  // material of the tetrahedra with each label
 };
 
 struct CostlyTetrahedron {
-    Index tetrahedron = 0;      // index in the mesh
-    Vec3 place = Vec3::Zero();  // centroid in the coordinates of the mesh [m]
+    Index tetrahedron = 0;      // index of the tetrahedron in the mesh
+    Vec3 place = Vec3::Zero();  // centroid of the tetrahedron, in the coordinates of the mesh [m]
     Real altitude = 0;          // smallest altitude of the tetrahedron [m]
-    Real mean_edge = 0;         // mean length of the six edges [m]
+    Real mean_edge = 0;         // mean length of the tetrahedron's six edges [m]
     Real step = 0;              // largest stable step that this tetrahedron allows [s]
 };
 
@@ -35,7 +35,8 @@ struct StepWithout {
 struct StepBound {
     Real step = 0;  // [s]
     ElementKind element{};
-    // The tetrahedron with the smallest step, then the flattest tetrahedra among those with nearly as small steps.
+    // The tetrahedron with the smallest stable step, then the flattest tetrahedra among those whose steps are nearly as
+    // small.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
 };

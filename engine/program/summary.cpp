@@ -27,7 +27,7 @@ std::string bodies_text(const RunResult& result) {
 }
 
 std::string time_text(const RunResult& result) {
-    constexpr double least = 1e-3;  // shorter output times are not mentioned [s]
+    constexpr double least = 1e-3;  // a shorter computing time for output is not mentioned [s]
     return with_unit(result.seconds_wall, "s") + " for the steps on " +
            count_of(static_cast<std::size_t>(result.threads), "thread", "threads") + ", " +
            with_unit(result.seconds_load, "s") + " to load the scene" +
@@ -42,7 +42,7 @@ std::string penetration_text(const RunResult& result) {
 }
 
 std::string balance_text(const WorldReport& r) {
-    constexpr double rounding = 1e-9;  // relative momentum errors below this value are rounding errors
+    constexpr double rounding = 1e-9;  // relative errors of the momentum below this value are rounding errors
     return "energy adds up to within " + percent(r.energy_error_share) + ", momentum " +
            (std::isnan(r.momentum_error)        ? "is not checked: a held body is damped or implicit"
             : r.momentum_error_share < rounding ? "to within rounding"

@@ -59,7 +59,8 @@ void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vect
     if (r.energy_error_share > small_share)
         warnings.push_back("the energy balance has an error of " + percent(r.energy_error_share) + ", more than " +
                            percent(small_share) + ": " + shorter);
-    constexpr double rounding = 1e-9;  // relative rounding errors of sums of millions of terms are far below this value
+    // this value is far above relative rounding errors, even those of sums of millions of terms
+    constexpr double rounding = 1e-9;
     if (r.momentum_error_share > rounding)
         warnings.push_back("the momentum balance has an error of " + percent(r.momentum_error_share) +
                            ", more than rounding: please report it as a bug, with the scene");

@@ -53,7 +53,7 @@ private:
         refuse("no \"=\"", "a place, \"=\" and a value");
     }
 
-    /// Removes the next component from the part of the path that is not processed yet, and returns it.
+    /// Removes the next component from the unprocessed part of the path, and returns the component.
     Step next_step() {
         if (place_.front() == '.') place_.remove_prefix(1);
         if (!place_.empty() && place_.front() == '[') return next_in_brackets();

@@ -35,7 +35,7 @@ public:
     bool number_unsigned(number_unsigned_t value) override { return put(value), true; }
     bool number_float(number_float_t value, const string_t&) override { return put(value), true; }
     bool string(string_t& value) override { return put(std::move(value)), true; }
-    bool binary(binary_t&) override { return false; }  // JSON text has no binary values
+    bool binary(binary_t&) override { return false; }  // cannot occur, because JSON text has no binary values
     bool start_object(std::size_t) override { return open(Json::object()); }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override { return open(Json::array()); }
@@ -73,7 +73,8 @@ private:
         Place place(file_);
         for (std::size_t i = 0; i < open_.size(); ++i) {
             const Open& level = open_[i];
-            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;  // the list already contains its unfinished item
+            // an unfinished item is already counted in the size of its list
+            const std::size_t begun = i + 1 < open_.size() ? 1 : 0;
             if (level.value->is_array())
                 place = place.item(level.value->size() - begun);
             else if (!level.key.empty())

@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// JSON document that keeps the order of keys: the order in the file when reading, the order of the key tables in the
-/// schema.
+/// JSON document that keeps the order of its keys. A document that was read has the order of the file, a schema has the
+/// order of the key tables.
 using Json = nlohmann::ordered_json;
 
 /// A location in a scene file, written like bodies[3].mesh.ball, and the name of the object to which it belongs.
@@ -31,7 +31,7 @@ public:
     const std::filesystem::path& file() const { return file_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Throws SceneError with the message of an inner function that does not know files and keys.
+    /// Throws SceneError with the message of an inner function that does not know the file and the key.
     [[noreturn]] void refuse_inner(const std::string& message) const;
 
 private:

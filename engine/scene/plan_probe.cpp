@@ -69,7 +69,8 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
         lower = lower.cwiseMin(node);
         upper = upper.cwiseMax(node);
     }
-    // Tolerance for rounding and for the facets of round shapes, as a fraction of the diagonal of the bounding box.
+    // Largest distance of a probe from the body, as a fraction of the diagonal of the bounding box. It allows for
+    // rounding and for the facets of round shapes.
     constexpr Real reach = 0.01;
     const auto found = follow_point(mesh.nodes, mesh.tetrahedra, *entry.point, reach * (upper - lower).norm());
     if (found) return *found;

@@ -125,7 +125,7 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
 /// Names and mesh files of the bodies that have been planned so far.
 struct PlannedBodies {
     std::set<std::string> names;
-    // Index in ScenePlan::meshes of each file that was read, by path and scale.
+    // Index in ScenePlan::meshes of each mesh file that was read, by path and scale.
     std::map<std::pair<std::filesystem::path, Real>, std::size_t> mesh_of_file;
 };
 
@@ -160,7 +160,7 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.settings.angular_velocity = entry.angular_velocity;
         body.settings.contact_distance = entry.contact_distance;
         body.settings.self_contact = entry.self_contact;
-        // Pinned bodies are explicit unless the scene chooses their dynamics.
+        // Bodies with pinned nodes are explicit unless the scene chooses their dynamics.
         body.settings.dynamics = entry.dynamics == BodyDynamics::automatic && !pins.empty()
                                      ? BodyDynamics::explicit_elastic
                                      : entry.dynamics;

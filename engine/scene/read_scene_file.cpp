@@ -6,15 +6,16 @@ namespace skerry {
 
 namespace {
 
-/// Reads a scene file and the files that it includes. `open` lists the files that are being read, outermost first.
+/// Reads a scene file and the files that it includes. `open` lists the files that are being read now, from the
+/// outermost to the innermost.
 void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<const std::string> assignments,
                std::vector<std::filesystem::path>& open) {
     Json json = read_json(file);
     for (const std::string& assignment : assignments) assign(assignment, file, json);
     const Place place(file);
 
-    // The file is read twice. The first reading finds the included files. The second reading adds the content of this
-    // file to the content of the included files.
+    // The file is evaluated twice. The first time, only the included files are found and read. The second time, the
+    // content of this file is added to the content of the included files.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
     open.push_back(std::filesystem::weakly_canonical(file));

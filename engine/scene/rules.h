@@ -29,7 +29,7 @@ inline Limits within(Real lower, Real upper) {
     return {.at_least = lower, .above = {}, .at_most = upper, .below = {}};
 }
 
-/// Documentation of a key in a scene file. The texts must live as long as the program.
+/// Documentation of a key in a scene file. The texts must exist until the program ends.
 struct KeyDoc {
     std::string_view meaning;
     std::string_view unit = {};   // SI unit
@@ -51,13 +51,13 @@ struct Withdrawn {
     std::string_view key, instead;
 };
 
-/// A condition on which keys of a group an object may or must have.
+/// A condition on several keys of an object: exactly one, at most one, or all or none of them may be given.
 struct KeyGroup {
     enum class Kind { exactly_one, at_most_one, together } kind;
     std::vector<std::string> keys;
 };
 
-/// Part of a rule that does not depend on the object's type. It is compiled only once, in rules.cpp.
+/// Part of a rule that does not depend on the type of the object. This part is compiled only once, in rules.cpp.
 class RuleTable {
 public:
     const std::string& name() const { return name_; }
@@ -72,7 +72,7 @@ protected:
     struct Key {
         std::string name;
         KeyDoc doc;
-        std::size_t offset;  // offset of the value within the object [bytes]
+        std::size_t offset;  // offset of the key's value within the C++ object [bytes]
         ValueFunctions value;
     };
 
@@ -85,7 +85,7 @@ protected:
     void add_withdrawn(const Withdrawn& withdrawn) { withdrawn_.push_back(withdrawn); }
     /// Returns the location of the object in the file, with the object's own name if it has one.
     Place place_of(const Json& json, const Place& outer) const;
-    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys break the
+    /// Reads the values of all keys. Throws SceneError if the JSON value is not an object, or if its keys violate the
     /// rule.
     void read_keys(const Json& json, const Place& place, void* object) const;
 

@@ -20,7 +20,7 @@ struct PinPlan {
     Place place;
 };
 struct BodyPlan {
-    BodySettings settings;  // settings without handles of materials, which exist only in the built world
+    BodySettings settings;  // settings without material handles, because handles exist only in a built world
     // Index in ScenePlan::meshes. For a sphere, capsule or cylinder: the mesh that represents it in output.
     std::size_t mesh = 0;
     BodyShapeEntry shape{};
@@ -37,7 +37,7 @@ struct ColliderPlan {
 struct JointPlan {
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
-    JointSettings settings;               // settings without handles of bodies, which exist only in the built world
+    JointSettings settings;               // settings without body handles, because handles exist only in a built world
     Place place;
 };
 struct ProbePlan {
@@ -45,7 +45,7 @@ struct ProbePlan {
     std::size_t body = 0;      // index in ScenePlan::bodies
     std::vector<Index> nodes;  // local numbers
 };
-/// A time series to be recorded. The quantity determines which members are used.
+/// A time series to be recorded. The recorded quantity determines which of the following members are used.
 struct SeriesPlan {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::energy;
@@ -64,7 +64,8 @@ struct ScenePlan {
     Settings settings;
     Tuning tuning{};  // set by tests and measurements, not by scene files
     std::vector<std::pair<std::string, MaterialSettings>> materials;
-    std::vector<Mesh> meshes;  // one mesh for each entry of "bodies" or each mesh file; copies share it
+    // one mesh for each mesh file, and for each entry of "bodies" without a file; copies of a body share the mesh
+    std::vector<Mesh> meshes;
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;

@@ -18,7 +18,7 @@ namespace skerry {
 struct FilePath {
     std::filesystem::path path;
 };
-/// A rotation, stored as axis times angle. A scene file may write it in three forms.
+/// A rotation, stored as axis times angle. In a scene file a rotation can be written in three forms.
 struct Rotation {
     Vec3 value = Vec3::Zero();  // [rad]
 };
@@ -37,7 +37,7 @@ template <class T>
 struct OneOrMore {
     std::vector<T> items;
 };
-/// A rotation that a scene file gives by the rows of its 3 x 3 matrix.
+/// A rotation that a scene file gives as the rows of a 3 x 3 matrix.
 struct RotationRows {
     Vec3 value = Vec3::Zero();  // rotation axis times angle [rad]
 };
@@ -52,7 +52,7 @@ Json list_schema(Json items, std::size_t count);
 Json named_schema(Json value);
 Json numbered_schema(Json value);
 Json either_schema(Json one, Json other);
-/// Returns a schema reference to the definition of a rule. Adds the definition to `book` if it is missing.
+/// Returns a schema reference to the definition of a rule. Adds the definition to `book` if `book` lacks it.
 Json rule_schema(SchemaBook& book, const RuleTable& rule);
 
 template <>
@@ -118,7 +118,7 @@ struct Value<Vec3> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return Value<std::array<Real, 3>>::schema(book, doc); }
 };
 
-/// Reads a text, and returns the index of the equal text in `names`.
+/// Reads a text, and returns the index of this text in `names`.
 std::size_t read_name(const Json& json, const Place& place, const std::vector<std::string>& names,
                       std::string_view (*hint_for_removed)(std::string_view));
 
@@ -190,8 +190,8 @@ struct Value<Named<T>> {
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return named_schema(Value<T>::schema(book, doc)); }
 };
 
-/// Calls item(number, value, place) for each key of a JSON object. The keys must be whole numbers that fit 32 bits: no
-/// sign except minus, no leading zeros.
+/// Calls item(number, value, place) for each key of a JSON object. Each key must be a whole number that fits 32 bits,
+/// written without leading zeros and without a plus sign.
 void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item);
 
 template <class T>

@@ -18,8 +18,8 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// The elements of an implicit body and the positions of its nodes in the mesh frame. No table stores such elements.
-/// Stress is computed in the mesh frame and then rotated to world axes.
+/// The elements of an implicit body and the positions of its nodes in the mesh frame. No table contains the elements of
+/// implicit bodies, so they are built here. Stress is computed in the mesh frame and then rotated to world axes.
 struct ImplicitElements {
     std::vector<Vec3> shape;
     ElementBlockTable table;
@@ -46,8 +46,8 @@ void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values
     for (Mat3& value : values) value = turn * value * turn.transpose();
 }
 
-/// Calls visit(elements, blocks, cover, positions, turn) for the elements of a body. The function turn(values) rotates
-/// results to world axes.
+/// Calls visit(elements, blocks, cover, positions, turn) for the elements of a body. The argument `turn` is a function
+/// that rotates tensors from the mesh frame to world axes.
 auto with_elements(const Model& model, std::size_t row, auto&& visit) {
     if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
         const ImplicitElements own(model, row);
@@ -95,7 +95,7 @@ std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span
             for (const Index t : around.tetrahedron)
                 volume.push_back(volume_of(model, row, static_cast<std::size_t>(t)));
             std::vector<Mat3> mean = kernels().means_of_nodes(around.corners, volume, of_tetrahedra, nodes.size() + 1);
-            mean.pop_back();  // removes the last value: the mean of all nodes that were not requested
+            mean.pop_back();  // removes the last value, which is the mean of all nodes that were not requested
             return mean;
         });
 }
@@ -151,8 +151,9 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
     kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
-        // The step computed for each element with mass shares is too short, but the ratios between elements are right.
-        // All these steps are multiplied by one factor, so that the shortest equals the stable step with mass forms.
+        // The steps of single elements are computed with mass shares. They are shorter than the steps with mass forms,
+        // but their ratios are right. All of them are therefore multiplied by one factor, so that the shortest step
+        // equals the stable step with mass forms.
         Real shortest = infinity;
         for (const ElementLane& lanes : step) shortest = std::min(shortest, *std::ranges::min_element(lanes.lane));
         const Real longer =

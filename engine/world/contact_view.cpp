@@ -28,7 +28,8 @@ Index local_node(const Model& model, Index node) {
     return node - model.bodies.nodes[static_cast<std::size_t>(body)].begin;
 }
 
-/// True if contact forces act on a body for the duration of the kick. On implicit bodies they act for the whole step.
+/// True if contact forces act on a body only during its kick. On implicit bodies contact forces act during the whole
+/// step.
 bool is_kicked(const Model& model, Index body) {
     return deforms(model, body) && model.bodies.implicit[static_cast<std::size_t>(body)].size() == 0;
 }
@@ -80,7 +81,7 @@ void view_contacts(WorldState& world) {
 std::span<const Contact> World::contacts() const {
     WorldState& world = *state_;
     world.settle();
-    // The last step was refused, so its numbers may not be finite.
+    // after a refused step the contacts may contain numbers that are not finite
     if (world.scratch.findings.verdict.fault != StepFault::none) return {};
     view_contacts(world);
     return world.record.contact_view;

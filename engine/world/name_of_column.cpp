@@ -1,4 +1,4 @@
-// Name of the column at an address in a world. It is used only in messages.
+// Finds the name of the column at an address in a world. The name is used only in messages.
 #include <string>
 
 #include "engine/world/world_state.h"

@@ -21,7 +21,8 @@ template <class T>
 void add_row(Hash& hash, const T& row) {
     hash.add(&row, sizeof row);
 }
-/// Hashes members one by one, since a struct may have padding bytes. Values of enums are hashed as 64-bit numbers.
+/// Hashes the members of a struct one by one, since the struct may have padding bytes. Values of enums are hashed as
+/// 64-bit numbers.
 void add_members(Hash& hash, const RowType& type, const std::byte* row) {
     for (const Member& member : type.members()) {
         const std::byte* const place = row + member.offset;
@@ -42,7 +43,8 @@ void add_rows(Hash& hash, AnyColumn column, std::size_t first, std::size_t count
         for (std::size_t i = 0; i < count; ++i) add_members(hash, type, rows + i * type.bytes);
 }
 
-/// Hashes the given rows of every column with the role `state`. A range of negative size extends to the last row.
+/// Hashes the given rows of every column of a table with the role `state`. A range of negative size extends to the last
+/// row.
 void add_state(Hash& hash, AnyTable table, Range rows) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::state) continue;
@@ -60,7 +62,7 @@ std::uint32_t slot_of(std::span<const std::uint32_t> slot, Index row) {
     return row == no_index ? nothing : slot[static_cast<std::size_t>(row)];
 }
 
-/// Returns the rows of a table in the order of their slots. Rows with equal slots keep their order.
+/// Returns the rows of a table, sorted by slot. Rows with equal slots stay in order.
 std::vector<std::size_t> in_slot_order(std::span<const std::uint32_t> slot) {
     std::vector<std::size_t> order(slot.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -117,12 +119,13 @@ void add_script(Hash& hash, const MotionScript& script, std::span<const Keyframe
     if (script.start != 0) add_row(hash, script.start);
 }
 
-/// Hashes a collision filter unless it is the default filter.
+/// Hashes the collision filter of an object unless it is the default filter.
 void add_filter(Hash& hash, const CollisionFilter& filter) {
     if (filter != CollisionFilter{}) add_row(hash, filter);
 }
 
-/// Hashes the state columns with one row per collider or attachment. Columns with links are left out.
+/// Hashes the state columns that have one row per collider or attachment. Columns with links to other rows are left
+/// out.
 void add_row_state(Hash& hash, AnyTable table, std::size_t row) {
     for (const ColumnInfo& info : table.columns())
         if (info.role == ColumnRole::state && info.has_row_each) add_rows(hash, table.column(info), row, 1);
@@ -142,7 +145,7 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
-/// Hashes a row that joins bodies. The joined bodies are hashed by their slots.
+/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies are hashed, not their rows.
 void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
     add_state(hash, table, single(row));
     for (const ColumnInfo& info : table.columns()) {
@@ -160,8 +163,9 @@ void add_collider(Hash& hash, Model& model, std::size_t c) {
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 
-/// Hashes overlapping pairs in the order of their keys, which name bodies and colliders by slot. Other pairs are left
-/// out: a search finds them again, and and the time of the last search determines which of them are stored.
+/// Hashes overlapping pairs in the order of their keys, which name bodies and colliders by slot. Pairs without overlap
+/// are not hashed, because a search finds them again. Which of these pairs are stored depends on the time of the last
+/// search.
 void add_pairs(Hash& hash, const Model& model, const PairTable& pairs) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs.state[p] != PairState::overlapping) continue;

@@ -73,8 +73,8 @@ private:
         for (Index corner : triangle)
             if (corner < 0 || corner >= static_cast<Index>(nodes))
                 refuse(object, "triangles", "node " + std::to_string(corner), "the index of a node of the mesh");
-        const auto [a, b, c] =
-            triangle;  // two equal nodes are refused: inside the engine such a triangle means the core of a round body
+        // A triangle with two equal nodes is refused: inside the engine it stands for the core of a round body.
+        const auto [a, b, c] = triangle;
         if (a == b || b == c || c == a)
             refuse(object, "triangles",
                    "triangle " + std::to_string(number) + " of nodes " + std::to_string(a) + ", " + std::to_string(b) +
@@ -93,7 +93,7 @@ void require_labels(const Mesh& mesh, const std::map<int, MaterialHandle>& mater
             refuse(object, "materials", "label " + std::to_string(label), mesh::expected_label(mesh));
 }
 
-/// Checks surface properties that do not depend on the partner in contact.
+/// Checks the values of friction and restitution of a body or collider.
 void require_surface(const std::optional<Real>& friction, const std::optional<Real>& static_friction,
                      const std::optional<Real>& dynamic_friction, const std::optional<Real>& restitution,
                      const std::string& object) {
@@ -164,8 +164,8 @@ void validate(const MaterialSettings& material) {
     require(material.poisson_ratio > -1 && material.poisson_ratio < 0.5, object, "poisson_ratio",
             material.poisson_ratio, "a number > -1 and < 0.5");
     require(material.density > 0, object, "density", material.density, "a density > 0 (kg/m^3)");
-    // Young's modulus and density may each be any positive number, but not every combination is possible. An invalid
-    // step would otherwise be found only when it is taken.
+    // Young's modulus and density may each be any positive number, but some combinations give no valid stable step.
+    // Without this check the error would appear only in the first step.
     constexpr Real speed_of_light = 299792458;  // m/s
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
@@ -189,12 +189,12 @@ void validate(const MaterialSettings& material) {
 
 namespace {
 
-/// Checks that at most one tetrahedron lies on each side of a face. Otherwise tetrahedra would overlap, and the face
-/// could not be a part of a surface that objects touch.
+/// Checks that each side of a face has at most one tetrahedron. Otherwise tetrahedra overlap, and the face cannot be a
+/// part of a surface that objects touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
     for (std::size_t first = 0; first < faces.size();) {
-        std::array<Index, 2> seen{no_index, no_index};  // the tetrahedron on each side of the face
+        std::array<Index, 2> seen{no_index, no_index};  // number of the tetrahedron on each side of the face
         std::size_t i = first;
         for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
             Index& on_side = seen[faces[i].turned ? 1 : 0];
@@ -219,7 +219,7 @@ void require_start(const BodySettings& body, const std::string& object) {
         require(*body.contact_distance >= 0, object, "contact_distance", *body.contact_distance, "a length >= 0 (m)");
 }
 
-/// Checks that a body may have this mesh.
+/// Checks that the mesh is valid for a body.
 void require_mesh(const Mesh& mesh, const std::string& object) {
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
@@ -289,7 +289,7 @@ void validate(const Motion& motion, const std::string& object) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
         require_finite(object, "motion.keys.rotation", key.rotation);
-        constexpr Real most = 1e6;  // at this angle the rounding error is about 1e-10 rad
+        constexpr Real most = 1e6;  // largest rotation for which the rounding error stays at about 1e-10 rad
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a rotation of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,

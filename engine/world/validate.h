@@ -15,23 +15,23 @@ namespace skerry {
 void validate(const Settings& settings);
 void validate(const Tuning& tuning);
 void validate(const MaterialSettings& material);
-/// Checks a body and its mesh. `mesh_is_known`: the mesh was already found valid for another body.
+/// Checks a body and its mesh. `mesh_is_known`: true if the mesh was already found valid for another body.
 void validate(const Mesh& mesh, const BodySettings& body, bool mesh_is_known);
 void validate(const Sphere& sphere, const BodySettings& body);
 void validate(const Capsule& capsule, const BodySettings& body);
 void validate(const Cylinder& cylinder, const BodySettings& body);
-/// Checks a body after its rows were appended: the stable step must be a number.
+/// Checks a body after its rows were appended: its stable step must be a number.
 void validate_step(const Model& model, Index body, const std::string& name);
 void validate(const Shape& shape, const ColliderSettings& collider);
 void validate(const Motion& motion, const std::string& object);
 void validate(const Motion& motion, const Vec3& pivot);
 void validate(const SurfaceSettings& surface, const std::string& object);
-/// Throws a SceneError with these parts of its message.
+/// Throws a SceneError whose message consists of these parts.
 [[noreturn]] void refuse(const std::string& object, const char* field, const std::string& found,
                          const std::string& expected);
 /// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
-/// Checks that local node numbers exist in `object`, a body with `count` nodes.
+/// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);
 

@@ -25,7 +25,7 @@ namespace skerry {
 
 namespace {
 
-/// Material row of each tetrahedron; empty if no label has a material of its own.
+/// Material of each tetrahedron, as row of MaterialTable. Empty if no label has a material of its own.
 std::vector<Index> materials_of_tetrahedra(const Model& model, const Mesh& mesh, const BodySettings& body) {
     if (body.materials.empty()) return {};
     std::map<int, Index> row_of;
@@ -42,8 +42,7 @@ void mark(Index row, std::vector<std::uint8_t>& rows) {
     rows[at] = 1;
 }
 
-/// Returns a number that is unique among the worlds of this process, and most probably among worlds saved by other
-/// processes.
+/// Returns a number that no other world of this process has, and most probably no world saved by another process.
 std::uint32_t next_world_number() {
     static std::atomic<std::uint32_t> next = std::random_device{}();
     const std::uint32_t number = next++;
@@ -86,7 +85,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // clusters refer to node rows, which have moved
+        model.clusters.clear();  // clusters name nodes by row, and rows have moved
         model.clusters_open = true;
     }
     erase_gone_rows();
@@ -180,8 +179,8 @@ MaterialHandle World::add_material(const MaterialSettings& material) {
 
 namespace {
 
-/// Core of a round body, as in BodyTable. The mesh of such a body serves only to draw it. A body with 0 core nodes is
-/// not round.
+/// Core of a round body, as in BodyTable. The mesh of a round body only draws it. A body with 0 core nodes is not
+/// round.
 struct RoundCore {
     Index nodes = 0;
     Real radius = 0;  // m
@@ -213,7 +212,7 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
     if (body.dynamics == BodyDynamics::automatic) {
-        state.settle();  // removed bodies must not limit the step
+        state.settle();  // afterwards the stable steps of removed bodies no longer limit the step
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice);
     }
@@ -315,8 +314,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
         follow_attachments(model, b);
     }
     model.wake(b);
-    state_->cache.forget_body(
-        model, b);  // the contact search assumed the old speeds, and attaching has stopped the held nodes
+    // The last contact search assumed the old speeds, but attaching has stopped the held nodes.
+    state_->cache.forget_body(model, b);
     state_->edits.rows = state_->edits.elements = true;
     return handle;
 }
@@ -397,7 +396,7 @@ void World::set_gravity(const Vec3& gravity) {
     validate(changed);
     state_->model.settings.gravity = gravity;
     StepParameters& parameters = state_->scratch.parameters;
-    const Real kick = parameters.kick;  // still needed to report the contacts of the last step
+    const Real kick = parameters.kick;  // contacts of the last step are still reported with this value
     parameters = step_parameters(state_->model.settings, state_->model.tuning);
     parameters.kick = kick;
     state_->record.balance.close();

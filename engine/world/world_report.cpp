@@ -40,7 +40,8 @@ std::string short_text(Real value) {
     return text;
 }
 
-/// Counts smoothed elements that are strongly compressed. This can happen although no tetrahedron is compressed.
+/// Counts smoothed elements that are strongly compressed. An element can be compressed although none of its tetrahedra
+/// is compressed.
 void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     constexpr Real folded = 0.2;
     const Range blocks = model.bodies.blocks[body];
@@ -58,8 +59,9 @@ void note_folds(const Model& model, std::size_t body, WorldReport& report) {
     report.folded += ratios.near_inversion;
 }
 
-/// Energy below which differences are rounding errors [J]. It is the energy of a strain too small to show in the digits
-/// of the positions, accumulated over ten thousand steps. Bodies at rest without weight have no more energy.
+/// Energy below which differences are rounding errors [J]. It is the elastic energy of a strain too small to show in
+/// the digits of the positions, accumulated over ten thousand steps. Bodies at rest without weight have at most this
+/// energy.
 Real energy_of_rounding(const Model& model) {
     constexpr Real digits = 1e4 * std::numeric_limits<Real>::epsilon();
     Real sum = 0;
@@ -68,7 +70,7 @@ Real energy_of_rounding(const Model& model) {
         Real farthest = 0;  // [m]
         for (Index n = model.bodies.nodes[b].begin; n < model.bodies.nodes[b].end; ++n)
             farthest = std::max(farthest, model.nodes.position[static_cast<std::size_t>(n)].norm());
-        Real stiffness = 0;  // elastic energy per squared strain [J]
+        Real stiffness = 0;  // elastic energy divided by squared strain [J]
         for (auto block = static_cast<std::size_t>(model.bodies.blocks[b].begin);
              block < static_cast<std::size_t>(model.bodies.blocks[b].end); ++block) {
             const auto material = static_cast<std::size_t>(model.elements.material[block]);

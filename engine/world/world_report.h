@@ -5,7 +5,7 @@
 
 namespace skerry {
 
-/// Present energies of a world. `dissipated`: energy dissipated over the run [J].
+/// Returns the present energies of a world. `dissipated`: energy dissipated over the run [J].
 Energy energy_of(const Model& model, Real dissipated);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// All state that a world owns. A function of engine/world takes only the parts that it may access. Functions that run a
-// whole step, or answer for the whole world, take all of it. Systems take spans of the columns.
+// All state that a world owns. A function of engine/world gets only the parts that it may access. Functions that run a
+// whole step, or report about the whole world, get all of it. Systems get spans of the columns.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,13 @@
 
 namespace skerry {
 
-/// Changes of a world since the last call of WorldState::settle.
+/// Changes of a world that are still to be completed by WorldState::settle.
 struct OpenEdits {
-    bool rows = false;  // bodies, colliders or attachments were added or removed
-    // Bodies with elements were added or removed, or nodes became held or free.
+    bool rows = false;  // true if bodies, colliders or attachments were added or removed
+    // True if bodies with elements were added or removed, or nodes became held or free.
     bool elements = false;
-    std::vector<std::uint8_t> bodies_gone, colliders_gone;  // by row, nonzero: removed; rows beyond the end stay
+    // nonzero for each removed row; rows beyond the end are not removed
+    std::vector<std::uint8_t> bodies_gone, colliders_gone;
     ChangedPlaces places;
 };
 
@@ -42,24 +43,24 @@ struct WorldState {
     std::unique_ptr<Executor> executor;
     TaskGraph graph;
     OpenEdits edits;
-    bool advancing = false;     // true within advance(): callbacks must not change the world
-    bool drawn_behind = false;  // nodes that only draw round bodies are out of date; only within advance()
+    bool advancing = false;     // true within advance(), when callbacks must not change the world
+    bool drawn_behind = false;  // true if nodes that only draw round bodies are out of date; only within advance()
 
     /// Throws SceneError if the call comes from a callback of advance().
     void require_between_steps(const char* call) const;
     /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
-    /// the changes, and updates the nodes that draw round bodies. It is called late, so that many changes in succession
-    /// cost it once. Functions that read all rows, return their contents or ask which bodies sleep must call it, even
-    /// const functions. Finding a single row does not need it.
+    /// the changes, and updates the nodes that draw round bodies. It is called late, so that its cost arises once for
+    /// many changes in succession. It must be called by functions that read all rows, return the contents of rows or
+    /// ask which bodies sleep, even by const functions. Functions that only find a single row need not call it.
     void settle();
-    /// Updates the nodes that only draw round bodies. `resting`: some bodies fell asleep in the last step.
+    /// Updates the nodes that only draw round bodies. `resting`: true if some bodies fell asleep in the last step.
     void draw(bool resting = false);
 
 private:
     void erase_gone_rows();
 };
 
-/// Access to the state of a world for tests, and for functions that read or write whole worlds.
+/// Gives access to the state of a world, for tests and for functions that read or write whole worlds.
 struct WorldAccess {
     static WorldState& state_of(World& world) {
         world.state_->settle();
@@ -71,7 +72,8 @@ struct WorldAccess {
     }
 };
 
-/// Name of the column or value at an address inside a WorldState, such as "nodes.velocity". It is used in messages.
+/// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is
+/// used in messages.
 std::string name_of_column(void* world, const void* place);
 
 }  // namespace skerry

@@ -14,10 +14,11 @@ struct Pose {
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
-/// Friction and restitution of one body or collider. A body takes missing values from its material. A collider takes
-/// missing values from the body that touches it.
+/// Friction and restitution of one body or collider. For a body, missing values are those of its material. For a
+/// collider, missing values are those of the body that touches the collider.
 struct SurfaceSettings {
-    std::optional<Real> friction{};          // Coulomb's mu, >= 0: default of static_friction and dynamic_friction
+    // Coulomb's friction coefficient, >= 0; default value of static_friction and dynamic_friction
+    std::optional<Real> friction{};
     std::optional<Real> static_friction{};   // >= dynamic_friction
     std::optional<Real> dynamic_friction{};  // >= 0
     std::optional<Real> restitution{};       // in [0, 1]

@@ -7,8 +7,8 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Exception for bad input while a world is built or a file is read. The message names the file, object and field, and
-/// the found and the expected value.
+/// Exception for bad input while a world is built or a file is read. The message names the file, the object, the field,
+/// the value found and the value expected.
 class SceneError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -8,14 +8,14 @@
 #include "components/types.h"
 
 namespace skerry {
-struct WorldState;  // internal type, so it is declared outside the block of public symbols
+struct WorldState;  // internal type, declared outside the pragma that exports symbols
 }
 
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Forces on a body or a collider over the last call of advance: sums over all steps of the call. A step that needed
-/// several attempts counts once.
+/// Forces on a body or a collider, summed over all steps of the last call of advance. A step that needed several
+/// attempts counts once.
 struct ForceReport {
     Vec3 impulse = Vec3::Zero();  // [N s]
     // Sum of the moments of the impulses about `moment_point` [N m s]. Each impulse acts at its contact point at the
@@ -24,7 +24,8 @@ struct ForceReport {
     Vec3 friction_impulse = Vec3::Zero();  // tangential part of `impulse` [N s]; zero for attachments
     // Sum of the magnitudes of the normal impulses [N s]. It shows pressure even where opposite impulses cancel.
     Real pressing_impulse = 0;
-    // Largest force of a single step: the impulse of the step divided by the time for which loads act in this step [N].
+    // Largest force of a single step [N]: the impulse of the step, divided by the time for which loads act in this
+    // step.
     Real largest_force = 0;
     Index contacts = 0;       // number of contacts with an impulse in the last step
     Index most_contacts = 0;  // largest number of contacts with an impulse in any step
@@ -43,7 +44,7 @@ struct ForceReport {
 };
 
 /// Forces between two partners: two bodies, a body and a collider, or a body that touches itself. `on_first` is the
-/// force of the second partner on the first.
+/// force that the second partner exerts on the first.
 struct PairForces {
     BodyHandle first{};
     BodyHandle second{};        // the second body; a stale handle if the second partner is a collider
@@ -68,16 +69,18 @@ public:
     /// `pressing_impulse`.
     ForceReport on(BodyHandle body) const;
     ForceReport on(ColliderHandle collider) const;
-    /// Forces between two given partners; zero if the two did not touch. For a body with itself the impulses cancel.
+    /// Forces between two given partners; zero if the two did not touch. If the two partners are one body, the impulses
+    /// cancel.
     ForceReport on(BodyHandle body, BodyHandle by) const;
     ForceReport on(BodyHandle body, ColliderHandle by) const;
     ForceReport on(ColliderHandle collider, BodyHandle by) const;
     /// Forces of an attachment on its body. They keep the attached nodes on their prescribed motion: they balance
-    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, its
-    /// force counts for the attachment added last. Damping of a held body is not included, because it acts on all
-    /// nodes, like a medium at rest.
+    /// elastic forces, weight, loads and contacts, and accelerate the nodes. If several attachments hold a node, the
+    /// force on this node counts for the attachment added last. Damping of a held body is not included, because it acts
+    /// on all nodes, like a medium at rest.
     ForceReport by(AttachmentHandle attachment) const;
-    /// All pairs that touched: first body-collider pairs, then body-body pairs, each sorted by handles.
+    /// All pairs of objects that touched during the call: first body-collider pairs, then body-body pairs, each sorted
+    /// by handles.
     std::vector<PairForces> pairs() const;
 
 private:

@@ -14,7 +14,7 @@ namespace skerry {
 /// then throws, too.
 std::string_view instruction_set();
 
-/// The instruction sets for which this build has kernels and which this machine supports. The most demanding set comes
+/// The instruction sets for which this build has kernels and which this machine supports. The most advanced set comes
 /// last.
 std::vector<std::string_view> instruction_sets();
 

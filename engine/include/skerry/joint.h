@@ -28,8 +28,9 @@ struct JointMotor {
 /// angle about the axis, counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
 struct JointSettings {
     JointKind kind = JointKind::ball;
-    BodyHandle first{};                    // handle of a rigid body
-    std::optional<BodyHandle> second{};    // another rigid body; if not given, the first body is joined to the world
+    BodyHandle first{};  // handle of a rigid body
+    // another rigid body; if it is not given, the first body is joined to the world
+    std::optional<BodyHandle> second{};
     Vec3 point = Vec3::Zero();             // position of the joint in the world [m]
     Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
     std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
@@ -49,7 +50,8 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
-    // Position error: distance of the two points that should coincide; for a slider, the part normal to the axis [m].
+    // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
+    // part of this distance normal to the axis counts.
     Real error = 0;
 };
 
@@ -69,8 +71,8 @@ public:
     std::vector<JointHandle> all() const;  // all joints, in the order added
     /// Returns the present pose and motion of a joint, and the joint's force and moment in the last step.
     JointState state(JointHandle joint) const;
-    /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting an equal motor again
-    /// changes no bit of the state.
+    /// Sets the motor of a hinge or a slider, or removes the motor if none is given. Setting a motor equal to the
+    /// present one changes no bit of the state.
     void set_motor(JointHandle joint, const std::optional<JointMotor>& motor);
     /// Sets or removes the limits of the joint coordinate. A joint beyond a limit is pulled back at a bounded speed.
     /// For a slider this bound is recovery_speed plus the speeds at the joint due to the angular velocities of both

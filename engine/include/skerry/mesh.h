@@ -23,7 +23,7 @@ struct Mesh {
     std::vector<int> label{};
 };
 
-/// A closed or open triangle surface. Triangles are counter-clockwise as seen from outside.
+/// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
 struct SurfaceMesh {
     std::vector<Vec3> nodes;                      // [m]
     std::vector<std::array<Index, 3>> triangles;  // indices of nodes
@@ -84,10 +84,10 @@ struct TableShape {
 Mesh table(const TableShape& shape);
 
 /// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele
-/// (either name). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused
-/// nodes are dropped. If no tetrahedron is positive, the file has the opposite node order and all tetrahedra are
-/// reoriented. If some tetrahedra are positive and others are not, the mesh is left as in the file, and `inspect`
-/// counts the faults.
+/// (`path` may name either file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of
+/// elements and unused nodes are dropped. If no tetrahedron is positive, the file is assumed to have the opposite node
+/// order, and all tetrahedra are reoriented. If some tetrahedra are positive and others are not, the mesh is left as in
+/// the file, and `inspect` counts the faults.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.
@@ -125,7 +125,7 @@ struct MeshReport {
     // < 0 for an inverted one.
     Real min_quality = 0, mean_quality = 0;
     std::size_t inverted = 0, flat = 0;  // numbers of tetrahedra of negative volume and of zero volume
-    // true if every edge of the boundary has two triangles, and every node one ring of triangles
+    // true if every boundary edge has two triangles, and the triangles at every node form one ring
     bool closed_manifold = false;
     std::map<int, std::size_t> labels;  // number of tetrahedra with each label; empty if the mesh has no labels
 };

@@ -32,7 +32,7 @@ public:
     /// NUMBER". Must be called before the first frame.
     void name_materials(std::vector<std::string> names);
     void write_frame(const World& world);
-    /// Writes the .pvd file. The files of single frames can be opened without it.
+    /// Writes the index file NAME.pvd. The files of single frames can be opened without the index.
     void close();
 
 private:

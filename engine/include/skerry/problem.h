@@ -46,13 +46,13 @@ struct ProblemSolution {
     std::vector<Vec3> reaction;  // impulses in the contact frames of the problem [N s]
     Index regions = 0;
     Index iterations = 0;  // iterations of the region that needed most iterations
-    // Computing time of the solve, without reading and checking [s]. If the solve is short, it is repeated and this is
-    // the median.
+    // Computing time of the solve, without reading and checking the problem [s]. A short solve is repeated, and the
+    // median time is given.
     double seconds = 0;
     // Relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|), where e is the natural map residual.
     Real error = 0;
-    Real error_absolute = 0;  // norm |e| of the natural map residual
-    Real error_over_q = 0;    // relative error |e| / |q|
+    Real error_absolute = 0;  // norm |e| of the natural map residual e
+    Real error_over_q = 0;    // relative error |e| / |q|, with the natural map residual e
     // Violation of Coulomb's law [J]: sum of r_N u_N + mu r_N |u_T| + r_T . u_T over all contacts; 0 for an exact
     // solution.
     Real energy_gap = 0;
@@ -86,53 +86,55 @@ ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettin
 /// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the energy gap of
 /// Coulomb's law.
 struct ProblemError {
-    Real absolute, relative, over_q;  // the members error_absolute, error and error_over_q of ProblemSolution
+    Real absolute, relative, over_q;  // see error_absolute, error and error_over_q of ProblemSolution
     Real energy_gap;                  // see ProblemSolution::energy_gap [J]
 };
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction);
 
-/// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all.
+/// Nodes with a coupled mass matrix: an impulse on one node changes the velocities of all these nodes.
 struct CoupledNodes {
     std::vector<Index> node;
     std::vector<Real> inverse;  // inverse mass matrix, stored row by row, symmetric [1/kg]
 };
 
-/// The nodes that contacts touch and that move rigidly: nodes of a rigid body, or the rigid motion of an implicit body.
+/// Rigid motion of a rigid or implicit body, and the nodes of this body that contacts touch.
 struct RigidPoints {
     std::vector<Index> node;
     std::vector<Vec3> arm;                // node position relative to the centre of mass [m]
     Real inverse_mass = 0;                // [1/kg]
     Mat3 inverse_inertia = Mat3::Zero();  // [1/(kg m^2)]
-    // For a sphere or capsule: distance of the contact points from the centre or the axis, where the nodes lie [m].
+    // For a sphere or capsule [m]: distance of the contact points from the centre of the sphere or the axis of the
+    // capsule. The nodes lie on this centre or axis.
     Real radius = 0;
     // For a cylinder: position of the contact point of each contact relative to the centre of mass [m].
     std::vector<Vec3> touch{};
 };
 
-/// The nodes of an implicit body that contacts touch. `response` describes the deformation of the body only;
-/// RigidPoints describes its rigid motion.
+/// Deformation of an implicit body, and the nodes of this body that contacts touch. RigidPoints describes the rigid
+/// motion of the same body.
 struct StrainedPoints {
     std::vector<Index> node;
-    std::vector<Mat3> response;  // velocity change per impulse, for each pair of nodes, row by row, symmetric [1/kg]
+    // velocity change of a node per impulse on a node, for each pair of nodes, row by row, symmetric [1/kg]
+    std::vector<Mat3> response;
 };
 
 /// Contacts between point masses, in world axes. The relative velocity of contact i is u_i = sum_a weight[a]
 /// velocity[node[a]] + offset_i over the four nodes a of its stencil. An impulse r_i adds weight[a]
 /// inverse_mass[node[a]] r_i to the velocity of node a.
 struct LumpedContacts {
-    // The next arrays have one entry per contact.
+    // The following arrays have one entry per contact.
     std::vector<std::array<Index, 4>> node;
     std::vector<std::array<Real, 4>> weight;
     std::vector<Vec3> normal;  // unit normal of the contact
-    // Velocity offset of the contact [m/s]. It is the sum of the contributions of the gap, of the collider's motion and
-    // of the angular velocity of round bodies. One part is subtracted: half of the change of the sliding velocity by
-    // the forces of the step, perpendicular to the sliding direction.
+    // Velocity offset of the contact [m/s]: the sum of the contributions of the gap, of the collider's motion and of
+    // the angular velocity of round bodies, minus a friction correction. This correction is half of the change of the
+    // sliding velocity due to the forces of the step, perpendicular to the sliding direction.
     std::vector<Vec3> offset;
     std::vector<Real> friction;  // coefficient of friction mu
-    // The next arrays have one entry per node.
+    // The following arrays have one entry per node.
     std::vector<Real> inverse_mass;  // inverse mass; 0 if no impulse moves the node [1/kg]
     std::vector<Vec3> velocity;      // velocity before the contact impulses [m/s]
-    // For nodes in the lists below, inverse_mass must not be 0. Its value is not used.
+    // For the nodes in the following lists inverse_mass must not be 0, but its value is not used.
     std::vector<CoupledNodes> coupled{};
     std::vector<RigidPoints> rigid{};
     std::vector<StrainedPoints> strained{};
@@ -145,14 +147,14 @@ ContactProblem assemble_problem(const LumpedContacts& contacts, const std::strin
 /// Transforms vectors from world axes into the contact frames, one vector per contact.
 std::vector<Vec3> in_contact_frames(const LumpedContacts& contacts, std::span<const Vec3> vectors);
 
-/// The contact problem of one step of a world as the solver received it, and the impulses of the step. Contacts that no
-/// impulse can move are omitted.
+/// The contact problem of one step of a world, as the solver received it, and the impulses that the solver found.
+/// Contacts that no impulse can move are omitted.
 struct StepProblem {
     std::uint64_t step = 0;      // number of the step, counted from 1
     Real time = 0;               // time at the start of the step [s]
     Real step_size = 0;          // [s]
-    LumpedContacts lumped;       // contacts in the form that the step used
-    ContactProblem problem;      // the same contacts in the form of general blocks
+    LumpedContacts lumped;       // the contacts as point-mass stencils, the form that the step used
+    ContactProblem problem;      // the contacts of `lumped` as a problem with general blocks
     std::vector<Vec3> impulse;   // impulses of the step in the contact frames of `problem` [N s]
     std::vector<Index> contact;  // index in World::contacts() of each contact of `problem`
     std::vector<Index> region;   // region number of each contact of `problem`

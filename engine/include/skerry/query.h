@@ -15,7 +15,8 @@ namespace skerry {
 struct QueryFilter {
     bool bodies = true;
     bool colliders = true;
-    std::uint32_t groups = 0xffffffffu;  // only bodies and colliders whose collision group is in this bit set
+    // only bodies and colliders whose collision group is in this bit set are tested
+    std::uint32_t groups = 0xffffffffu;
     std::vector<BodyHandle> except_bodies{};
     std::vector<ColliderHandle> except_colliders{};
 };

@@ -20,7 +20,7 @@ namespace skerry {
 struct PointProbe {
     BodyHandle body{};
     std::array<Index, 4> node{};   // numbers of the nodes within the body
-    std::array<Real, 4> weight{};  // weight of each node
+    std::array<Real, 4> weight{};  // weight of each of these nodes
     // Position from which the displacement is measured [m]. Default: the position when the recorder is made.
     std::optional<Vec3> origin{};
 };
@@ -34,12 +34,13 @@ struct BodyProbe {
     BodyHandle body{};
     std::optional<Vec3> origin{};  // see PointProbe::origin
 };
-/// Records the contact forces on a body, summed over all contacts or over those with one other body or collider.
+/// Records the contact forces on a body, summed over all contacts, or over the contacts with one other body or
+/// collider.
 struct BodyForceProbe {
     BodyHandle body{};
     std::optional<std::variant<BodyHandle, ColliderHandle>> by{};
 };
-/// Records the contact forces on a collider, summed over all contacts or over those with one body.
+/// Records the contact forces on a collider, summed over all contacts, or over the contacts with one body.
 struct ColliderForceProbe {
     ColliderHandle collider{};
     std::optional<BodyHandle> by{};
@@ -91,8 +92,8 @@ public:
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
 
-    /// Takes a sample. Must be called after every call of advance, so that no impulse is missed. A call before the
-    /// first step records the initial state, with NaN as forces.
+    /// Takes a sample, which may become a row. Must be called after every call of advance, so that no impulse is
+    /// missed. A call before the first step records the initial state, with NaN as forces.
     void sample(const World& world);
     const std::vector<SeriesColumn>& columns() const;
     std::size_t row_count() const;

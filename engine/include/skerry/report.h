@@ -44,16 +44,16 @@ struct EnumNames<StepLimit> {
 };
 
 /// A contact of the last step, or a contact between sleeping bodies. A contact between sleeping bodies is shown as in
-/// the last step before the bodies fell asleep; its impulse is that of the same contact force in a step as long as the
-/// last one.
+/// the last step before the bodies fell asleep. Its impulse is the contact force of that step, multiplied by the
+/// duration of the forces in the last step.
 struct Contact {
     // Body of the contact point (point on a triangle) or of the first edge (edge on an edge). A stale handle if this
     // point or edge belongs to a mesh collider.
     BodyHandle first{};
     BodyHandle second{};        // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};  // the collider; a stale handle if both partners are bodies
-    // Node numbers within each body: node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] < 0.
-    // node[a] is -1 if weight[a] is 0.
+    // Number of each node within its body. node[a] belongs to `first` if weight[a] > 0 and to `second` if weight[a] <
+    // 0. node[a] is -1 if weight[a] is 0.
     std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
     Vec3 point = Vec3::Zero();   // contact point on the second body or the collider [m]
@@ -64,12 +64,12 @@ struct Contact {
     Real gap = 0;
     Vec3 slip = Vec3::Zero();     // tangential relative velocity after the step [m/s]
     Vec3 impulse = Vec3::Zero();  // impulse on the first body [N s]
-    // Duration over which the impulse is spread to give force() [s]: from the middle of the previous step to the middle
-    // of this step. It equals the step length if both steps are equally long, with leapfrog, and for contacts of
-    // implicit bodies alone.
+    // Duration of the forces in this step [s], by which force() divides the impulse: the time from the middle of the
+    // previous step to the middle of this step. It equals the step length if both steps are equally long, with
+    // leapfrog, and for contacts of implicit bodies alone.
     Real seconds = 0;
     ContactMotion motion = ContactMotion::open;
-    Index region = -1;  // number of the region; -1 if no node of the contact moves, and between sleeping bodies
+    Index region = -1;  // region number; -1 if no node of the contact can move, or if its bodies sleep
 
     /// Mean force on the first body during the step [N]. The forces on a sleeping body balance its weight and loads,
     /// whatever the step lengths were.
@@ -91,7 +91,7 @@ struct Energy {
     Real dissipated = 0;  // energy dissipated by contacts, damping and material losses since the start [J]
 };
 
-/// Report of one call of `advance`. Making it allocates no memory unless something went wrong.
+/// Report of one call of `advance`. Filling the report allocates no memory unless an error is reported.
 class StepReport {
 public:
     /// False if a step could not be completed, or if the call was asked to stop.
@@ -99,7 +99,7 @@ public:
     /// Describes the failure: the body and the reason. Empty if ok().
     std::string message() const;
 
-    /// Names the body that is unstable at step_size of the settings, with the longest step that it allowed, and the
+    /// Names the body that is unstable at step_size of the settings, the longest step that this body allowed, and the
     /// first element that turned inside out. Empty if there is neither such a body nor such an element.
     std::string warning() const;
 
@@ -113,19 +113,20 @@ public:
     Real value = 0;
     Real step_size = 0;  // length of the last step [s]
     int steps = 0;       // committed steps
-    // Attempts at a step that were repeated with a shorter step. Reasons: a body was too fast, surfaces crossed, an
-    // element turned inside out, or Newton's method failed.
+    // Number of attempts at a step that were repeated with a shorter step. Reasons: a body was too fast, surfaces
+    // crossed, an element turned inside out, or Newton's method failed.
     int shortened = 0;
-    // Attempts at a step that were repeated because surfaces crossed. The repetition treats the crossings as contacts.
+    // Number of attempts at a step that were repeated because surfaces crossed. The repeated attempt treats the
+    // crossings as contacts.
     int retried = 0;
     // Number of steps shorter than step_size, because the body `limited_by` is unstable at step_size.
     int limited = 0;
     Real limited_step = 0;       // longest step that the body `limited_by` allowed [s]
-    std::string limited_by;      // name of the body that limited these steps
+    std::string limited_by;      // name of the body `limited_by`, which is unstable at step_size
     Index contacts = 0;          // number of contacts of the last step, without contacts between sleeping bodies
     Index regions = 0;           // number of regions of the last step
     Index largest_region = 0;    // number of contacts of the largest region of the last step
-    Index unconverged = 0;       // number of unconverged regions, summed over the steps
+    Index unconverged = 0;       // number of regions that the solver did not converge in, summed over the steps
     Real worst_error = 0;        // largest relative solver error of a region in any step
     Index worst_region = 0;      // number of contacts of the region with worst_error
     Real max_penetration = 0;    // largest overlap of surfaces in any step [m]
@@ -141,22 +142,22 @@ public:
     std::string body_name;  // name of `body`, if not ok
 };
 
-/// Statistics of all steps since the world was made whose length one particular cause has limited.
+/// Statistics of the steps whose length one particular cause has limited, since the world was made.
 struct StepLimitReport {
     StepLimit limit = StepLimit::rest;
-    BodyHandle body{};      // a stale handle if the cause is not a body, for example a setting or a crossing
-    std::string body_name;  // name of the body at that time
+    BodyHandle body{};      // a stale handle if the cause is not a body (for example a setting or a crossing)
+    std::string body_name;  // name of the body when it limited a step
     std::uint64_t steps = 0;
     std::uint64_t tries = 0;  // number of attempts at a step that were discarded for this cause
-    Real seconds = 0;         // simulated time of these steps [s]
+    Real seconds = 0;         // sum of the lengths of the steps that this cause limited [s]
 };
 
 /// The reason why BodyDynamics::automatic made a body explicit or implicit.
 /// - given: no choice was made, because the caller gave the kind.
 /// - self_contact: explicit, because implicit bodies have no self-contact.
 /// - strain: explicit, because the body may deform by more than the limit for implicit bodies.
-/// - cost: chosen by the predicted computing times. The body is implicit if this costs less than half as much as
-///   explicit.
+/// - cost: chosen by the predicted computing times. The body is implicit if implicit steps cost less than half as much
+///   as explicit steps.
 enum class DynamicsReason : std::uint8_t { given, self_contact, strain, cost };
 template <>
 struct EnumNames<DynamicsReason> {
@@ -176,7 +177,8 @@ struct DynamicsEstimate {
     // Step length for the deformation of the body if it is implicit [s]: the larger of the member implicit_step and
     // Settings::implicit_step.
     Real deforming_step = 0;
-    // Computing time per simulated second on one core, for the elements of the world and the solves for this body [s].
+    // Computing time per simulated second on one core [s], for the elements of the world and for the solves of this
+    // body.
     Real explicit_cost = 0, implicit_cost = 0;
     // Largest strain that weight, the body's speed and a fall from ten times the body's size may cause.
     Real strain = 0;
@@ -188,7 +190,7 @@ struct DynamicsEstimate {
 struct DynamicsChoice {
     BodyHandle body{};
     std::string name;
-    BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the chosen kind
+    BodyDynamics dynamics = BodyDynamics::explicit_elastic;  // the kind that was chosen
     DynamicsEstimate estimate{};
 
     /// Returns a text such as "implicit: 0.8 s of CPU time per simulated second, in steps of 0.00833 s; explicit: 9 s
@@ -202,19 +204,19 @@ struct StartOverlap {
     BodyHandle first{};
     BodyHandle second{};                  // the other body; a stale handle if the partner is a collider
     ColliderHandle collider{};            // the collider; a stale handle if both partners are bodies
-    std::string first_name, second_name;  // names of the two partners at that time
+    std::string first_name, second_name;  // names of the two partners when the overlap was found
     OverlapKind kind = OverlapKind::crossing;
     // Approximate length of the shortest translation of `first` that ends the overlap [m].
     Real depth = 0;
     Vec3 direction = Vec3::Zero();  // unit direction of the translation of `first` that ends the overlap
-    Vec3 place = Vec3::Zero();      // centre of the volume that both share [m]
-    bool resolved = false;          // true if the two were moved apart
+    Vec3 place = Vec3::Zero();      // centre of the overlapping volume [m]
+    bool resolved = false;          // true if the two partners were moved apart
 
     /// Returns a text such as "bodies 'a' and 'b' overlap by 0.02 m at (0, 0, 0.1) m".
     std::string message() const;
 };
 
-/// A body that was translated before its first step, so that it overlaps nothing.
+/// A body that was moved before its first step, so that it overlaps no other object.
 struct StartMove {
     BodyHandle body{};
     std::string name;
@@ -224,34 +226,36 @@ struct StartMove {
 /// Sums and maxima over all steps since the world was made.
 struct RunCounters {
     std::uint64_t steps = 0;
-    // Steps so small that they run on one thread, because several threads would not pay
+    // Number of steps with so little work that they run on one thread, because waking other threads would take longer.
     std::uint64_t inline_steps = 0;
-    std::uint64_t resting_steps = 0;  // steps in which all bodies are asleep and nothing moves; no stage runs
-    // Number of undeformed bodies in free flight whose elements are skipped, summed over all steps.
+    std::uint64_t resting_steps = 0;  // number of steps in which all bodies are asleep and nothing moves; no stage runs
+    // Number of bodies whose elements are skipped because they fly freely and undeformed, summed over all steps.
     std::uint64_t unstrained = 0;
-    std::uint64_t shortened = 0;   // attempts at a step that were repeated with a shorter step
-    std::uint64_t retried = 0;     // attempts at a step that were repeated with the crossings as contacts
-    std::uint64_t limited = 0;     // steps shorter than step_size, because a body is unstable at step_size
-    std::uint64_t inversions = 0;  // elements that turned inside out, counted again each time
-    std::uint64_t contact_sum = 0, iteration_sum = 0;  // sums over the steps: contacts, and sweeps of all regions
-    std::uint64_t solved = 0;                          // number of solved regions, summed over the steps
-    std::uint64_t unconverged = 0;                     // regions that reached the iteration limit
-    std::uint64_t certified = 0;           // regions whose warm start was accurate enough, so that no sweep was needed
-    std::uint64_t closed_form = 0;         // regions of one contact, solved in closed form
-    std::uint64_t separating = 0;          // regions whose contacts all separate, so that no impulse acts
-    std::uint64_t frictionless = 0;        // regions without friction, solved with one row per contact
-    std::uint64_t in_lanes = 0;            // regions solved side by side in vector lanes
-    std::uint64_t contact_steps = 0;       // sum of contacts times sweeps over all regions that needed sweeps
-    std::uint64_t swept = 0;               // number of regions that needed sweeps
-    std::uint64_t large_strain_steps = 0;  // solved steps of implicit bodies of large strain
-    // Newton steps, and factorisations of the tangent stiffness, for implicit bodies of large strain.
+    std::uint64_t shortened = 0;   // number of attempts at a step that were repeated with a shorter step
+    std::uint64_t retried = 0;     // number of attempts that were repeated with the crossings as contacts
+    std::uint64_t limited = 0;     // number of steps shorter than step_size, because a body is unstable at step_size
+    std::uint64_t inversions = 0;  // number of times that an element turned inside out
+    // number of contacts and number of solver sweeps over all regions, summed over the steps
+    std::uint64_t contact_sum = 0, iteration_sum = 0;
+    std::uint64_t solved = 0;       // number of solved regions, summed over the steps
+    std::uint64_t unconverged = 0;  // number of regions that reached the iteration limit
+    std::uint64_t certified = 0;  // number of regions whose warm start was accurate enough, so that no sweep was needed
+    std::uint64_t closed_form = 0;    // number of regions of one contact, solved in closed form
+    std::uint64_t separating = 0;     // number of regions whose contacts all separate, so that no impulse acts
+    std::uint64_t frictionless = 0;   // number of regions without friction, solved with one row per contact
+    std::uint64_t in_lanes = 0;       // number of regions solved in parallel in the lanes of vector instructions
+    std::uint64_t contact_steps = 0;  // sum of (contacts times sweeps) over all regions that needed sweeps
+    std::uint64_t swept = 0;          // number of regions that needed sweeps
+    // number of steps of implicit bodies of large strain that Newton's method solved
+    std::uint64_t large_strain_steps = 0;
+    // Number of Newton steps, and of factorisations of the tangent stiffness, for implicit bodies of large strain.
     std::uint64_t newton_steps = 0, tangent_factors = 0;
     Index max_contacts = 0, max_regions = 0, largest_region = 0;
     Real worst_error = 0;
     Index worst_region = 0;                           // number of contacts of the region with worst_error
     Real dissipated = 0;                              // energy dissipated by contacts, damping and material losses [J]
-    Real max_penetration = 0, max_gap_violation = 0;  // largest values over all steps; see StepReport [m]
-    // Values of max_penetration and max_gap_violation in the first step [m]
+    Real max_penetration = 0, max_gap_violation = 0;  // largest values in any step; see StepReport [m]
+    // Values of max_penetration and max_gap_violation in the first step alone [m].
     Real start_penetration = 0, start_gap_violation = 0;
 };
 
@@ -263,51 +267,54 @@ struct WorldReport : RunCounters {
     // Stable step of the stiffest body now [s]. If no body limits the step: the step that advance() takes.
     Real stable_step = 0;
     std::string stable_step_body;  // name of the stiffest body; empty if no body limits the step
-    // Number of clusters, of their nodes, and of the implicit elements in them. A cluster is a group of nodes coupled
-    // by implicit elements, which therefore do not shorten the step (docs/methods/clusters.md).
+    // Number of clusters, number of nodes in clusters, and number of implicit elements in clusters. A cluster is a
+    // group of nodes coupled by implicit elements. These elements do not shorten the step (docs/methods/clusters.md).
     std::size_t clusters = 0, cluster_nodes = 0, implicit_elements = 0;
     // Number of tetrahedra in clusters that have an inversion barrier (docs/methods/elasticity.md 7.7).
     std::size_t guards = 0;
-    std::vector<DynamicsChoice> dynamics_choices;  // choices for bodies added as `automatic`, in the order added
-    // Results of the last check for overlaps. It runs before the first step after an object was added or moved by the
-    // user.
+    // automatic choices for bodies added as `automatic`, in the order added
+    std::vector<DynamicsChoice> dynamics_choices;
+    // Overlaps found by the last check, and bodies that were moved to resolve them. The check runs before the first
+    // step after an object was added or moved by the user.
     std::vector<StartOverlap> start_overlaps;
     std::vector<StartMove> start_moves;
     std::vector<StepLimitReport> step_limits;  // one entry per cause, sorted by number of steps, the largest first
     std::vector<StageReport> stages;           // stages in the order of the step
-    // Contacts per step, regions per step, and sweeps per solved region.
+    // Averages: contacts per step, regions per step, and sweeps per solved region.
     double mean_contacts = 0, mean_regions = 0, mean_iterations = 0;
-    // `candidates`: number of pairs in all candidate lists now
+    // `candidates`: number of pairs of features in all candidate lists now
     std::uint64_t broad_searches = 0, pair_searches = 0, candidates = 0;
-    // Sums over the run: tests of fast candidates (pairs of a node and a triangle, of two edges, or of a feature and a
-    // collider) for crossings; crossings found in discarded attempts; crossings that no attempt at a step could
-    // prevent.
+    // Sums over the run:
+    // - tests of fast candidates for crossings, where a candidate is a pair of a node and a triangle, of two edges, or
+    //   of a feature and a collider;
+    // - crossings found in discarded attempts;
+    // - crossings that no attempt at a step could prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
     Energy energy;
     Vec3 momentum = Vec3::Zero();          // [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
     // Errors of the balances of energy and momentum: changes that loads, weight, colliders and losses do not explain.
     // These balances are checked every 256 steps (every 128 steps if there are clusters) and now; the largest error
-    // counts. The shares are errors relative to all energy or momentum that could be exchanged.
+    // counts. A share is the error divided by all energy or momentum that could be exchanged.
     Real energy_error = 0, energy_error_share = 0;  // absolute error [J]; relative error [1]
-    // Absolute error [kg m/s] and relative error [1]; NaN if a held body is damped, or if a held node belongs to an
-    // implicit element. In these cases damping, or the inertia of the element, absorbs momentum (World::forces reports
-    // the part of the element).
+    // Absolute error [kg m/s] and relative error [1]. Both are NaN if a held body is damped, or if a held node belongs
+    // to an implicit element. The damping, or the inertia of the element, then absorbs momentum. World::forces reports
+    // the momentum that the element absorbs.
     Real momentum_error = 0, momentum_error_share = 0;
-    // Number of steps since the last change from outside, which restarts the balances
+    // Number of steps since the balances were restarted by the last change from outside, such as an added body.
     std::uint64_t balanced_steps = 0;
     Real worst_volume_ratio = 1;  // smallest det F (volume ratio) of a tetrahedron now; negative if inverted
     std::string worst_volume_body;
     // Number of the tetrahedron with worst_volume_ratio, in the mesh of its body.
     Index worst_volume_element = -1;
-    Index near_inversion = 0;  // number of tetrahedra with det F below 0.1
+    Index near_inversion = 0;  // number of tetrahedra with det F (volume ratio) below 0.1
     // Number of smoothed elements below a fifth of their rest volume. Tetrahedra around an edge can stay folded against
     // each other although none of them is inverted. `folded_body` is the first body with such elements,
     // `folded_element` a tetrahedron of the most compressed element of this body.
     Index folded = 0;
     std::string folded_body;
     Index folded_element = -1;
-    Index inverted = 0;  // number of tetrahedra with det F below 0
+    Index inverted = 0;  // number of tetrahedra with det F (volume ratio) below 0
     // Rotation of the fastest rotating collider during the longest step allowed now [rad]. Contacts assume that the
     // collider's surface moves straight within a step. The position error is half the square of this angle times the
     // distance from the axis of rotation.

@@ -12,7 +12,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-/// Settings by which the caller overrides those of a scene file.
+/// Values with which the caller replaces settings of a scene file.
 struct SceneOverrides {
     std::optional<int> threads{};
     std::optional<Backend> backend{};
@@ -23,7 +23,7 @@ struct SceneOverrides {
     std::optional<int> max_iterations{};
     std::optional<StartOverlaps> start_overlaps{};
     std::optional<Real> step_size{};
-    std::optional<ElementKind> element{};  // element kind for all bodies
+    std::optional<ElementKind> element{};  // element kind for all bodies, in place of the kinds in the scene file
     // Assignments PLACE=VALUE, such as bodies[0].position=[0,0,1]. They are applied to the scene file itself, not to
     // the files that it includes, in the given order and before all members above. PLACE has the form used in error
     // messages. VALUE is read as JSON; if it is not valid JSON, it is taken as a text.
@@ -47,7 +47,7 @@ struct Scene {
     World world;
     std::vector<Probe> probes;
     std::vector<RecordedProbe> recorded;  // probes for a Recorder, in the order of the file
-    // Time between two samples of `probes`, or between two rows of `recorded` [s].
+    // Time between two samples of `probes`, or between two recorded rows of `recorded` [s].
     Real probe_step = 1.0 / 60;
 };
 

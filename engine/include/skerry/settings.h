@@ -1,5 +1,5 @@
-// Settings of materials, bodies, colliders and the step, in SI units. Every member has an initialiser: compilers then
-// do not warn about members that a designated initialiser leaves out.
+// Settings of materials, bodies, colliders and the step, in SI units. Every member has an initial value, so that
+// compilers do not warn about members that a designated initialiser leaves out.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
-    Real poisson_ratio = 0.4;  // > -1 and < 0.5
+    Real poisson_ratio = 0.4;  // Poisson's ratio, > -1 and < 0.5
     Real density = 1000;       // > 0 [kg/m^3]
     // Coulomb's friction coefficient, >= 0. It is the default of static_friction and dynamic_friction.
     Real friction = 0.5;
@@ -66,31 +66,32 @@ struct EnumNames<BodyDynamics> {
     }};
 };
 
-/// Settings of a body. The mesh is first rotated about the origin, then moved by `position`.
+/// Settings of a body. The mesh is first rotated about its origin, then moved by `position`.
 struct BodySettings {
     // Material of all tetrahedra whose label is not in `materials`. The whole body has the friction, restitution and
     // damping of this material, even where tetrahedra at the surface have another one.
     MaterialHandle material{};
-    // Materials of tetrahedra by label (Mesh::label). They set elasticity, density and losses. Each label must occur in
-    // the mesh.
+    // Materials of tetrahedra by label (Mesh::label). These materials determine elasticity, density and losses of the
+    // tetrahedra. Each label must occur in the mesh.
     std::map<int, MaterialHandle> materials{};
-    Vec3 position = Vec3::Zero();            // [m]
-    Vec3 rotation = Vec3::Zero();            // axis times angle [rad]
-    Vec3 velocity = Vec3::Zero();            // [m/s]
-    Vec3 angular_velocity = Vec3::Zero();    // about the centre of mass [rad/s]
-    std::optional<Real> contact_distance{};  // >= 0; default: 2 % of the mean edge length of the surface [m]
+    Vec3 position = Vec3::Zero();          // [m]
+    Vec3 rotation = Vec3::Zero();          // rotation axis times angle [rad]
+    Vec3 velocity = Vec3::Zero();          // [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // angular velocity about the centre of mass [rad/s]
+    // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
+    std::optional<Real> contact_distance{};
     bool self_contact = false;
     BodyDynamics dynamics = BodyDynamics::explicit_elastic;
-    // Each object has a set of groups and a mask, both as bits. Two objects can touch only if the mask of each contains
-    // a group of the other.
+    // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
+    // masks contains a group of the other object.
     std::uint32_t collision_group = 1;
     std::uint32_t collision_mask = 0xffffffffu;
     ElementKind element = ElementKind::smoothed;
-    std::string name{};  // used in messages and output
+    std::string name{};  // name of the body in messages and output
 };
 
 struct Plane {
-    Vec3 normal = {0, 0, 1};    // any vector but zero
+    Vec3 normal = {0, 0, 1};    // normal vector, of any length except zero
     Vec3 point = Vec3::Zero();  // [m]
 };
 struct Sphere {
@@ -118,9 +119,9 @@ using Shape = std::variant<Plane, Sphere, Box, Capsule, Cylinder, Bucket, Surfac
 /// One keyframe of a scripted motion. Between keyframes the position moves linearly and the rotation is about a fixed
 /// axis.
 struct MotionKey {
-    Real time = 0;                 // must increase from key to key [s]
+    Real time = 0;                 // time, which must increase from key to key [s]
     Vec3 position = Vec3::Zero();  // [m]
-    Vec3 rotation = Vec3::Zero();  // axis times angle [rad]
+    Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
 };
 
 /// A scripted motion: either constant velocities from now on, or keyframes at absolute times. With keyframes both
@@ -133,14 +134,14 @@ struct Motion {
 
 struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
-    Vec3 rotation = Vec3::Zero();  // axis times angle [rad]
+    Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
     Motion motion{};
-    // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If
-    // not, it uses the value of the body.
+    // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
+    // given, it uses the value of the body.
     std::optional<Real> friction{};
     std::optional<Real> static_friction{}, dynamic_friction{};
-    // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not,
-    // it uses the value of the body.
+    // Coefficient of restitution. If given, a contact uses the larger of this value and the value of the body. If not
+    // given, it uses the value of the body.
     std::optional<Real> restitution{};
     Real contact_distance = 0;          // thickness of the contact shell of a mesh collider [m]
     std::uint32_t collision_group = 1;  // see BodySettings::collision_group
@@ -157,13 +158,13 @@ struct Settings {
     // smaller errors in time, or steps of equal length in several runs.
     std::optional<Real> step_size{};
     // Parameter theta of the theta method for implicit bodies, from 0.5 to 1. The value 1 is backward Euler, which
-    // damps vibrations; 0.55 damps a tenth as much. Values below 1 require symplectic_euler
+    // damps vibrations. The value 0.55 causes a tenth of this damping. Values below 1 require symplectic_euler
     // (docs/methods/implicit_bodies.md 2). Change it when an implicit body must keep vibrating.
     Real theta = 1;
-    // Upper bound of the step length of implicit bodies without attachments; 0: they take the steps of the other bodies
-    // [s]. If the other bodies need shorter steps, an implicit body takes one step while the others take several
-    // (docs/methods/implicit_bodies.md 9). Values above 0 require symplectic_euler. Change it when implicit bodies take
-    // most of the computing time beside explicit ones.
+    // Upper bound of the step length of implicit bodies without attachments [s]. With 0, implicit bodies use the step
+    // length of the other bodies. If the other bodies need shorter steps, an implicit body takes one step while the
+    // others take several (docs/methods/implicit_bodies.md 9). Values above 0 require symplectic_euler. Change it when
+    // implicit bodies take most of the computing time beside explicit ones.
     Real implicit_step = 0;
     // Time integrator (docs/integration.md). Change it to leapfrog when smooth motion must be exact to second order.
     Integrator integrator = Integrator::symplectic_euler;

@@ -20,7 +20,7 @@
 #include "skerry/settings.h"
 
 namespace skerry {
-struct WorldState;  // internal type, so it is declared outside the block of public symbols
+struct WorldState;  // internal type, declared outside the pragma that exports symbols
 }
 
 #pragma GCC visibility push(default)
@@ -28,7 +28,8 @@ namespace skerry {
 
 struct StepProblem;  // defined in problem.h
 
-/// Settings of a loaded world that do not change its results. A missing value is taken from the saved world.
+/// Settings of a loaded world that do not change its results. For a missing value, the value of the saved world is
+/// used.
 struct LoadSettings {
     std::optional<Backend> backend{};  // if this build does not have the backend, `automatic` is used
     std::optional<int> threads{};
@@ -65,11 +66,11 @@ public:
     /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid. The sphere cannot
     /// be attached or become another kind of body.
     BodyHandle add_body(const Sphere& sphere, const BodySettings& body);
-    /// Adds a rigid capsule; the rules of a sphere apply, see add_body() above. The axis is z of the capsule's frame,
+    /// Adds a rigid capsule. The rules for a sphere apply, see add_body() above. The axis is z of the capsule's frame,
     /// and the first two nodes are the ends of the axis (mesh::capsule_picture). `capsule.length` must be > 0.
     BodyHandle add_body(const Capsule& capsule, const BodySettings& body);
-    /// Adds a rigid cylinder with flat ends and sharp rims; the rules of a sphere apply, see add_body() above. The axis
-    /// is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
+    /// Adds a rigid cylinder with flat ends and sharp rims. The rules for a sphere apply, see add_body() above. The
+    /// axis is z of the cylinder's frame, and the first node is the centre (mesh::cylinder_picture).
     BodyHandle add_body(const Cylinder& cylinder, const BodySettings& body);
     ColliderHandle add_collider(const Shape& shape, const ColliderSettings& collider = {});
     /// Prescribes the motion of some nodes of a body (numbers within the body). From now on the nodes stay in place or
@@ -107,12 +108,12 @@ public:
     void watch_steps(std::function<void(const StepReport&)> look);
     Real time() const;
     const Settings& settings() const;
-    /// Stable step of the stiffest body [s]. advance() takes no longer steps. If all bodies are rigid or implicit: the
-    /// step that advance() takes.
+    /// Stable step of the stiffest body [s], which is the longest step that advance() takes. If all bodies are rigid or
+    /// implicit: the step length that advance() uses.
     Real stable_step() const;
 
     // State of a body. The spans are valid until bodies are added or removed. advance() changes the positions and
-    // velocities that the spans refer to.
+    // velocities in the spans.
     std::span<const Vec3> positions(BodyHandle body) const;                   // [m]
     std::span<const Vec3> velocities(BodyHandle body) const;                  // [m/s]
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
@@ -148,9 +149,9 @@ public:
     Vec3 center_of_mass(BodyHandle body) const;    // [m]
     Real contact_distance(BodyHandle body) const;  // [m]
     bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
-    void wake(BodyHandle body);                    // wakes a sleeping body; bodies that touch it wake in later steps
-    Real mean_edge(BodyHandle body) const;         // mean edge length of the surface in the rest shape [m]
-    std::vector<BodyHandle> bodies() const;        // all bodies, in the order added
+    void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
+    Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
+    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added
     std::vector<ColliderHandle> colliders() const;
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.
@@ -198,7 +199,7 @@ public:
     /// a joint, or is a sphere, capsule or cylinder; and for a body with self-contact that is to become rigid or
     /// implicit.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
-    /// Sets external forces on the nodes of a body [N]. They act until they are set again.
+    /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     /// Reads or changes a material. Bodies of this material keep their shapes and velocities and get new masses, stable
     /// steps and clusters. Throws SceneError if the material model would change, and for values with which one of these
@@ -215,7 +216,7 @@ public:
     /// For a body with itself it sets self_contact. Settings::start_overlaps applies to a pair that is switched on.
     void set_collision(BodyHandle a, BodyHandle b, bool on);
     void set_collision(BodyHandle body, ColliderHandle collider, bool on);
-    /// True if the collision groups and set_collision() let the two collide.
+    /// True if the collision groups and the settings of set_collision() allow the two objects to collide.
     bool may_collide(BodyHandle a, BodyHandle b) const;
     bool may_collide(BodyHandle body, ColliderHandle collider) const;
 
@@ -227,8 +228,8 @@ public:
     /// colliders, each in the order added.
     std::optional<SurfaceHit> cast_ray(const Vec3& origin, const Vec3& direction, Real max_distance,
                                        const QueryFilter& filter = {}) const;
-    /// Finds the nearest point of any surface within `max_distance` [m], from inside or outside; empty if there is
-    /// none.
+    /// Finds the nearest point of any surface within `max_distance` [m] of the given point, which may be inside or
+    /// outside of objects. Returns nothing if there is no such surface.
     std::optional<SurfaceHit> nearest_point(const Vec3& point, Real max_distance, const QueryFilter& filter = {}) const;
 
     // Results.
@@ -260,7 +261,7 @@ public:
 
 private:
     friend struct WorldAccess;
-    /// Owner of the state that throws SceneError if the world is used after it was moved from.
+    /// Pointer to the state of the world. Access throws SceneError if the world was moved from.
     class StateOwner {
     public:
         explicit StateOwner(std::unique_ptr<WorldState> owned);

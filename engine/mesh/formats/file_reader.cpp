@@ -109,7 +109,7 @@ Real FileReader::parse_real(std::string_view text, const char* field) const {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
         complain(field, in_quotes(text), "a number");
-    // If the number is out of range, strtod returns zero for tiny numbers and infinity for huge ones.
+    // If the number is out of range, strtod returns zero for too small numbers and infinity for too large ones.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
     return value;
 }
@@ -146,7 +146,7 @@ bool FileReader::skip_behind(std::string_view mark) {
 
 std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, const char* field) const {
     if (count < 0) complain(field, std::to_string(count), "a count that is not negative");
-    // One more row may fit, because the last row of the file may lack its line end.
+    // The last row of the file may lack its line end, so one more row may fit than the number of bytes suggests.
     const std::size_t fits = remaining() / bytes + 1;
     if (static_cast<std::uint64_t>(count) > fits)
         complain(field, std::to_string(count), "at most " + std::to_string(fits),

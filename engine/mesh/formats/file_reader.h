@@ -48,7 +48,7 @@ public:
     /// Skips white space and line ends, then returns the next word. At the end of the file: throws SceneError that
     /// `expected` is missing.
     std::string_view word(const char* expected);
-    /// Returns the word that word() would return, without moving on; empty at the end of the file.
+    /// Returns the word that word() would return, without changing the position; empty at the end of the file.
     std::string_view peek_word() const;
     Real parse_real(std::string_view text, const char* field) const;
     std::int64_t parse_integer(std::string_view text, const char* field) const;
@@ -68,16 +68,16 @@ public:
         return value;
     }
     void skip_bytes(std::size_t count, const char* field);
-    /// Moves to the position after the next occurrence of `mark` at the end of a word; no line end is needed between
+    /// Moves the position behind the next occurrence of `mark` at the end of a word. No line end is needed between
     /// binary numbers and `mark`. Returns false and does not move if there is no such occurrence.
     bool skip_behind(std::string_view mark);
 
     // Checks.
     // -----------------------------------------------------------------------------------------------------------------
 
-    /// Checks a number of rows that was read from the file. It must not be negative, and that many rows of at least
-    /// `bytes` bytes must fit into the rest of the file. A wrong count therefore cannot allocate more than a small
-    /// multiple of the file size.
+    /// Checks a number of rows that was read from the file: it must not be negative, and that many rows of at least
+    /// `bytes` bytes must fit into the rest of the file. A wrong count therefore cannot cause the allocation of more
+    /// than a small multiple of the file size.
     std::size_t checked_count(std::int64_t count, std::size_t bytes, const char* field) const;
     /// Throws SceneError unless the number is finite.
     Real finite(Real value, const char* field) const;

@@ -16,7 +16,7 @@ namespace skerry::mesh {
 struct RawMesh {
     std::vector<Vec3> nodes;
     std::vector<std::array<Index, 4>> tetrahedra;
-    std::vector<int> label;  // label of each tetrahedron, or empty
+    std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
     std::size_t others = 0;            // number of elements of kinds that are ignored
@@ -36,7 +36,7 @@ private:
     std::unordered_map<std::int64_t, Index> row_;
 };
 
-/// Converts a number to a label. Returns nothing unless the number is a whole number that fits 32 bits.
+/// Converts a number from a file to a label. Returns nothing unless the number is a whole number that fits 32 bits.
 std::optional<int> as_label(Real number);
 
 /// Throws SceneError if an element uses a node twice.
@@ -47,10 +47,11 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
             if (nodes[a] == nodes[b]) reader.complain("nodes", "the same node twice", "different nodes");
 }
 
-// Readers of the file formats. All throw SceneError.
-RawMesh read_gmsh(FileReader& reader);         // Gmsh file versions 1, 2 and 4.1
-RawMesh read_vtk(FileReader& reader);          // legacy VTK files with unstructured grids or polygons
-RawMesh read_tetgen(const std::string& path);  // files .node and .ele of the same name; `path` may name either
+// Readers of the mesh file formats. All of them throw SceneError for invalid files.
+RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
+RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructured grids or polygons
+// reads TetGen files .node and .ele of the same name; `path` may name either file
+RawMesh read_tetgen(const std::string& path);
 RawMesh read_obj(FileReader& reader);
 RawMesh read_stl(FileReader& reader);
 

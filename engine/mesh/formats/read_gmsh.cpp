@@ -113,7 +113,7 @@ void label(GmshMesh& mesh) {
     const bool grouped = std::ranges::any_of(mesh.tags, [](const GmshTags& tags) { return tags.physical != 0; });
     std::vector<int> labels;
     for (const GmshTags& tags : mesh.tags) {
-        // the sign of a group number only encodes an orientation
+        // a negative group number only means that the orientation is reversed
         const Real tag = static_cast<Real>(grouped ? tags.physical : tags.elementary);
         const std::optional<int> number = as_label(grouped ? std::abs(tag) : tag);
         if (!number) return;
@@ -137,7 +137,7 @@ RawMesh read_gmsh(FileReader& reader) {
         header = read_header(reader);
     else
         reader.set_section("$NOD");
-    bool first = name == "$NOD";  // true if `name` is the name of a section that is not read yet
+    bool first = name == "$NOD";  // true if `name` is the name of a section that has not been read yet
     while (first || !reader.at_end()) {
         if (!first) {
             reader.set_section({});

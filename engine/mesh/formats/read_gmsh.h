@@ -5,12 +5,12 @@
 
 namespace skerry::mesh {
 
-/// Group numbers of an element: a physical group (0: none) and an elementary (geometric) entity.
+/// Group numbers of an element: its physical group (0: none) and its elementary (geometric) entity.
 struct GmshTags {
     std::int64_t physical = 0, elementary = 0;
 };
 
-/// Maps the tag of a geometric volume to the number of its physical group.
+/// Map from the tag of a geometric volume to the number of its physical group.
 using GmshVolumes = std::unordered_map<std::int64_t, std::int64_t>;
 
 /// A mesh with the group numbers of its tetrahedra.
@@ -34,8 +34,8 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
 /// Returns the number of nodes of an element type. Throws SceneError for unknown types and for curved tetrahedra.
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader);
 
-/// Adds an element to the mesh if it is a tetrahedron or a triangle; otherwise only counts it. The nodes of all
-/// elements must exist.
+/// Adds a tetrahedron or triangle to the mesh. Elements of other types are only counted. The nodes of the element must
+/// exist in either case.
 void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_numbers, const GmshTags& tags,
                        const NodeNumbers& numbers, const FileReader& reader, GmshMesh& mesh);
 

@@ -8,7 +8,7 @@ constexpr std::size_t shortest_row = 8;
 // Size of a node in a binary file: a 4-byte number and three 8-byte coordinates [bytes].
 constexpr std::size_t binary_node = 4 + 3 * 8;
 
-/// Returns the words of the next line. If a new section begins here, rows are missing: throws SceneError.
+/// Returns the words of the next line. Throws SceneError if a new section begins there, because then rows are missing.
 const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
     const std::string_view text = reader.filled_line(expected);
     if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");

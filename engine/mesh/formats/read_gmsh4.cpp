@@ -35,15 +35,16 @@ Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_by
     return header;
 }
 
-/// Reads the header of a block of nodes or elements: dimension, tag, third number (parametric or element type), and
-/// number of rows.
+/// Reads the header of a block of nodes or elements: the dimension and tag of the entity, the parametric flag (nodes)
+/// or the element type (elements), and the number of rows.
 Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning) {
     const Numbers4 block = read_four(reader, binary, {4, 4, 4, 8}, "block header", meaning);
     if (block[0] < 0 || block[0] > 3) reader.complain("dimension", std::to_string(block[0]), "0 to 3");
     return block;
 }
 
-/// Reads the next word of a node or element. If a new section begins here, rows are missing: throws SceneError.
+/// Reads the next word of a node or element. Throws SceneError if a new section begins there, because then rows are
+/// missing.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);
     if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
@@ -55,7 +56,7 @@ std::int64_t read_tag(FileReader& reader, bool binary) {
     return binary ? reader.binary<std::int32_t>("tag") : reader.parse_integer(row_word(reader, "a tag"), "tag");
 }
 
-/// Reads a count, followed by that many tags.
+/// Reads a number of tags, followed by the tags.
 std::vector<std::int64_t> read_tags(FileReader& reader, bool binary) {
     const std::int64_t announced = binary ? static_cast<std::int64_t>(reader.binary<std::uint64_t>("count of tags"))
                                           : reader.parse_integer(row_word(reader, "a count of tags"), "count of tags");

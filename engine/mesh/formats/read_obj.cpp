@@ -5,8 +5,8 @@
 namespace skerry::mesh {
 namespace {
 
-/// Reads a corner of a face: "7", "7/2", "7//3", or "-1" for the last node so far. The number before the first slash is
-/// the node.
+/// Reads a corner of a face, such as "7", "7/2" or "7//3", where the number before the first slash is the node.
+/// Negative numbers count from the last node read so far, which is -1.
 Index parse_corner(const FileReader& reader, std::string_view word, std::size_t node_count) {
     const std::int64_t number = reader.parse_integer(word.substr(0, word.find('/')), "node");
     const auto count = static_cast<std::int64_t>(node_count);

@@ -22,7 +22,7 @@ public:
 
 private:
     Index node(const Vec3& x) {
-        // keys that contain -0 and 0 are equal
+        // -0 and 0 count as equal keys
         const auto [place, added] = row_.try_emplace({x[0], x[1], x[2]}, static_cast<Index>(mesh_.nodes.size()));
         if (added) mesh_.nodes.push_back(x);
         return place->second;
@@ -66,7 +66,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
             reader.set_section("facet " + std::to_string(i));
             if (key != "facet") reader.complain({}, in_quotes(key), "facet or endsolid");
             require_word(reader, "normal");
-            for (int a = 0; a < 3; ++a) reader.word("a normal");  // unused: many files have wrong normals
+            // the normal vector is not used, because many files have wrong normals
+            for (int a = 0; a < 3; ++a) reader.word("a normal");
             require_word(reader, "outer");
             require_word(reader, "loop");
             std::array<Vec3, 3> corners;
@@ -88,8 +89,8 @@ void read_ascii(FileReader& reader, Welder& welder) {
 RawMesh read_stl(FileReader& reader) {
     RawMesh mesh;
     Welder welder(mesh);
-    // The header of a binary file may begin with "solid", too. Only the file size tells the two forms apart: the size
-    // of a binary file follows exactly from the number of triangles.
+    // The header of a binary file may begin with "solid", like a text file. Therefore the file size decides: the size
+    // of a binary file follows exactly from its number of triangles.
     const std::string_view bytes = reader.rest();
     bool binary = false;
     if (bytes.size() >= header_bytes + 4) {

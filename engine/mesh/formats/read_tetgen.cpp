@@ -60,7 +60,8 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
         const std::vector<std::string_view>& words = node_row_words(reader, "number x y z");
         require_words(reader, words.size(), 4, most, "number x y z attributes marker");
         const std::int64_t number = reader.parse_integer(words[0], "number");
-        // TetGen numbers nodes from 0 or from 1, in order. Any other numbers are accepted, too, if they differ.
+        // TetGen numbers nodes consecutively from 0 or from 1. Other numbers are accepted too, if no number occurs
+        // twice.
         numbers.add(number, reader);
         Vec3 x;
         for (std::size_t a = 0; a < 3; ++a)

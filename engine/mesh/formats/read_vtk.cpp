@@ -181,8 +181,8 @@ private:
         return static_cast<Index>(node);
     }
 
-    /// Reads the nodes of the cells in section CELLS or POLYGONS. Old form: count and nodes of each cell. New form:
-    /// offsets of all cells, then all nodes.
+    /// Reads the nodes of the cells in section CELLS or POLYGONS. In the old form of the file, each cell has its node
+    /// count, followed by its nodes. In the new form, the offsets of all cells come first, then all nodes.
     void read_cells(bool& has_rows) {
         if (!has_points_) reader_.complain({}, "cells before points", "the points first");
         if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of the same name", "one");
@@ -198,7 +198,7 @@ private:
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = read_integer(type, "node count");
-            // Number of integers that are left in the section after the counts and nodes read so far.
+            // Number of integers of the section that follow the counts and nodes read so far.
             const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
@@ -325,8 +325,8 @@ private:
         return false;
     }
 
-    /// Reads the array, or the field of several arrays, that follows its keyword. Returns false for an unknown keyword
-    /// or type.
+    /// Reads one array, or a field of several arrays, according to the keyword before it. Returns false for an unknown
+    /// keyword or type.
     bool read_attribute(const std::string& keyword, std::size_t rows, bool of_cells) {
         reader_.set_section(keyword);
         if (keyword == "METADATA") {
@@ -337,7 +337,7 @@ private:
         if (keyword == "FIELD") return read_field_data(rows, of_cells);
         if (keyword == "COLOR_SCALARS" || keyword == "LOOKUP_TABLE") {
             const std::size_t count = read_count("count", 1);
-            // each component is a byte in binary files and a fraction in text files
+            // a colour component is one byte in a binary file and a fraction in a text file
             return skip_array(keyword == "LOOKUP_TABLE" ? count : rows, keyword == "LOOKUP_TABLE" ? 4 : count,
                               {Kind::uint8, 1});
         }
@@ -373,7 +373,7 @@ private:
         for (std::size_t i = 0; i < arrays; ++i) {
             reader_.set_row("array", i + 1, arrays);
             const std::string name(reader_.word("the name of the array"));
-            if (name == "METADATA") {  // METADATA belongs to the previous array
+            if (name == "METADATA") {  // METADATA describes the array before it
                 skip_metadata();
                 --i;
                 continue;
@@ -440,7 +440,7 @@ private:
     std::vector<std::size_t> offsets_{0};
     std::vector<Index> cell_nodes_;
     std::vector<std::int64_t> types_;
-    std::vector<int> cell_label_;  // label of each cell, or empty
+    std::vector<int> cell_label_;  // label of each cell; empty: no labels
     RawMesh mesh_;
 };
 

@@ -61,8 +61,8 @@ PartedMesh part_fans(const Mesh& mesh) {
     for (std::size_t f = 1; f < faces.size(); ++f)
         if (faces[f].node == faces[f - 1].node)
             for (std::size_t i = 0; i < 3; ++i) fans.join(faces[f].corner[i], faces[f - 1].corner[i]);
-    std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // root of the first fan of each node
-    // Node of each fan. The index is the root of the fan, which is its first corner.
+    std::vector<Index> first_fan(mesh.nodes.size(), no_index);  // number of the first fan found at each node
+    // Node of each fan. A fan has the number of its root in the union-find structure, which is its first corner.
     std::vector<Index> node_of(4 * mesh.tetrahedra.size(), no_index);
     std::vector<bool> has_more(mesh.nodes.size());
     for (std::size_t c = 0; c < node_of.size(); ++c) {

@@ -29,7 +29,8 @@ Real mean_edge(const SurfaceMesh& surface) {
 
 Real greatest_distance(const SurfaceMesh& from, const SurfaceMesh& to) {
     constexpr Real parts_of_mean_edge = 8;
-    constexpr int most_parts = 64;  // at most 2,145 sample points per triangle
+    // largest number of intervals per edge; it gives at most 2,145 sample points per triangle
+    constexpr int most_parts = 64;
     const TriangleTree tree(to);
     const Real mean = mean_edge(from);
     std::vector<Vec3> points;

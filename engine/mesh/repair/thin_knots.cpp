@@ -18,18 +18,18 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Corners = std::array<Vec3, 3>;
 
-// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller gain does not
-// justify moving the surface.
+// Least factor by which a change must increase the smallest altitude of the triangles involved. A smaller increase does
+// not justify moving the surface.
 constexpr Real least_gain = 1.1;
-// Fraction of the tolerance that the distance of a sample point from the other surface may reach. The rest is a margin
-// for the surface between the sample points.
+// Largest distance of a sample point from the other surface, as a fraction of the tolerance. The rest of the tolerance
+// is a margin for the surface between the sample points.
 constexpr Real share_of_tolerance = 0.8;
-// Cosine of the largest angle by which a change may rotate the normal of a triangle (60 degrees).
+// Cosine of 60 degrees, the largest angle by which a change may rotate the normal of a triangle.
 constexpr Real least_turn = 0.5;
-// Smallest cosine between the normal of a triangle that replaces a flat one, and the mean normal of the removed
-// triangles. The normal of a flat triangle itself is noise.
+// A flat triangle has no meaningful normal. A triangle that replaces it is compared with the mean normal of the removed
+// triangles. This is the smallest allowed cosine between the two normals.
 constexpr Real least_turn_of_flat = 0.2;
-// Number of intervals per edge of a triangle, which gives 15 sample points for distances.
+// Number of intervals per edge of a triangle. It gives 15 sample points per triangle, at which distances are measured.
 constexpr int parts = 4;
 
 Vec3 area_vector(const Corners& x) {
@@ -47,11 +47,11 @@ Real altitude_of(const Corners& x) {
 struct Change {
     std::vector<Index> gone;
     std::vector<Triangle> made;
-    // For each triangle in `made`, the triangle of `gone` that it replaces.
+    // For each new triangle in `made`: the removed triangle of `gone` that the new triangle replaces.
     std::vector<Index> made_from;
     // For an edge collapse: the node that remains, and the node that is removed.
     Index moved = no_index, lost = no_index;
-    Vec3 position = Vec3::Zero();  // new position of `moved` [m]
+    Vec3 position = Vec3::Zero();  // new position of the node `moved` [m]
     Real altitude = 0;             // smallest altitude of the new triangles [m]
 };
 
@@ -136,14 +136,14 @@ private:
         return best;
     }
 
-    /// Collapses the edge from a to b: both ends move to the point a + place (b - a). The node with the lower number
-    /// remains.
+    /// Collapses the edge between the nodes a and b. Both nodes move to the point a + place (b - a), and the node with
+    /// the lower number remains.
     std::optional<Change> collapse(Index a, Index b, Real place) const {
         const std::vector<Index> sides = triangles_with(a, b), near_a = neighbours(a), near_b = neighbours(b);
         std::vector<Index> common;
         std::set_intersection(near_a.begin(), near_a.end(), near_b.begin(), near_b.end(), std::back_inserter(common));
-        // The link condition preserves the topology. A tetrahedron is the smallest closed surface, so it is not reduced
-        // further.
+        // The link condition preserves the topology. A surface with the topology of a tetrahedron is the smallest
+        // closed surface, so none of its edges is collapsed.
         if (sides.size() != 2 || common.size() != 2 || near_a.size() + near_b.size() <= 6) return std::nullopt;
         Change change;
         change.position = (1 - place) * node(a) + place * node(b);
@@ -187,7 +187,8 @@ private:
         return no_index;
     }
 
-    /// Returns the change with its altitude, or nothing if the altitude grows too little.
+    /// Stores in the change the smallest altitude of its new triangles. Returns nothing if this altitude is hardly
+    /// larger than the smallest altitude of the removed triangles.
     std::optional<Change> finished(Change change) const {
         Real before = infinity;
         for (const Index t : change.gone) before = std::min(before, altitude_of(corners(triangle(t))));
@@ -224,7 +225,8 @@ private:
                            [&](const Vec3& point) { return original_.distance_squared(point, 2 * limit) <= limit; });
     }
 
-    /// Returns the index of the new triangle that is nearest to the point, and the squared distance of the two [m^2].
+    /// Returns the index of the new triangle nearest to the point, and the squared distance from the point to this
+    /// triangle [m^2].
     std::pair<std::size_t, Real> nearest_made(const Change& change, const Vec3& point) const {
         std::pair<std::size_t, Real> nearest{0, infinity};
         for (std::size_t i = 0; i < change.made.size(); ++i) {
@@ -251,8 +253,8 @@ private:
             add(change.made[i]);
             samples_.back() = std::move(samples[i]);
         }
-        // Flat triangles next to the new triangles are examined again, because changes that were rejected may now be
-        // possible.
+        // Flat triangles next to the new triangles are examined again, because changes that were rejected before may
+        // now be possible.
         for (auto t = first; t < static_cast<Index>(triangles_.size()); ++t)
             for (const Index n : triangle(t))
                 for (const Index beside : around(n)) ask(beside);
@@ -278,12 +280,13 @@ private:
     KnotSettings settings_;
     TriangleTree original_;
     std::vector<Vec3> nodes_;
-    std::vector<Triangle> triangles_;  // all triangles, including removed ones
+    std::vector<Triangle> triangles_;  // all triangles of the surface, including removed ones
     std::vector<bool> alive_;
-    // Sample points of the old surface, listed by the triangle that now represents them.
+    // Sample points of the old surface, sorted by the triangle of the new surface that is nearest to each point.
     std::vector<std::vector<Vec3>> samples_;
     std::vector<std::vector<Index>> around_;  // numbers of the triangles at each node
-    // Altitude and number of each flat triangle, flattest first. Ties are ordered by number.
+    // Pairs (altitude, triangle number) of all flat triangles, flattest first. Equally flat triangles are ordered by
+    // number.
     std::set<std::pair<Real, Index>> flat_;
 };
 

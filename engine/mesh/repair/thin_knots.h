@@ -13,7 +13,7 @@ struct KnotSettings {
 
 struct ThinnedSurface {
     SurfaceMesh surface;
-    std::size_t collapsed = 0, flipped = 0;  // numbers of collapsed and of flipped edges
+    std::size_t collapsed = 0, flipped = 0;  // number of collapsed edges, and number of flipped edges
 };
 
 /// Repeatedly takes the flattest triangle with an altitude below `altitude`, and collapses or flips one of its edges.

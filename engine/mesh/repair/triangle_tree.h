@@ -6,7 +6,7 @@
 
 namespace skerry::mesh {
 
-/// A constant surface with a bounding volume tree over its triangles.
+/// A surface that does not change, with a bounding volume tree over its triangles.
 class TriangleTree {
 public:
     /// The surface must have at least one triangle.

@@ -26,7 +26,7 @@ void require_count(const char* name, int value) {
 }
 
 void require_fits(const char* name, double tetrahedra) {
-    // The table of corners has four rows per tetrahedron, and its indices have 32 bits.
+    // The table of triangle corners has four rows per tetrahedron, and row numbers have 32 bits.
     constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
         throw std::invalid_argument(std::string(name) + ": too fine, about " + std::to_string(tetrahedra) +

@@ -41,10 +41,10 @@ public:
     }
 
 private:
-    // Barycentric coordinates of a node, as numbers of steps towards the three corners of the sector and (last) the
-    // centre.
+    // Barycentric coordinates of a node in its sector, counted in steps towards the three corners of the sector and,
+    // last, the centre.
     using Steps = std::array<int, 4>;
-    // Sorted pairs (corner, steps) that identify a node. They are identical for all sectors that share the node.
+    // Sorted pairs (corner, steps) that identify a node. All sectors that share the node compute the same pairs.
     using Key = std::array<std::pair<int, int>, 3>;
 
     Index node(const std::array<int, 3>& sector, const Steps& steps) {
@@ -95,8 +95,8 @@ private:
             const Real length =
                 (mesh_.nodes[static_cast<std::size_t>(n[2 * d])] - mesh_.nodes[static_cast<std::size_t>(n[2 * d + 1])])
                     .norm();
-            // Diagonals of symmetric sectors are equal up to rounding. The margin of 1e-9 gives the same choice in all
-            // sectors.
+            // Diagonals that should be equal by symmetry differ by rounding errors. With the margin of 1e-9 all sectors
+            // make the same choice.
             if (d == 0 || length < shortest * (1 - 1e-9)) {
                 best = d;
                 shortest = length;
@@ -129,7 +129,8 @@ Mesh ball(Real radius, int resolution) {
 Mesh sphere_picture(Real radius) {
     constexpr int resolution = 8;
     const SurfaceMesh skin = boundary(ball(radius, resolution));
-    // Corners of the icosahedron have five triangles instead of six. They become the first nodes after the centre.
+    // The corners of the icosahedron become the first nodes after the centre. Each of these nodes has five surface
+    // triangles, whereas other surface nodes have six.
     std::vector<int> faces(skin.nodes.size(), 0);
     for (const auto& triangle : skin.triangles)
         for (const Index n : triangle) ++faces[static_cast<std::size_t>(n)];

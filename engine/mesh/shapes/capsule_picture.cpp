@@ -6,7 +6,7 @@
 namespace skerry::mesh {
 namespace {
 
-// Number of nodes around the axis, and number of rings of a round end, including the rim.
+// Number of nodes around the axis, and number of rings of each round end (the rim included).
 constexpr int around = 16, caps = 4;
 
 /// Builds a capsule from two round ends and a straight part. The tetrahedra of a round end meet at the centre of its
@@ -17,7 +17,8 @@ public:
 
     Mesh build() {
         for (const Real up : {-1.0, 1.0}) mesh_.nodes.emplace_back(0, 0, up * half_);
-        // The first nodes show the rotation of the body: the pole and four nodes of the rim, for both ends.
+        // The first nodes are the pole and four nodes of the rim, for both ends. From their motion a user can see the
+        // rotation of the body.
         for (const int end : {0, 1}) {
             row_[end][caps][0] = add(end, caps, 0);
             for (int k = 0; k < around; k += around / 4) row_[end][0][k] = add(end, 0, k);

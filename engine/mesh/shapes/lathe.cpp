@@ -12,11 +12,12 @@ namespace {
 
 using ProfilePoint = std::array<Real, 2>;  // radius, z
 
-constexpr Real layer_height = 1.0;  // height of a layer divided by ring spacing; maximises the smallest altitude
-// A layer boundary is placed at a kink of the outline if its angle is larger than this [rad].
+// height of a layer divided by ring spacing; this ratio maximises the smallest altitude
+constexpr Real layer_height = 1.0;
+// Smallest change of direction of the outline at which a kink becomes a layer boundary [rad].
 constexpr Real sharp_turn = 0.25;
-// Smallest distance between layer boundaries, divided by ring spacing. A kink closer than this to another boundary gets
-// no boundary, so it is rounded.
+// Smallest distance between two layer boundaries, divided by ring spacing. A kink that is closer to another boundary
+// does not become a boundary, so it is rounded.
 constexpr Real least_layer = 0.6;
 constexpr Real point_radius = 0.3;  // largest radius of an end that closes to a point, divided by ring spacing
 
@@ -39,8 +40,8 @@ Real radius_at(std::span<const ProfilePoint> profile, Real z) {
     return (1 - t) * profile[i - 1][0] + t * profile[i][0];
 }
 
-/// Returns z of the ends of the outline and of its sharp kinks, ascending. If kinks are too close together for layers
-/// between them, the sharpest kinks are used.
+/// Returns the z coordinates of the ends of the outline and of its sharp kinks, in ascending order. If kinks are too
+/// close together for layers between them, only the sharpest kinks are used.
 std::vector<Real> find_breaks(std::span<const ProfilePoint> profile, Real spacing) {
     std::vector<Real> turn(profile.size(), 0);
     std::vector<std::size_t> order;
@@ -69,7 +70,7 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
     std::vector<Real> planes{breaks.front()};
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
         Real layers = std::max(Real{1}, std::round((breaks[b + 1] - breaks[b]) / (layer_height * spacing)));
-        // A body that is pointed at both ends needs at least one plane between them.
+        // A body with two pointed ends needs at least one disc between these ends.
         if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back()))
             layers = std::max(layers, Real{2});
         require_fits("lathe layers", layers);
@@ -83,8 +84,8 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
 std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing, int most_rings) {
     const Real narrow = point_radius * spacing;
     std::vector<Real> planes = find_planes(profile, spacing);
-    // A pointed end is a single point. Equally narrow planes next to it would only produce tiny elements, so they are
-    // removed.
+    // A pointed end is a single point. Further planes near the end, where the body is equally narrow, would only
+    // produce tiny elements, so they are removed.
     while (planes.size() > 3 && profile.back()[0] < narrow && radius_at(profile, planes[planes.size() - 2]) < narrow)
         planes.erase(planes.end() - 2);
     while (planes.size() > 3 && profile.front()[0] < narrow && radius_at(profile, planes[1]) < narrow)

@@ -22,9 +22,9 @@ int disc_size(int rings) {
     return ring_begin(rings + 1);
 }
 
-/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. Topologically the nodes form a
-/// hexagon of the triangular lattice. The colours determine the diagonals of the walls between prisms. All six sectors
-/// of the disc are treated alike, so the mesh has no sense of rotation.
+/// Colours the nodes of a disc with three colours so that neighbouring nodes differ. The nodes are connected like a
+/// hexagon cut out of the triangular lattice. The colours determine the diagonals of the rectangular side faces (walls)
+/// between neighbouring prisms. All six sectors of the disc are treated alike, so the mesh has no sense of rotation.
 std::vector<int> paint_nodes(int rings) {
     constexpr std::array<std::array<int, 2>, 6> direction{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
     std::vector<int> colour(static_cast<std::size_t>(disc_size(rings)), 0);
@@ -85,8 +85,8 @@ private:
             for_each_triangle(ring, prism, prism);
         }
         if (below == above) return;
-        // The last ring of the wider disc is connected to the last ring of the narrower disc by tetrahedra and
-        // pyramids.
+        // Tetrahedra and pyramids connect the outermost ring of the wider disc with the outermost ring of the narrower
+        // disc.
         const std::size_t wide = below > above ? layer : layer + 1, narrow = below > above ? layer + 1 : layer;
         for_each_triangle(
             shared + 1,
@@ -96,8 +96,9 @@ private:
             [&](int a, int b, int outer) { add_pyramid(layer, a, b, node(wide, outer)); });
     }
 
-    /// True if the diagonal of the wall over the edge (`from`, `to`) rises from `from` to `to`. In even layers it rises
-    /// towards the node of higher colour, in odd layers towards the node of lower colour.
+    /// True if the diagonal of the wall (rectangular side face of a prism) over the edge (`from`, `to`) rises from
+    /// `from` to `to`. In even layers it rises towards the node of higher colour, in odd layers towards the node of
+    /// lower colour.
     bool cut_rises(std::size_t layer, int from, int to) const {
         return (colour_[static_cast<std::size_t>(from)] < colour_[static_cast<std::size_t>(to)]) == (layer % 2 == 0);
     }
@@ -112,8 +113,8 @@ private:
         }
     }
 
-    /// Adds a pyramid as two tetrahedra. Its base is the wall over nodes a and b, its tip is a node outside of the
-    /// wall.
+    /// Adds a pyramid as two tetrahedra. Its base is the wall (rectangular side face of a prism) over nodes a and b,
+    /// and its apex is the node `tip`.
     void add_pyramid(std::size_t layer, int a, int b, Index tip) {
         if (!cut_rises(layer, a, b)) std::swap(a, b);
         add_tetrahedron(mesh_, {node(layer, a), node(layer, b), node(layer + 1, b), tip});

@@ -15,8 +15,8 @@ struct Disc {
     int rings;
 };
 
-/// Fills the spaces between neighbouring discs with tetrahedra. z must ascend. Neighbouring discs may differ by at most
-/// one ring and must not both be points.
+/// Fills the spaces between neighbouring discs with tetrahedra. The z coordinates of the discs must ascend.
+/// Neighbouring discs may differ by at most one ring and must not both be points.
 Mesh stack_discs(const std::vector<Disc>& discs);
 
 }  // namespace skerry::mesh

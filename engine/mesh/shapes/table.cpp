@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 namespace {
 
-/// Number of cells with an edge of about `cell` that fit into `length`, at least one. Both are in metres.
+/// Number of cells with edges of about `cell` that fit into `length`; at least one. `cell` and `length` are in metres.
 int cells_in(Real length, Real cell) {
     const Real count = std::round(length / cell);
     require_fits("table cells", count);
@@ -31,7 +31,7 @@ Mesh table(const TableShape& shape) {
 
     const Real cell = shape.leg / shape.cells_per_leg;
     const std::array<Real, 2> top{shape.length, shape.width};
-    std::array<int, 2> between;  // number of cells between two legs, along x and along y
+    std::array<int, 2> between;  // number of cells between two legs, first along x, then along y
     for (std::size_t axis = 0; axis < 2; ++axis) between[axis] = cells_in(top[axis] - 2 * shape.leg, cell);
     const int leg_layers = cells_in(shape.height - shape.thickness, cell), top_layers = cells_in(shape.thickness, cell);
     require_fits("table cells", 6.0 * (between[0] + 2.0 * shape.cells_per_leg) *

@@ -14,11 +14,11 @@ namespace {
 constexpr const char* kind_names[] = {"plane", "sphere", "box", "capsule", "cylinder", "bucket", "mesh"};
 static_assert(std::size(kind_names) == std::variant_size_v<Shape>);
 
-/// Value of a displayed field at a node; `field` counts from 0 to page_field_count - 1.
+/// Value of a displayed field at a node. `field` is the number of the field, from 0 to page_field_count - 1.
 Real value_at(const BodyFrame& body, std::size_t field, std::size_t node) {
     if (field == 0) return body.velocity[node].norm();
     if (field == stress_field) return von_mises(body.node_stress[node]);
-    // The factor 2/3 gives the axial strain of an incompressible bar in tension.
+    // The factor 2/3 is chosen so that an incompressible bar in tension shows its axial strain.
     return von_mises(body.node_strain[node]) * 2 / 3;
 }
 

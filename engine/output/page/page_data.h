@@ -19,7 +19,7 @@ namespace skerry {
 /// itself.
 struct PageCollider {
     std::string name;
-    std::string kind;  // one of plane, sphere, box, capsule, cylinder, bucket, mesh
+    std::string kind;  // kind of shape: plane, sphere, box, capsule, cylinder, bucket or mesh
     SurfaceMesh picture;
 };
 
@@ -49,7 +49,7 @@ public:
     std::span<const PageRow> rows() const { return rows_; }
     /// All frames, compressed.
     std::string packed_frames() const { return frames_.packed(); }
-    /// Distribution of the values of each field, page_field_count entries.
+    /// Distribution of the values of each displayed field. The number of fields is page_field_count.
     std::span<const Quantile> fields() const { return fields_; }
     const Quantile& force() const { return force_; }
     const Vec3& gravity() const { return gravity_; }
@@ -73,8 +73,8 @@ private:
     std::array<ValueScale, page_field_count> field_scale_;
     ValueScale force_scale_;
     Vec3 gravity_ = Vec3::Zero();  // gravity in the first frame [m/s^2]
-    // Scratch memory that is reused for each frame. For each body of the frame: its number, a flag if it is new, and
-    // its values by field and vertex.
+    // Working memory that is reused for each frame. It contains for each body of the frame: its number, a flag if the
+    // body is new, and its values by field and vertex.
     struct BodyValues {
         Index number = 0;
         bool is_new = false;

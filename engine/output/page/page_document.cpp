@@ -120,13 +120,13 @@ std::string describe(const PageData& data, const PageSummary& summary) {
 }
 
 std::string escape_html(const std::string& text) {
-    // Converting the text to JSON and back replaces bytes that are not UTF-8.
+    // The text is converted to JSON and back, because this conversion replaces bytes that are not UTF-8.
     std::string clean = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
     clean = Json::parse(clean).get<std::string>();
     return escape_markup(clean);
 }
 
-/// Returns the compressed text of three.js, which has about a fifth of the size.
+/// Returns three.js in compressed form, which has about a fifth of the size of its text.
 std::string packed_three_js() {
     Deflater deflater;
     deflater.add(three_js);

@@ -9,12 +9,13 @@
 
 namespace skerry {
 
-/// Histogram of positive values with bins that are 2 % wide. It gives a legend an upper end that includes nearly all
-/// values, without being stretched by a single extreme value.
+/// Histogram of positive values with bins that are 2 % wide. From it a legend gets an upper end that includes nearly
+/// all values, so that a single extreme value does not stretch the legend.
 class Quantile {
 public:
     void add(Real value) {
-        if (!(value > 0) || !std::isfinite(value)) return;  // a legend starts at zero, so only positive values matter
+        // values up to zero are ignored, because a legend starts at zero
+        if (!(value > 0) || !std::isfinite(value)) return;
         ++bins_[static_cast<int>(std::floor(std::log(value) / log_width))];
         ++count_;
         if (value > max_) max_ = value;

@@ -16,8 +16,8 @@ std::pair<Index, Real> nearest_node(std::span<const Vec3> nodes, const Vec3& pla
 
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach) {
-    // The tolerance makes a point on a shared face belong to the first of the two tetrahedra, regardless of rounding
-    // errors.
+    // Tolerance for rounding errors of barycentric coordinates. With it a point on a shared face always belongs to the
+    // first of the two tetrahedra.
     constexpr Real rounding = 1e-9;
     for (const auto& corner : tetrahedra) {
         const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(corner[k])]; };

@@ -15,8 +15,8 @@ struct MaterialPoint {
 };
 
 /// Returns the corners of the tetrahedron that contains the position `place`, and the barycentric coordinates of this
-/// position. If no tetrahedron contains it, returns the nearest node, or nothing if this node is farther away than
-/// `reach` [m].
+/// position. If no tetrahedron contains the position, returns the nearest node, or nothing if this node is farther away
+/// than `reach` [m].
 std::optional<MaterialPoint> follow_point(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
                                           const Vec3& place, Real reach);
 

@@ -94,7 +94,7 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    const bool known = force.seconds > 0;  // without a step since the last row the mean force is undefined
+    const bool known = force.seconds > 0;  // no step since the last row: the mean force is undefined
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = known ? 1 / force.seconds : none;
     put_vector(known ? force.impulse : Vec3::Constant(none), values);

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Force data that a force probe has summed up since its previous row.
+/// Force data summed up by a force probe since the previous row of its series.
 struct ForceSum {
     // Sums of impulse [N s], angular impulse [N m s] and friction impulse [N s].
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
@@ -20,7 +20,7 @@ struct ForceSum {
 /// A probe together with the data that it has accumulated.
 struct TrackedProbe {
     RecordedProbe probe;
-    Vec3 origin = Vec3::Zero();  // position from which displacements are measured [m]
+    Vec3 origin = Vec3::Zero();  // position from which the displacement of the probe is measured [m]
     ForceSum force{};
 };
 

@@ -20,7 +20,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real slack = 1e-9;  // tolerance for rounding errors of summed times, as a fraction of `every`
+constexpr Real slack = 1e-9;  // tolerance for rounding errors of summed times, as a fraction of the time between rows
 
 [[noreturn]] void refuse(const std::string& name, const char* field, const std::string& found,
                          const std::string& expected) {
@@ -33,7 +33,7 @@ constexpr Real slack = 1e-9;  // tolerance for rounding errors of summed times, 
         .raise();
 }
 
-/// Calls function(). A SceneError that it throws gets the name of the probe at the front of its message.
+/// Calls function(). If it throws a SceneError, adds the name of the probe in front of the message.
 template <class Function>
 auto called_for(const RecordedProbe& probe, Function function) {
     try {
@@ -140,7 +140,7 @@ struct Recorder::Impl {
     std::vector<SeriesColumn> columns;
     Real every = 0, next = 0;  // [s]
     bool begun = false;
-    Real last_time = 0;        // time of the last call of sample() [s]
+    Real last_time = 0;        // simulated time at the last call of sample() [s]
     std::vector<Real> values;  // row by row
     std::filesystem::path stream_file;
     std::ofstream stream;
@@ -157,7 +157,7 @@ struct Recorder::Impl {
         if (stream) return;
         const std::string reason = std::generic_category().message(errno);
         stream.close();
-        // Truncating the file removes the incomplete row.
+        // The file is truncated to remove the incomplete row.
         std::error_code ignored;
         std::filesystem::resize_file(stream_file, stream_size - text.size(), ignored);
         Complaint{.file = stream_file.string(),
@@ -196,7 +196,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    // If no step was made since the last call of sample(), the forces have already been added.
+    // Without a step since the last call of sample(), the forces are already included in the sums.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
@@ -209,7 +209,7 @@ void Recorder::sample(const World& world) {
         r.values.push_back(time);
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { put_row(world, probe, r.values); });
     } catch (...) {
-        r.values.resize(before);  // removes the values of the incomplete row
+        r.values.resize(before);  // removes the values of a row that could not be completed
         throw;
     }
     if (r.stream.is_open()) r.put(csv_row(r.row(r.rows() - 1)));
@@ -236,7 +236,7 @@ void Recorder::stream_csv(const std::filesystem::path& file, std::optional<Real>
     r.stream_file = file;
     errno = 0;
     r.stream = std::ofstream(file, std::ios::binary | std::ios::app);
-    std::error_code ignored;  // file_size fails for a pipe, which has no size
+    std::error_code ignored;  // the size of a pipe is unknown, so file_size fails
     r.stream_size = std::filesystem::file_size(file, ignored);
     if (!r.stream) r.put("");
 }

@@ -49,12 +49,12 @@ private:
     void write_index_if_possible() {
         try {
             writer_->close();
-        } catch (const SceneError&) {  // the caller reports the error of the frame instead
+        } catch (const SceneError&) {  // the caller reports the error of the frame, so this error is ignored
         }
     }
 
     std::filesystem::path folder_;
-    std::string name_;  // of the scene
+    std::string name_;  // name of the scene
     std::vector<std::string> materials_;
     std::unique_ptr<VtkWriter> writer_;
 };

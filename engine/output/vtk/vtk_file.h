@@ -36,12 +36,12 @@ struct VtkTexts {
     std::span<const std::string> texts;
 };
 
-/// Builds a file in the appended-data form of the format (VTK file formats, "XML file formats"): XML tags, then for
-/// each array its number of bytes (64 bits) and its raw little-endian bytes. Raw bytes take a quarter less space than
-/// base64, and all of VTK's own readers accept them.
+/// Builds a VTK XML file with appended data (VTK file formats, "XML file formats"): XML tags, then for each array its
+/// number of bytes (64 bits) and its raw little-endian bytes. Raw bytes take a quarter less space than base64, and all
+/// of VTK's own readers accept them.
 class VtkFile {
 public:
-    /// `kind` is UnstructuredGrid or PolyData. The time is stored in the field data. ParaView reads it there if the
+    /// `kind` is UnstructuredGrid or PolyData. The time is stored in the field data, where ParaView finds it if the
     /// file is opened without the index of the series.
     VtkFile(std::string_view kind, Real time, std::initializer_list<VtkTexts> texts = {});
 

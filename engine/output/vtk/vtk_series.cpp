@@ -48,7 +48,8 @@ void vectors(VtkFile& file, std::string_view name, auto&& rows, auto&& value) {
     });
 }
 
-/// Adds the array "offsets" of `count` cells with `nodes` nodes each: for each cell the index after its last node.
+/// Adds the array "offsets" for `count` cells with `nodes` nodes each. For each cell it contains the index after the
+/// cell's last node.
 void offsets(VtkFile& file, std::size_t count, Index nodes) {
     file.array<std::int32_t>("offsets", 1, count, [&](auto put) {
         for (std::size_t cell = 1; cell <= count; ++cell) put(static_cast<Index>(cell) * nodes);
@@ -98,7 +99,8 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
             is_series_file(entry.path().filename().string(), name_))
             earlier_.push_back(entry.path());
     for (const std::filesystem::path& file : earlier_) require_replaceable(file);
-    // The index is removed first. If removing another file then fails, no index is left that lists missing files.
+    // The index file is removed first. If the removal of another file then fails, no index is left that names missing
+    // files.
     std::stable_partition(earlier_.begin(), earlier_.end(),
                           [](const auto& file) { return file.extension() == ".pvd"; });
 }
@@ -149,7 +151,7 @@ void VtkSeries::read_origins(const Frame& now) {
     text << in.rdbuf();
     const std::string file = text.str(), start = "<AppendedData encoding=\"raw\">_";
     const std::size_t found = file.find(start), first = found + start.size() + sizeof(std::uint64_t);
-    std::uint64_t bytes = 0;  // size of the first array, which holds the positions
+    std::uint64_t bytes = 0;  // size of the first array of the file, which contains the positions [bytes]
     if (found == std::string::npos || first + points * sizeof(Vec3) > file.size()) return;
     std::memcpy(&bytes, file.data() + found + start.size(), sizeof bytes);
     if (bytes != points * sizeof(Vec3)) return;
@@ -168,7 +170,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
     const auto list = [&](int part, const std::string& file) {
         std::error_code ignored;
         const bool there = std::filesystem::exists(folder_ / file, ignored);
-        std::erase(earlier_, folder_ / file);  // files of the continued run are not removed
+        std::erase(earlier_, folder_ / file);  // files of the run that is continued must not be removed
         if (there) entries_.push_back({static_cast<Real>(frame_count_) * frame_step, part, file});
         return there;
     };
@@ -181,7 +183,7 @@ void VtkSeries::go_on(const Frame& now, std::size_t frames, Real frame_step) {
         else if (!colliders_file_.empty())
             list(2, colliders_file_);
     }
-    // Later frames refer to the last file of colliders until a collider leaves its present pose.
+    // Later frames refer to the last file of colliders, until a collider moves away from its present pose.
     if (!colliders_file_.empty()) colliders_changed(now);
 }
 
@@ -354,7 +356,7 @@ void VtkSeries::measure_patch(const Frame& frame) {
         }
     if ((lower.array() > upper.array()).any()) return;
     patch_center_ = (lower + upper) / 2;
-    // The minimum size is for bodies whose bounding box is a single point.
+    // The minimum size is needed if the bounding box of all bodies is a single point.
     patch_half_size_ = std::max((upper - lower).norm(), 1e-6);
 }
 

@@ -34,7 +34,7 @@ public:
 private:
     struct Entry {
         Real time;         // [s]
-        int part;          // index of "bodies", "contacts" or "colliders": 0, 1 or 2
+        int part;          // kind of the file: 0 for "bodies", 1 for "contacts", 2 for "colliders"
         std::string file;  // file name without folder; the index is in the same folder
     };
 
@@ -60,11 +60,12 @@ private:
     std::vector<std::string> material_names_;
     // Node positions of each body in its first frame, from which displacements are measured [m].
     std::map<BodyHandle, std::vector<Vec3>> origin_;
-    // Colliders and poses in the last file of colliders.
+    // Colliders in the last file of colliders, and their poses in this file.
     std::vector<std::pair<ColliderHandle, MotionKey>> colliders_prev_;
     std::string colliders_file_;        // name of the last file of colliders
     Vec3 patch_center_ = Vec3::Zero();  // centre of the displayed square of planes [m]
-    Real patch_half_size_ = 0;          // half edge of the displayed square of planes; 0 until chosen [m]
+    // half the edge length of the displayed square of planes; 0 until the square is chosen [m]
+    Real patch_half_size_ = 0;
     std::vector<Entry> entries_;
 };
 

@@ -17,7 +17,8 @@ namespace nglib {
 
 namespace {
 
-constexpr int output = 3;  // file descriptor; standard output is used for Netgen's own messages
+// output goes to this file descriptor, because Netgen prints its own messages to standard output
+constexpr int output = 3;
 
 bool read_surface(nglib::Ng_Mesh* mesh, nglib::Ng_Meshing_Parameters& settings) {
     long nodes = 0, triangles = 0;
@@ -67,6 +68,7 @@ int main() {
     settings.optsteps_3d = 5;
     if (!read_surface(mesh, settings)) return 2;
     if (nglib::Ng_GenerateVolumeMesh(mesh, &settings) != nglib::NG_OK) return 1;
-    // std::_Exit skips the exit handlers of the libraries, over which this program has no control.
+    // std::_Exit skips the exit handlers of Netgen and the libraries that it loads, whose behaviour this program cannot
+    // control.
     std::_Exit(write_mesh(mesh) ? 0 : 2);
 }

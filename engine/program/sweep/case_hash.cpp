@@ -37,12 +37,13 @@ std::string CaseHasher::hash(std::span<const std::string> assignments) {
 std::uint64_t CaseHasher::hash_of_file(const std::filesystem::path& file) {
     const auto known = files_.find(file);
     if (known != files_.end()) return known->second;
-    // Preliminary value, which is used if the file includes itself.
+    // Preliminary hash of the file, which is used if the file includes itself.
     files_[file] = 0;
     Hash hash;
     std::ifstream stream(file, std::ios::binary);
     add_text({std::istreambuf_iterator<char>(stream), {}}, hash);
-    // The .node and the .ele file of a TetGen mesh share their name, but neither file names the other. Both are hashed.
+    // The .node and the .ele file of a TetGen mesh belong together and share their name. A scene names only one of
+    // them, so the hash covers both.
     for (const auto& [one, other] : {std::pair{".node", ".ele"}, std::pair{".ele", ".node"}})
         if (file.extension() == one) {
             std::ifstream beside(std::filesystem::path(file).replace_extension(other), std::ios::binary);

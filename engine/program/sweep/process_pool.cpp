@@ -37,7 +37,7 @@ public:
         const int number = sigtimedwait(&held_, nullptr, &patience);
         return number > 0 ? number : 0;
     }
-    /// Restores the signal mask from before the pool. Child processes call this.
+    /// Restores the signal mask that was set before the pool was created. Child processes call this function.
     void let_go() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
 
 private:
@@ -83,7 +83,8 @@ private:
             if (process == 0) in_child(parent);
             if (process < 0 && running_.empty()) throw std::system_error(errno, std::generic_category(), "no process");
             if (process < 0) {
-                at_once_ = static_cast<int>(running_.size());  // the system allows no more processes than those running
+                // the system allows no more processes than are running now
+                at_once_ = static_cast<int>(running_.size());
                 return;
             }
             running_.push_back({process, next_++});
@@ -94,7 +95,7 @@ private:
         for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
         signals_.let_go();
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (getppid() != parent) _exit(1);  // the parent ended before the call of prctl
+        if (getppid() != parent) _exit(1);  // the parent process ended before the call of prctl
         const int code = calls_.run(next_);
         std::cout.flush();
         std::fflush(nullptr);

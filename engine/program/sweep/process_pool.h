@@ -10,7 +10,7 @@
 namespace skerry {
 
 struct PoolEnd {
-    // Failed jobs, each with a description of how its process ended.
+    // Failed jobs. The text describes how the process of the job ended.
     std::vector<std::pair<int, std::string>> lost;
     std::vector<int> stopped;  // jobs that were running when a signal ended the pool
     int done = 0;              // number of jobs that returned 0

@@ -22,7 +22,7 @@ public:
 
     bool has(const char* name) const { return text(name) != nullptr; }
 
-    /// Returns the value of the variable as a number, or nothing if the variable is not set.
+    /// Returns the value of the environment variable as a number, or nothing if the variable is not set.
     std::optional<int> number(const char* name) const {
         const char* const found = text(name);
         if (found == nullptr) return {};
@@ -35,8 +35,8 @@ public:
     }
 
 private:
-    /// Returns the value of a variable, or null. An empty variable counts as not set, because scripts unset variables
-    /// this way.
+    /// Returns the value of an environment variable, or null. An empty variable counts as not set, because scripts
+    /// unset variables this way.
     const char* text(const char* name) const {
         const char* const value = environment_(name);
         return value != nullptr && *value != '\0' ? value : nullptr;

@@ -7,10 +7,11 @@
 
 namespace skerry {
 
-/// The cases that one process runs: those with case number mod `of` = `rank`.
+/// The cases that one process runs: all cases whose number modulo `of` is `rank`.
 struct Share {
     int rank = 0, of = 1;
-    // Names of the options or environment variables that define the share. If empty, the process runs all cases.
+    // Names of the options or environment variables that define the share. If the text is empty, the process runs all
+    // cases.
     std::string said_by;
     // Number of cores for this process according to its launcher. Empty if the system decides.
     std::optional<int> cores;

@@ -47,7 +47,7 @@ std::vector<int> cases_of_share(const SweepPlan& plan, const Share& share) {
 std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine, bool redo) {
     std::vector<int> left;
     int others = 0;
-    std::string first;  // description of the first file of another case
+    std::string first;  // description of the first file that holds the result of another case
     for (const int index : mine) {
         const CaseFile file = plan.read(index);
         if (file.state == CaseFileState::other && others++ == 0)
@@ -137,7 +137,8 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     const auto index_of = [&](int job) { return left[static_cast<std::size_t>(job)]; };
     const auto one = [&](int job) { return run_case(plan.job(index_of(job), options.probes)); };
     const auto goes_on = [&](int, int code) {
-        // If the disk is full, later cases cannot be written either.
+        // After an output error (such as a full disk) no more cases start, because their results could not be written
+        // either.
         run.output_failed |= code == exit_output;
         return !run.output_failed;
     };
@@ -241,7 +242,7 @@ int sweep(const SweepOptions& options) {
     }
     try {
         conclude(plan, mine, options);
-    } catch (const SceneError& error) {  // the results exist, only the table failed
+    } catch (const SceneError& error) {  // the results exist; only the table could not be written
         std::cerr << "skerry: " << error.what() << std::endl;
         return exit_output;
     }

@@ -15,13 +15,13 @@ namespace skerry {
 /// inside out may remain so.
 void require_upright(const Model& model, std::size_t body, std::span<const Vec3> position, const std::string& object,
                      const char* field);
-/// Moves the nodes of a body and evaluates its stable step again. The next step searches its contacts and overlaps
-/// again.
+/// Moves the nodes of a body and evaluates the stable step of the body again. In the next step the contacts and
+/// overlaps of the body are searched again.
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position);
 
 // control_collisions.cpp
 
-/// Enables all disabled pairs of a body or collider. Must be called before its slot is used again.
+/// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 

@@ -37,7 +37,7 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
     return edges.determinant();
 }
 
-/// Makes the attachments of a body hold their nodes at the present positions.
+/// Changes the attachments of a body so that they hold their nodes at the present positions.
 void hold_here(Model& model, std::size_t body, Real now) {
     AttachmentTable& table = model.attachments;
     for (std::size_t a = 0; a < table.slot.size(); ++a) {
@@ -55,7 +55,8 @@ void hold_here(Model& model, std::size_t body, Real now) {
 void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
     const RigidFit fit = fit_rigid_body(model, body, position);
-    constexpr Real rounding = 1e-6;  // fraction of the mean edge length
+    // largest distance of a node from the rigid shape, as a fraction of the mean edge length
+    constexpr Real rounding = 1e-6;
     if (fit.misfit > rounding * model.bodies.mean_edge[body]) {
         char misfit[32];
         std::snprintf(misfit, sizeof misfit, "%g", fit.misfit);
@@ -83,11 +84,13 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
-    world.edits.places.add_body(model, body);  // bodies at the old position may lose their support
+    // bodies that rest on the body at its old position may lose their support
+    world.edits.places.add_body(model, body);
     const std::span<Vec3> target = rows_of(model.nodes.position, model.bodies.nodes[body]);
     const std::span<Vec3> origin = rows_of(model.nodes.displacement_origin, model.bodies.nodes[body]);
     for (std::size_t n = 0; n < position.size(); ++n) {
-        origin[n] += position[n] - target[n];  // the distance between node and displacement origin stays the same
+        // moves the displacement origin along, so that the measured displacement does not change
+        origin[n] += position[n] - target[n];
         target[n] = position[n];
     }
     if (model.bodies.blocks[body].size() > 0)
@@ -99,7 +102,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     world.cache.forget_body(model, body);
     world.record.balance.close();
     model.wake(body);
-    world.edits.places.add_body(model, body);  // the body may touch other bodies at the new position
+    world.edits.places.add_body(model, body);  // at its new position the body may touch other bodies
 }
 
 void World::set_positions(BodyHandle body, std::span<const Vec3> position) {
@@ -136,7 +139,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     const std::span<Vec3> target = rows_of(model.nodes.velocity, nodes);
     bool changed = false;
     for (std::size_t n = 0; n < velocity.size(); ++n) {
-        // Held nodes keep the velocities of their attachments.
+        // Held nodes keep the velocities that their attachments prescribe.
         const bool free = model.nodes.inverse_mass[static_cast<std::size_t>(nodes.begin) + n] > 0;
         if (!free || target[n] == velocity[n]) continue;
         target[n] = velocity[n];
@@ -144,7 +147,7 @@ void World::set_velocities(BodyHandle body, std::span<const Vec3> velocity) {
     }
     if (!changed) return;
     if (model.has_frame(row)) follow_node_velocities(model, row);
-    // pairs must be searched again, because the last contact search assumed the old speeds
+    // all pairs of the body must be searched again, because the last contact search assumed the old speeds
     state_->cache.forget_body(model, row);
     state_->record.balance.close();
     model.wake(row);

@@ -9,7 +9,7 @@ namespace skerry {
 
 namespace {
 
-/// Table rows of the two objects of a pair.
+/// Table rows of the two objects whose collision is switched on or off.
 struct RowPair {
     PairKind kind;
     Index first, second;
@@ -34,7 +34,8 @@ void look_for_overlaps_of_collider(Model& model, Index collider) {
     if (model.colliders.body[c] != no_index) look_for_overlaps(model, model.colliders.body[c]);
 }
 
-/// Makes the next step search all pairs of a body again. Wakes the body and all bodies that it touches or may touch.
+/// In the next step all pairs of a body are searched again. Wakes the body, and all bodies that touch it or may touch
+/// it.
 void find_pairs_of(WorldState& world, Index body) {
     const auto b = static_cast<std::size_t>(body);
     world.cache.forget_body(world.model, b);

@@ -49,7 +49,7 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
 /// Centre of mass and momenta of a free body.
 struct WholeMotion {
     Vec3 center;                      // centre of mass [m]
-    Vec3 momentum, angular_momentum;  // angular_momentum is about `center` [kg m/s, kg m^2/s]
+    Vec3 momentum, angular_momentum;  // angular momentum is about `center` [kg m/s, kg m^2/s]
 };
 
 Real mass_of_nodes(const Model& model, std::size_t body) {
@@ -75,7 +75,8 @@ WholeMotion motion_of(const Model& model, std::size_t body) {
     return {center, nodes.momentum, nodes.angular_momentum};
 }
 
-/// Adds a rigid motion to the velocities of an explicit body, so that its momenta become `wanted`.
+/// Adds a rigid motion to the velocities of an explicit body. Afterwards the momentum and angular momentum of the body
+/// equal `wanted`.
 void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wanted) {
     const Vec3 center = center_of_nodes(model, body);
     const NodeMotion has = motion_of_nodes(model, body, center);
@@ -87,8 +88,8 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Appends a second row for a body with the dynamics `next`, undeformed and at rest. If the new row has no valid stable
-/// step, removes it again and throws SceneError.
+/// Appends another row for a body, with the dynamics `next`, undeformed and without velocity. If the new row has no
+/// valid stable step, removes this row again and throws SceneError.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;
@@ -129,8 +130,8 @@ void copy_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Sets the viscous strain of a body as if it had been held in its present shape for a long time, so that nothing is
-/// left to relax.
+/// Sets the viscous strain of a body as if the body had been held in its present shape for a long time, so that all
+/// viscous stress has relaxed.
 void relax_fully(Model& model, std::size_t body) {
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
@@ -160,7 +161,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     note_forces(model);
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
-        return;  // the undeformed shape may overlap other objects: checked as for a new body
+        return;  // the undeformed shape may overlap other objects, so the body is checked like a new body
     }
     model.body_records[after].settled = model.body_records[before].settled;
     copy_rows(model.nodes.position, from, to);

@@ -1,4 +1,4 @@
-// Adds, removes and drives joints between steps (docs/methods/joints.md).
+// Functions that add, remove and drive joints between steps (docs/methods/joints.md).
 #include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
@@ -95,7 +95,7 @@ BodyHandle first_of(const Model& model, std::size_t joint) {
     return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(model.joints.first[joint])]);
 }
 
-/// Velocity of a point of a body, and spin of the body; zero for the world (`body` is no_index).
+/// Velocity of a point of a body, and angular velocity of the body. Both are zero for the world (`body` is no_index).
 struct PointVelocity {
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // [m/s], [rad/s]
 };
@@ -107,7 +107,7 @@ PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
     return {table.momentum[r] / table.mass[r] + turn.cross(point - table.center[r]), turn};
 }
 
-/// True if another joint also disables contact between the two bodies of this joint.
+/// True if a second joint of the same two bodies also disables contact between them.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
         const bool same = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||

@@ -12,7 +12,8 @@ namespace skerry {
 
 namespace {
 
-/// Copy of all data of a body that a change of material overwrites. It serves to undo a change that fails.
+/// Copy of all data of a body that a change of its material overwrites. It serves to undo the change if the change
+/// fails.
 class KeptBody {
 public:
     KeptBody(Model& model, std::size_t body) : body_(body) {
@@ -130,7 +131,8 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
     std::vector<std::size_t> bodies = bodies_of(model, row);
-    // Rigid and implicit bodies come last. Every step is stable for them, so an error is thrown before they change.
+    // Rigid and implicit bodies come last, because any step is stable for them. If an explicit body has no stable step,
+    // the error is thrown before they change.
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });
     next.write(model.materials, static_cast<std::size_t>(row));
     if (!now.same_elements(next)) {
@@ -148,8 +150,8 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
         for (const std::size_t body : bodies) weigh(model, body);
         model.clusters_open |= !bodies.empty();
         settle_clusters(model, state_->scratch.stiffness_sum);
-        // Elements whose material no longer relaxes write neither viscous_strain nor viscous_strain_next. The step
-        // swaps these two columns, so they must be equal.
+        // If the new material does not relax, a step writes neither viscous_strain nor viscous_strain_next, but swaps
+        // these two columns. Their values must therefore be equal.
         model.elements.viscous_strain_next = model.elements.viscous_strain;
         state_->clock.kick_before = 0;
     }
@@ -176,7 +178,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     const SurfaceProperties next = surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
-    state_->edits.places.add_collider(model, row, time());  // wakes bodies that rest on the collider
+    state_->edits.places.add_collider(model, row, time());  // wakes bodies that lie on the collider
 }
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Changes of the motion of colliders and attachments. Each has a script: constant velocities since a start time, or
-// keyframes.
+// Changes of the motion of colliders and attachments. Each collider and attachment has a script: constant velocities
+// since a start time, or keyframes.
 #include <vector>
 
 #include "engine/world/control/control.h"
@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-/// The script of one row of ColliderTable or AttachmentTable.
+/// The script of one collider or attachment, which is a row of ColliderTable or AttachmentTable.
 template <class Table>
 struct Scripted {
     Table& table;
@@ -36,7 +36,7 @@ struct Scripted {
             }
         script().key_begin = script().key_end = static_cast<Index>(table.keyframe.size());
     }
-    /// Replaces the script by constant velocities that start at `pose` at the time `now`.
+    /// Replaces the script of a collider or attachment by constant velocities that start at `pose` at the time `now`.
     void start(const RigidPose& pose, const Vec3& velocity, const Vec3& angular_velocity, Real now) const {
         if (has_keys()) erase_keys();
         script().velocity = velocity;
@@ -71,7 +71,7 @@ bool is_at(const RigidPose& pose, const Pose& target) {
            (rotation_vector(pose.rotation) == target.rotation || pose.rotation == rotation_matrix(target.rotation));
 }
 
-/// Sets constant velocities from now on. Returns false if the script already has them.
+/// Sets constant velocities from now on. Returns false if the script already has these velocities.
 template <class Table>
 bool set_velocity(const Scripted<Table>& scripted, const Vec3& velocity, const Vec3& angular_velocity, Real now) {
     const MotionScript& script = scripted.script();
@@ -95,7 +95,8 @@ void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, R
         is_at({scripted.keys().back().position, rotation_matrix(scripted.keys().back().rotation)}, pose))
         return;
     const Vec3 rotation = rotation_vector(from.rotation);
-    // The rotation vector nearest to the present one is used, so that the object makes no additional full turn.
+    // A rotation has many rotation vectors, which differ by full revolutions. The vector nearest to the present one is
+    // used, so that the object makes no additional revolution.
     scripted.start_keys({now, from.position, rotation}, {end, pose.position, nearest_turn(pose.rotation, rotation)});
 }
 
@@ -107,7 +108,7 @@ RigidPose set_pose(const Scripted<Table>& scripted, const Pose& pose, Real now) 
     return there;
 }
 
-/// The attachment that moves the nodes of a mesh collider; no_index for an analytic collider.
+/// Returns the attachment that moves the nodes of a mesh collider, or no_index for an analytic collider.
 Index attachment_of(const Model& model, Index collider) {
     const Index body = model.colliders.body[static_cast<std::size_t>(collider)];
     if (body == no_index) return no_index;
@@ -125,15 +126,16 @@ std::string title_of_attachment(const Model& model, std::size_t attachment) {
     return "attachment of body '" + model.body_records[body].name + "'";
 }
 
-/// Calls `change` for the script of a collider and for the script of the attachment that moves its mesh.
+/// Calls `change` for the script of a collider. For a mesh collider, also calls `change` for the script of the
+/// attachment that moves the mesh.
 void for_each_script(Model& model, Index collider, auto&& change) {
     change(Scripted{model.colliders, static_cast<std::size_t>(collider)});
     if (const Index a = attachment_of(model, collider); a != no_index)
         change(Scripted{model.attachments, static_cast<std::size_t>(a)});
 }
 
-/// Node positions of a body after its attachment was moved from the pose `from` to `pose`. Free nodes move along if
-/// this attachment holds the frame of the body. Nodes held by other attachments stay.
+/// Node positions of a body after one of its attachments was moved from the pose `from` to `pose`. Free nodes move
+/// along if this attachment holds the frame of the body. Nodes held by other attachments do not move.
 std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, const RigidPose& from,
                                 const RigidPose& pose) {
     const AttachmentTable& table = model.attachments;
@@ -155,8 +157,8 @@ std::vector<Vec3> carried_nodes(const Model& model, std::size_t attachment, cons
     return position;
 }
 
-// In the next functions `object` is a function that returns the name of the object for error messages. It is called
-// only if a value is refused, so that control loops allocate no memory.
+// In the following functions `object` is a function that returns the name of the object for error messages. It is
+// called only if a value is refused, so that control loops allocate no memory.
 
 void require_velocities(auto&& object, const Vec3& velocity, const Vec3& angular_velocity) {
     if (velocity.allFinite() && angular_velocity.allFinite()) return;
@@ -222,7 +224,8 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     require_pose([&] { return title_of(model, row); }, pose);
     const auto c = static_cast<std::size_t>(row);
     if (is_at(Scripted{model.colliders, c}.pose(time()), pose)) return;
-    state_->edits.places.add_collider(model, c, time());  // bodies at the old position may lose their support
+    // bodies that rest on the collider at its old position may lose their support
+    state_->edits.places.add_collider(model, c, time());
     const RigidPose there = skerry::set_pose(Scripted{model.colliders, c}, pose, time());
     if (const Index a = attachment_of(model, row); a != no_index) {
         const auto of_mesh = static_cast<std::size_t>(a);
@@ -233,7 +236,7 @@ void World::set_pose(ColliderHandle collider, const Pose& pose) {
     model.colliders.motion[c] = {there.position, there.rotation, Vec3::Zero(), Vec3::Zero()};
     model.collider_records[c].settled = model.settled = false;
     state_->cache.forget_collider(model, c);
-    state_->edits.places.add_collider(model, c, time());  // bodies at the new position may now be touched
+    state_->edits.places.add_collider(model, c, time());  // at its new position the collider may touch other bodies
 }
 
 void World::set_pose(AttachmentHandle attachment, const Pose& pose) {

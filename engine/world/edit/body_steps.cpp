@@ -90,8 +90,8 @@ RoundMass round_mass(const Model& model, const NewBody& body) {
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
     add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
-    // The mesh that draws a round body lies inside the round shape. Its node masses are scaled to the mass of the
-    // shape.
+    // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
+    // are scaled to the mass of the exact shape.
     if (body.core_nodes > 0) {
         const std::span<Real> mass = rows_of(nodes.mass, range);
         const Real drawn = std::accumulate(mass.begin(), mass.end(), Real(0)), whole = round_mass(model, body).sum();
@@ -111,16 +111,16 @@ Real choose_mass_forms(Model& model, Index row, std::span<Real> stiffness_sum) {
     forget_mass_forms(model, blocks);
     const Real by_shares = step();
     kernels().find_mass_forms(model.all_elements(), blocks, position, model.nodes.mass, products_of_group, form);
-    // In large bodies the mass forms are verified for groups of elements and not for the whole body. Such mass forms
+    // In a large body, mass forms are verified for groups of elements instead of the whole body. Such mass forms
     // lengthen the stable step less.
     const Real by_forms = step();
     if (!(by_forms > by_shares)) std::ranges::fill(form, ElementForm{});
-    // Smoothed elements get no frame masses. Their mass forms already allow steps near the stability limit, and closer
-    // to this limit the energies of the highest frequencies are less accurate.
+    // Frame masses are chosen for linear elements only. The mass forms of smoothed elements already allow steps near
+    // the stability limit. Still closer to this limit, the energies of the highest frequencies are less accurate.
     const Real by_either = by_forms > by_shares ? by_forms : by_shares;
     if (model.body_records[static_cast<std::size_t>(row)].element != ElementKind::linear) return by_either;
-    // Least ratio of the stable step with frame masses to the stable step without. A smaller ratio is not worth the
-    // second evaluation that strained bodies need.
+    // Least ratio of the stable step with frame masses to the stable step without them. A smaller gain does not justify
+    // the second evaluation that strained bodies then need.
     constexpr Real least_gain = 1.1;
     const std::span<Real> bound = rows_of(model.elements.frame_bound, blocks);
     const std::span<FrameMass> in_frame = rows_of(model.elements.frame_mass, blocks);
@@ -190,7 +190,8 @@ void remember_elements(Model& model, Index row, const NewBody& body, ElementPlac
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
     if (body.kind != BodyKind::deformable || body.has_frame()) return;
-    constexpr std::size_t most_known = 64;  // Limit of the list. Each new mesh is compared with all meshes in the list.
+    // Largest number of entries, because each new mesh is compared with the meshes of all entries.
+    constexpr std::size_t most_known = 64;
     if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
     KnownElements& known = model.known_elements.emplace_back();
     known.body = row;

@@ -9,7 +9,8 @@
 
 namespace skerry {
 
-/// Places are stored as boxes and planes in world coordinates. If an object moves later, its place stays where it was.
+/// Places are stored as boxes and planes in world coordinates. A place does not move with the object for which it was
+/// added.
 class ChangedPlaces {
 public:
     /// Adds the bounding box of a body, or of the body of a mesh collider.
@@ -17,8 +18,8 @@ public:
     /// Adds the bounding box of a collider, or the plane of a plane collider. `now`: present time [s].
     void add_collider(const Model& model, std::size_t collider, Real now);
     bool empty() const { return boxes_.empty() && planes_.empty(); }
-    /// Wakes all sleeping bodies whose distance from a place is less than their mean edge length plus the contact
-    /// distances. Costs one pass over the surfaces of sleeping bodies. Clears the places.
+    /// Wakes all sleeping bodies near a place: bodies closer to the place than their mean edge length plus the contact
+    /// distances. This takes one pass over the surfaces of sleeping bodies. Afterwards the list of places is empty.
     void wake_near(Model& model);
 
 private:

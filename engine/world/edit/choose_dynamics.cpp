@@ -14,21 +14,22 @@ namespace {
 // profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
-// Fraction of the cost of an implicit step that is spent on contacts. If an implicit body takes long steps, this part
-// is still needed in every short step of the other bodies. For a cube on a face the fraction is a half or more.
+// Fraction of the cost of an implicit step that is spent on contacts. If an implicit body takes long steps, its
+// contacts still take part in every short step of the other bodies. For a cube on a face the fraction is a half or
+// more.
 constexpr Real contact_share = 0.5;
-// Cost of factorising the matrix of an implicit body and of computing its columns for contacts [ns].
+// Cost of factorising the matrix of an implicit body and of computing the matrix columns that contacts need [ns].
 constexpr Real factor_time = 150e6, factor_power = 2.7;
 // Assumed number of factorisations in a simulated second. A change of the step length requires a new factorisation.
 constexpr Real factors_a_second = 1;
-/// Least ratio of explicit to implicit cost for which a body becomes implicit. It exceeds 1, since implicit steps damp
-/// vibrations and the estimates are rough.
+/// Least ratio of explicit to implicit cost for which a body becomes implicit. It is well above 1, because implicit
+/// steps damp vibrations and the cost estimates are rough.
 constexpr Real least_saving = 2;
-constexpr Real most_strain = 0.02;  // above this strain linear elasticity is not valid
-constexpr Real fall = 10;           // assumed height of a fall, in multiples of the size of the body
+constexpr Real most_strain = 0.02;  // largest strain for which linear elasticity is valid
+constexpr Real fall = 10;           // assumed height of a fall, divided by the size of the body
 
-/// Largest expected strain in the materials of a body: under its own weight, or in an impact. The impact strain is v/c,
-/// as in a bar that is stopped, with wave speed c. The impact speed v combines the initial speed and a fall.
+/// Largest strain expected in the materials of a body, under its own weight or in an impact. The impact strain is v/c,
+/// as in a bar that is stopped. Here c is the wave speed, and the impact speed v combines the initial speed and a fall.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
@@ -50,7 +51,8 @@ struct ExplicitBody {
     Real elements;  // number of elements
 };
 
-/// Stable step and number of elements of a body, found in a model that contains only this body.
+/// Stable step and number of elements that a body would have if it were explicit. They are computed in a model that
+/// contains only this body.
 ExplicitBody as_explicit(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;

@@ -1,4 +1,4 @@
-// Adds bodies between steps. Each body has a range of rows in every table.
+// Functions that add bodies between steps. Each body has a range of rows in every table.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -19,10 +19,11 @@ namespace skerry {
 
 namespace {
 
-// Initial value of uninverted_until [m]: tetrahedra that find_inversions has not checked yet.
+// Initial value of uninverted_until, for tetrahedra that find_inversions has not checked yet [m].
 constexpr Real not_looked_at = -infinity;
 
-constexpr Real default_contact_distance = 0.02;  // fraction of the mean surface edge, small against the mesh resolution
+// fraction of the mean surface edge; it is small against the resolution of the mesh
+constexpr Real default_contact_distance = 0.02;
 
 Range appended(std::size_t before, std::size_t after) {
     return {static_cast<Index>(before), static_cast<Index>(after)};
@@ -51,8 +52,8 @@ Range append_nodes(Model& model, const NewBody& body, Index row) {
     return appended(begin, end);
 }
 
-/// The element kind that all material zones share; linear if there are no zones. If `smoothed` became edge_smoothed in
-/// some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
+/// The element kind that all material zones of a body have in common; linear if there are no zones. If `smoothed`
+/// became edge_smoothed in some zones and edge_node_smoothed in others, the result is edge_node_smoothed.
 ElementKind kind_of(std::span<const MaterialZone> zones) {
     ElementKind kind = zones.empty() ? ElementKind::linear : zones.front().kind;
     for (const MaterialZone& zone : zones)
@@ -63,7 +64,7 @@ ElementKind kind_of(std::span<const MaterialZone> zones) {
 /// Sets the node masses of a body, and its initial rigid motion about the centre of mass.
 void set_masses_and_motion(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    if (body.kind == BodyKind::kinematic) return;  // the nodes of mesh colliders keep inverse mass 0
+    if (body.kind == BodyKind::kinematic) return;  // the nodes of mesh colliders keep their inverse mass of 0
     const auto first = static_cast<std::size_t>(range.begin), count = static_cast<std::size_t>(range.size());
     set_masses(model, body, range);
     Vec3 center = Vec3::Zero();
@@ -94,7 +95,7 @@ Real mean_edge_length(const Model& model, Range edges) {
     return edges.size() > 0 ? sum / edges.size() : 0;
 }
 
-/// Mean edge length of triangles that serve only to draw a body [m].
+/// Mean edge length of the triangles that only draw a body [m].
 Real mean_edge_length(std::span<const std::array<Index, 3>> triangles, std::span<const Vec3> nodes) {
     Real sum = 0;
     for (const auto& triangle : triangles)
@@ -113,7 +114,7 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// The table rows of a new body, and the places of its elements in the element blocks.
+/// The table rows of a new body, and the lane of each of its elements in the element blocks.
 struct BodyRows {
     Index row;
     Range nodes, tetrahedra;
@@ -121,15 +122,16 @@ struct BodyRows {
     AppendedElements elements;
 };
 
-/// Appends the elements of `list` to the tables, at rows.places.
+/// Appends the elements of `list` to the tables, in the lanes given by rows.places.
 void append_elements_of(Model& model, const ElementList& list, BodyRows& rows) {
     rows.elements = append_elements(list, rows.places, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
     const Range blocks = rows.elements.blocks;
     start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
 }
 
-/// Surface triangles of a body in local node numbers: the triangles given by the user, or the boundary of the
-/// tetrahedra. The boundary is read from the surface tables, except for a round body, which has no such rows.
+/// Surface triangles of a body in local node numbers. These are the triangles given by the user, or the boundary of the
+/// tetrahedra. The boundary is read from the surface tables. A round body has no rows in these tables, so its boundary
+/// is computed.
 std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, const NewBody& body) {
     std::vector<std::array<Index, 3>> triangles(body.triangles.begin(), body.triangles.end());
     if (body.core_nodes > 0) {
@@ -174,8 +176,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // Rigid and implicit bodies have tetrahedra, but no rows in the element tables.
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
-    // Elements are first built without the rotation of the body, and rotated at the end. Bodies with the same mesh can
-    // therefore copy all data that are computed before the rotation.
+    // Elements are first built for the unrotated body. Data computed in this state can be copied from a body with the
+    // same mesh. The elements are rotated at the end.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = known_elements(model, body);
@@ -227,7 +229,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
         remember_elements(model, row, body, std::move(rows.places));
     }
     turn_elements(body.rotation, blocks, model.elements, model.element_nodes);
-    // The stable step is evaluated after the rotation. A later evaluation of the unmoved body then gives the same bits.
+    // The stable step is evaluated after the rotation of the elements. A later evaluation of the unmoved body then
+    // gives a bitwise equal step.
     bodies.stable_step[b] =
         kernels().stable_step(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum).step;
     return row;

@@ -1,4 +1,4 @@
-// Adds and removes colliders and attachments between steps.
+// Functions that add and remove colliders and attachments between steps.
 #include <cmath>
 #include <numbers>
 
@@ -19,8 +19,8 @@ MotionScript append_script(const Motion& motion, Column<Keyframe>& keyframe) {
     return script;
 }
 
-/// Pose at time 0 of an object that is at `pose` at the time `now` and moves at constant velocities. Scripts start at
-/// time 0.
+/// Pose at time 0 of an object that has the pose `pose` at the time `now` and moves at constant velocities. A script
+/// needs this pose, because scripts start at time 0.
 RigidMotion initial_of(const RigidPose& pose, const Motion& motion, Real now) {
     return {pose.position - now * motion.velocity, rotation_matrix(-now * motion.angular_velocity) * pose.rotation,
             Vec3::Zero(), Vec3::Zero()};
@@ -42,8 +42,8 @@ struct GeometryOf {
     ColliderGeometry operator()(const SurfaceMesh&) const { return {ColliderShape::mesh, Vec3::Zero()}; }
 };
 
-/// The smallest rotation that turns the z axis to `direction`. For the opposite direction of z it is half a turn about
-/// x.
+/// The smallest rotation that rotates the z axis to `direction`. If `direction` is opposite to z, it is a rotation by
+/// 180 degrees about x.
 Mat3 turn_from_z(const Vec3& direction) {
     const Vec3 axis(-direction.y(), direction.x(), 0);
     const Real sine = axis.norm();
@@ -51,8 +51,8 @@ Mat3 turn_from_z(const Vec3& direction) {
     return rotation_matrix(axis * (std::atan2(sine, direction.z()) / sine));
 }
 
-/// Pose of the frame of a shape relative to the frame of its collider. In its own frame a plane is z = 0; for all other
-/// shapes both frames are equal.
+/// Pose of the frame of a shape relative to the frame of its collider. In its own frame a plane is z = 0. For all other
+/// shapes the two frames are equal.
 RigidPose shape_frame(const Shape& shape) {
     if (const auto* plane = std::get_if<Plane>(&shape)) return {plane->point, turn_from_z(plane->normal)};
     return {Vec3::Zero(), Mat3::Identity()};
@@ -62,11 +62,12 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Appends the motion of the frame of a shape, given the motion of its collider. Rotation vectors of the shape frame
-/// are known only up to full turns, so keyframes are added between keyframes that are far apart.
+/// Appends a script for the frame of a shape, given the motion of its collider. The rotation vectors of the shape frame
+/// are only known up to full revolutions. Keyframes with a large rotation between them are therefore divided by more
+/// keyframes.
 MotionScript append_script_of_shape(const Motion& motion, const RigidPose& frame, Column<Keyframe>& keyframe) {
     if (frame.position.isZero(0) && frame.rotation == Mat3::Identity()) return append_script(motion, keyframe);
-    constexpr Real most = 2;  // largest rotation between keyframes [rad]
+    constexpr Real most = 2;  // largest rotation between two keyframes [rad]
     Column<Keyframe> keys;
     const MotionScript script = append_script(motion, keys);
     Motion of_shape = motion;

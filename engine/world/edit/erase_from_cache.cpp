@@ -55,7 +55,7 @@ private:
     PairTable& pairs_;
 };
 
-/// Returns the rows for which is_gone(row) is true. Calls renumber(row) for all other rows.
+/// Returns the rows for which is_gone(row) is true, and calls renumber(row) for all other rows.
 std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber) {
     std::vector<Range> gone;
     for (std::size_t row = 0; row < count; ++row) {
@@ -68,8 +68,8 @@ std::vector<Range> take_rows(std::size_t count, auto&& is_gone, auto&& renumber)
     return gone;
 }
 
-/// Moves the candidate lists of remaining pairs to their new rows. The lists of removed pairs are kept, so that later
-/// pairs can use their memory.
+/// Moves the candidate lists of the remaining pairs to the pairs' new rows. The lists of removed pairs move to the end,
+/// so that later pairs can reuse their memory.
 void move_lists(std::span<const Range> gone, std::size_t count, PairTable& pairs) {
     if (gone.empty()) return;
     std::size_t to = static_cast<std::size_t>(gone.front().begin);

@@ -18,7 +18,7 @@ void lower(Range& range, Index by) {
     range.end -= by;
 }
 
-/// Renumbers all rows that a body refers to. They all belong to this body.
+/// Renumbers the references between rows of one body, in all tables.
 class RowsOfBody {
 public:
     RowsOfBody(Model& model, std::size_t body, const OfBodyTables<Index>& down)
@@ -121,15 +121,15 @@ private:
     OfBodyTables<Index> down_;
 };
 
-/// Removes the records of removed rows. There is one record for each row.
+/// Removes the records of removed rows from a list with one record per row.
 template <class Record>
 void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
     std::size_t row = 0;
     std::erase_if(records, [&](const Record&) { return row_now[row++] == no_index; });
 }
 
-/// Removes scripts together with their keyframes. Remaining scripts without keyframes may have an empty range that
-/// starts at any index.
+/// Removes scripts together with their keyframes. A remaining script without keyframes has an empty range, whose start
+/// may be any index.
 void erase_scripts(std::span<const Range> gone, auto& table) {
     std::vector<Range> keys, merged;
     for (const Range& rows : gone)
@@ -166,8 +166,8 @@ void erase_colliders(const RowMoves& moves, Model& model) {
         if (collider != no_index) collider = moves.collider_now[static_cast<std::size_t>(collider)];
 }
 
-/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body: if a body with elements is
-/// removed, all clusters are cleared before and found again later.
+/// Renumbers the nodes and bodies of clusters. No cluster belongs to a removed body: before a body with elements is
+/// removed, all clusters are cleared. They are found again later.
 void renumber_clusters(const RowMoves& moves, const Model& model, NodeClusters& clusters) {
     if (clusters.empty()) return;
     for (Index& node : clusters.nodes.item)

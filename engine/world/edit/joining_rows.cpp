@@ -7,8 +7,8 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(row, body) for each body that a row of the table joins. `body` is a reference to the row of BodyTable in
-/// the column. For a row that joins a body to the world (no_index), only the body is visited.
+/// Calls visit(row, body) for each body that a row of a joining table names. `body` is a reference to the entry of the
+/// column, which is a row of BodyTable. The entry no_index stands for the world and is not visited.
 void for_each_joined_body(AnyTable table, auto&& visit) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;

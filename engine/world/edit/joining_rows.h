@@ -1,4 +1,4 @@
-// Removal and renumbering of table rows that join bodies (Model::for_each_joining).
+// Removal and renumbering of table rows that join bodies, such as joints (Model::for_each_joining).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-/// Removes the marked rows of a table and their handles. `gone`: by row.
+/// Removes the marked rows of a table and their handles. `gone`: true for each row to be removed.
 template <class Table, class Handle>
 void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<Handle>& map) {
     std::vector<Index> row_now;
@@ -28,13 +28,15 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     map.rows_moved(row_now);
 }
 
-/// Removes all rows that join a body, before this body is removed. Wakes all bodies of these rows.
+/// Removes all rows that join the given body to others, for example its joints. Must be called before the body is
+/// removed. Wakes all bodies of the removed rows.
 void erase_rows_joining(std::size_t body, Model& model);
 
-/// Whether a row joins a body to another one or to the world.
+/// True if a row, such as a joint, joins the body to another body or to the world.
 bool has_rows_joining(std::size_t body, Model& model);
 
-/// Renumbers the joined bodies after other bodies were removed. `body_now`: new row for each old row of BodyTable.
+/// Renumbers the bodies in joining rows after other bodies were removed. `body_now`: new row of each body, by its old
+/// row in BodyTable.
 void renumber_joining_rows(std::span<const Index> body_now, Model& model);
 
 }  // namespace skerry

@@ -33,7 +33,7 @@ struct MaterialRow {
         table.poisson_ratio[row] = poisson_ratio;
         table.damping[row] = damping;
     }
-    /// True if both materials give elements the same forces, masses and losses.
+    /// True if elements of both materials have the same forces, masses and losses.
     bool same_elements(const MaterialRow& other) const {
         const MaterialConstants &a = constants, &b = other.constants;
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&

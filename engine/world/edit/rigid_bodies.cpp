@@ -17,7 +17,7 @@ struct MassProperties {
     Real mass = 0;               // [kg]
     Vec3 center = Vec3::Zero();  // [m]
     Vec3 moments;                // principal moments of inertia [kg m^2]
-    Mat3 axes;                   // rotation from the principal frame to the mesh frame
+    Mat3 axes;                   // rotation from the frame of the principal axes to the mesh frame
 };
 
 MassProperties mass_properties(const Model& model, const NewBody& body) {
@@ -47,8 +47,8 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
         found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
     }
     found.center /= found.mass;
-    // Integral of density times x x^T, with x relative to the centre of mass. A tetrahedron of mass m and corners x_k
-    // adds m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T) [kg m^2].
+    // Integral of density times x x^T over the body, with the position x relative to the centre of mass [kg m^2]. A
+    // tetrahedron of mass m with corners x_k adds m/20 (sum of x_k x_k^T + (sum of x_k)(sum of x_k)^T).
     Mat3 second = Mat3::Zero();
     for (std::size_t t = 0; t < mass.size(); ++t) {
         Mat3 squares = Mat3::Zero();
@@ -92,8 +92,8 @@ Mat3 frame_of_mesh(const RigidBodyTable& table, std::size_t r) {
     return table.rotation[r] * table.axes[r].transpose();
 }
 
-/// Displacements and velocities of the nodes relative to the rigid motion of the body, in the mesh frame; empty for a
-/// rigid body.
+/// Displacements and velocities of the nodes of an implicit body relative to the body's rigid motion, in the mesh
+/// frame. Both are empty for a rigid body.
 struct Deformation {
     std::span<Vec3> displacement, velocity;
 
@@ -103,8 +103,8 @@ struct Deformation {
     bool any() const { return !displacement.empty(); }
 };
 
-/// Must be called after the displacements of a body were overwritten. Finds whether its strain is large. The frame of a
-/// free body with large strain follows the deformed shape.
+/// Must be called after the node displacements of a body were overwritten. Finds out whether the body has large strain.
+/// If such a body is free, its frame is fitted to the deformed shape.
 void note_strain(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -171,13 +171,14 @@ void follow_weight(Model& model, std::size_t body) {
 
 namespace {
 
-/// The rigid motion that brings the rest positions of nodes nearest to given positions (weighted least squares).
+/// The rigid motion that best maps the rest positions of nodes to given positions, in the sense of weighted least
+/// squares.
 struct NearestFrame {
     Vec3 center, rest_center;  // [m]
     Mat3 rotation;
 };
 
-/// Finds the best rigid motion. `weight(n)`: weight of the node with local number n.
+/// Fits a rigid motion to the node positions of a body. `weight(n)`: weight of the node with local number n.
 NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const Vec3> position, auto&& weight) {
     NearestFrame frame{Vec3::Zero(), Vec3::Zero(), Mat3::Identity()};
     Real mass = 0;
@@ -198,7 +199,7 @@ NearestFrame nearest_frame(std::span<const Vec3> rest_position, std::span<const 
     return frame;
 }
 
-/// Finds the best rigid motion, weighted with the masses of the nodes.
+/// Fits a rigid motion to the node positions of a body, weighted with the masses of the nodes.
 NearestFrame nearest_frame(const Model& model, std::size_t body, std::span<const Vec3> position) {
     const std::span<const Real> mass = rows_of(model.nodes.mass, model.bodies.nodes[body]);
     return nearest_frame(rows_of(model.nodes.rest_position, model.bodies.nodes[body]), position,
@@ -215,7 +216,8 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
     Vec3 along = Vec3::Zero();
     for (const Index node : nodes)
         if ((place(node) - first).squaredNorm() > along.squaredNorm()) along = place(node) - first;
-    constexpr Real thin = 1e-6;  // fraction of the length; nodes nearer to a line count as collinear
+    // nodes count as collinear if their distance from a line is below this fraction of the line's length
+    constexpr Real thin = 1e-6;
     for (const Index node : nodes)
         if (along.cross(place(node) - first).norm() > thin * along.squaredNorm()) return true;
     return false;
@@ -223,8 +225,8 @@ bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nod
 
 namespace {
 
-/// Finds the best rigid motion of the nodes that an attachment holds. `position`: positions of these nodes, in the
-/// order of the attachment.
+/// Fits a rigid motion to the nodes that an attachment holds. `position`: positions of these nodes, in the order of the
+/// attachment.
 NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span<const Vec3> position) {
     std::vector<Vec3> rest;
     for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment]))
@@ -232,7 +234,7 @@ NearestFrame frame_of_held(const Model& model, std::size_t attachment, std::span
     return nearest_frame(rest, position, [](std::size_t) { return Real(1); });
 }
 
-/// Computes displacements and velocities of a held body, in the frame of its attachment, from its nodes.
+/// Computes the displacements and velocities of a held body, relative to the frame of its attachment, from its nodes.
 void write_held_shape(Model& model, std::size_t body) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -378,8 +380,8 @@ void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> po
 
 namespace {
 
-/// Version of follow_node_velocities for large strain. The angular momentum is that of the deformed solid. The nodes
-/// keep their velocities up to rounding.
+/// Replaces follow_node_velocities for bodies with large strain. The angular momentum is computed with the inertia of
+/// the deformed body. The nodes keep their velocities up to rounding.
 void follow_large_velocities(Model& model, std::size_t body, const Vec3& velocity) {
     RigidBodyTable& table = model.rigid_bodies;
     const std::size_t r = rigid_row(model, body);
@@ -419,7 +421,7 @@ void follow_node_velocities(Model& model, std::size_t body) {
             follow_large_velocities(model, body, velocity);
             return;
         }
-        // The spin is converted to angular momentum again, now with the inertia of the undeformed body.
+        // The angular velocity is converted back to angular momentum, now with the inertia of the undeformed body.
         set_motion(table, r, velocity, turn);
 
         const Mat3 to_mesh = frame_of_mesh(table, r).transpose();
@@ -434,8 +436,8 @@ void follow_node_velocities(Model& model, std::size_t body) {
 
 namespace {
 
-/// Energies and momenta, summed over the nodes n with counts(n). They are computed from nodes for a held body, because
-/// the motion of its frame is prescribed. The elastic energy is always that of the whole body.
+/// Energies and momenta of a held body, summed over the nodes n for which counts(n) is true. They are computed from
+/// nodes, because the motion of the frame is prescribed. The elastic energy is always that of the whole body.
 RigidSums sums_of_nodes(const Model& model, std::size_t body, auto&& counts) {
     RigidSums sums;
     for (Index n = model.bodies.nodes[body].begin; n < model.bodies.nodes[body].end; ++n) {

@@ -9,17 +9,18 @@
 
 namespace skerry {
 
-/// Appends the row of RigidBodyTable for a body whose nodes already have rows.
+/// Appends the row of RigidBodyTable for a body whose nodes are already in the tables.
 void append_rigid_body(Model& model, Index row, const NewBody& body);
 
-/// Recomputes mass and inertia of a body after densities have changed. Its velocity and spin stay the same.
+/// Computes mass and inertia of a body again after densities have changed. The velocity and angular velocity of the
+/// body do not change.
 void weigh_rigid_body(Model& model, std::size_t body, const NewBody& as_new);
 
 /// The pose of a rigid body that is nearest to given node positions. `misfit`: largest distance of a node in this pose
 /// from its given position [m].
 struct RigidFit {
     Vec3 center;
-    Mat3 rotation;  // rotation from the principal frame to world axes
+    Mat3 rotation;  // rotation from the frame of the principal axes to world axes
     Real misfit;    // m
 };
 RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Vec3> position);
@@ -27,21 +28,22 @@ RigidFit fit_rigid_body(const Model& model, std::size_t body, std::span<const Ve
 /// Pose of the mesh frame of a body. For an explicit body it is the rigid pose nearest to the deformed shape.
 RigidPose pose_of_body(const Model& model, std::size_t body);
 
-/// True if a body cannot move rigidly while these nodes (local numbers) are held. This is so if the nodes do not all
-/// lie on one line.
+/// True if a body can neither move nor rotate while the given nodes (local numbers) are held. This is so if the nodes
+/// do not all lie on one line.
 bool hold_whole(const Model& model, std::size_t body, std::span<const Index> nodes);
-/// Finds the attachments that hold whole rigid bodies or frames of implicit bodies, and the poses at which these are
-/// held.
+/// Finds the attachments that hold whole rigid bodies or the frames of implicit bodies, and the pose at which each body
+/// is held.
 void find_holders(Model& model);
-/// Must be called after an implicit body was attached or released, or its held nodes were moved. The body then deforms
-/// in the frame of its attachment, or in its own frame if it is free. All nodes keep their positions and velocities.
+/// Must be called after an implicit body was attached or released, or after its held nodes were moved. From then on the
+/// deformation is measured in the frame of the attachment, or in the body's own frame if the body is free. All nodes
+/// keep their positions and velocities.
 void follow_attachments(Model& model, std::size_t body);
 
-/// Must be called after the mass of a free implicit body was recomputed. Updates the inertia to the deformed shape. The
-/// velocity and spin of the body stay the same.
+/// Must be called after the mass of a free implicit body was computed again. Computes the inertia of the deformed
+/// shape. The velocity and angular velocity of the body do not change.
 void follow_weight(Model& model, std::size_t body);
 
-/// Momenta and inertia of the nodes of a body as point masses, about a given centre.
+/// Momenta and inertia of the nodes of a body, treated as point masses, about a given centre.
 struct NodeMotion {
     Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  // [kg m/s, kg m^2/s]
     Mat3 inertia = Mat3::Zero();                                    // kg m^2
@@ -52,13 +54,13 @@ NodeMotion motion_of_nodes(const Model& model, std::size_t body, const Vec3& cen
 void set_momenta(Model& model, std::size_t body, const Vec3& momentum, const Vec3& angular_momentum);
 /// Sets the momentum and the angular momentum of a body to zero.
 void stop_rigid_body(Model& model, std::size_t body);
-/// Sets the pose of a body and moves its nodes along. The momentum and the angular momentum do not change.
+/// Sets the pose of a body and moves the nodes of the body along. The momentum and the angular momentum do not change.
 void set_rigid_pose(Model& model, std::size_t body, const Vec3& center, const Mat3& rotation);
-/// Sets the node positions of an implicit body. The nearest rigid pose becomes the pose of the body, and the remainder
-/// its deformation.
+/// Sets the node positions of an implicit body. The nearest rigid pose becomes the pose of the body, and the difference
+/// to this pose its deformation.
 void set_deformed_shape(Model& model, std::size_t body, std::span<const Vec3> position);
-/// Sets the momenta of a body to the rigid motion nearest to its node velocities. The remainder becomes the deformation
-/// velocity of an implicit body; a rigid body loses it.
+/// Sets the momenta of a body to those of the rigid motion nearest to its node velocities. The difference to this
+/// motion becomes the deformation velocity of an implicit body, and is lost for a rigid body.
 void follow_node_velocities(Model& model, std::size_t body);
 
 /// Energies and momenta of a rigid or implicit body; zero for an explicit body.
@@ -68,7 +70,7 @@ struct RigidSums {
     Vec3 angular_momentum = Vec3::Zero();  // about the origin [kg m^2/s]
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
-/// Energies and momenta of the free nodes of a held implicit body. Only `elastic` includes the whole body.
+/// Energies and momenta of the free nodes of a held implicit body. Only the value `elastic` is that of the whole body.
 RigidSums moving_sums(const Model& model, std::size_t body);
 /// Elastic forces on the nodes of an implicit body, by local node, in world axes [N].
 std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);

@@ -8,8 +8,8 @@ bool is_marked(std::span<const std::uint8_t> marks, std::size_t row) {
     return row < marks.size() && marks[row] != 0;
 }
 
-/// Finds the removed rows of a table (`gone`), and for each row its new number, or no_index if it is removed
-/// (`row_now`).
+/// Numbers the remaining rows of a table. `gone`: receives the removed rows. `row_now`: receives the new number of each
+/// row, or no_index for a removed row.
 void number_rows(std::size_t count, auto&& is_gone, std::vector<Range>& gone, std::vector<Index>& row_now) {
     Index next = 0;
     for (std::size_t row = 0; row < count; ++row) {

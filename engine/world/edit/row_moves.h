@@ -1,5 +1,5 @@
-// Rows that are removed with bodies and colliders, and the new numbers of all other rows. They are found in one pass
-// over the tables, before any table changes.
+// Rows that are removed with bodies and colliders, and the new numbers of all remaining rows. Both are found in one
+// pass over the tables, before any table changes.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace skerry {
 
-/// One value for each table in which a body has rows.
+/// One value of type T for each table in which a body has rows.
 template <class T>
 struct OfBodyTables {
     T bodies{}, nodes{}, node_blocks{}, blocks{}, element_nodes{}, tetrahedron_blocks{}, triangles{}, edges{},
         vertices{}, vertex_triangles{}, bvh_nodes{}, bvh_leaves{}, rigid{}, implicit{};
 
-    /// All members of the struct. Code that visits all tables uses this list.
+    /// All members of the struct. Code that visits all tables of a body uses this list.
     static constexpr auto members() {
         using Of = OfBodyTables;
         return std::array{&Of::bodies,        &Of::nodes,     &Of::node_blocks,        &Of::blocks,
@@ -31,18 +31,19 @@ OfBodyTables<Range> rows_of_body(const Model& model, std::size_t body);
 
 struct RowMoves {
     OfBodyTables<std::vector<Range>> gone;  // removed rows of each table, ascending
-    // for each old body row: how far its rows in each table move towards the start
+    // for each old body row: number of rows by which its rows in each table move towards the start
     std::vector<OfBodyTables<Index>> down;
-    std::vector<Index> body_now;          // new body row for each old row; no_index: removed
+    std::vector<Index> body_now;          // for each old body row: its new row; no_index: removed
     std::vector<Range> colliders_gone;    // ascending
-    std::vector<Index> collider_now;      // new collider row for each old row; no_index: removed
-    std::vector<Range> attachments_gone;  // attachments of removed bodies
-    std::vector<Index> attachment_now;    // new attachment row for each old row; no_index: removed
+    std::vector<Index> collider_now;      // for each old collider row: its new row; no_index: removed
+    std::vector<Range> attachments_gone;  // rows of the attachments of removed bodies
+    std::vector<Index> attachment_now;    // for each old attachment row: its new row; no_index: removed
 
     bool any() const { return !gone.bodies.empty() || !colliders_gone.empty(); }
 };
 
-/// `bodies` and `colliders`: marks by row. Rows with a nonzero mark are removed. Rows beyond the last mark stay.
+/// `bodies` and `colliders` contain a mark for each row: rows with a nonzero mark are removed. Rows beyond the last
+/// mark are not removed.
 RowMoves row_moves(const Model& model, std::span<const std::uint8_t> bodies, std::span<const std::uint8_t> colliders);
 
 }  // namespace skerry

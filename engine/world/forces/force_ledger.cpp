@@ -38,8 +38,8 @@ bool rests(const Model& model, Index body) {
     return model.bodies.asleep[static_cast<std::size_t>(body)] != 0;
 }
 
-/// Elastic part of the force and moment of an attachment on an implicit body, over the nodes `held` [N, N m]. If the
-/// attachment holds the frame of the body, the moment on the frame is included.
+/// Force and moment of an attachment on an implicit body that balance the elastic forces, over the nodes `held` [N, N
+/// m]. If the attachment holds the frame of the body, the moment on the frame is included.
 ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, std::span<const std::size_t> held,
                                   const Vec3& moment_point) {
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
@@ -56,13 +56,13 @@ ImpulseAndMoment hold_of_implicit(const Model& model, std::size_t attachment, st
     return hold;
 }
 
-/// True for an implicit body: forces act on it during the whole step, not during a kick (docs/methods/time_stepping.md
-/// 1.5).
+/// True for an implicit body, on which forces act during the whole step and not during a kick
+/// (docs/methods/time_stepping.md 1.5).
 bool is_implicit(const Model& model, std::size_t body) {
     return model.bodies.implicit[body].size() > 0;
 }
 
-/// True if all bodies of the pair are implicit. A collider does not count.
+/// True if the pair consists of two implicit bodies, or of an implicit body and a collider.
 bool is_implicit(const Model& model, const PairKey& key) {
     return is_implicit(model, body_row(model, key.first)) &&
            (!key.bodies || is_implicit(model, body_row(model, key.second)));
@@ -90,8 +90,8 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// Initialises the sums of pairs and attachments of sleeping bodies. The sums are the forces of the last step before
-/// the bodies fell asleep, multiplied by one second.
+/// Starts the sums of pairs and attachments of sleeping bodies with the forces of the last step before the bodies fell
+/// asleep, multiplied by one second.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -110,16 +110,16 @@ void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& 
     take_over_reactions(model, held);
 }
 
-/// Computes the forces of attachments on sleeping bodies, and initialises their sums with these forces times one
-/// second. The elastic forces and moments on held nodes follow from virtual work: the change of elastic energy when
-/// only these nodes move. `contact_force`: by node [N].
+/// Computes the forces of attachments on sleeping bodies, and starts the sums of these attachments with the forces
+/// times one second. The elastic forces and moments on held nodes follow from virtual work, which is the change of
+/// elastic energy when only these nodes move. `contact_force`: force on each node [N].
 void ForceLedger::take_over_reactions(const Model& model, std::span<const Vec3> contact_force) {
     const NodeTable& nodes = model.nodes;
     Column<Vec3> motion;
     motion.assign(nodes.position.size(), Vec3::Zero());
     std::vector<std::uint8_t> taken(nodes.position.size(), 0);
-    // Attachments are visited in reverse order, as in measure_reactions: a node counts for the last attachment that
-    // holds it.
+    // Attachments are visited in reverse order, as in measure_reactions. If several attachments hold a node, the node
+    // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Index body = model.attachments.body[a];
         if (model.attachments.slot[a] == no_slot || !rests(model, body)) continue;
@@ -203,9 +203,9 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// Completes the sums of a pair at the end of a step. If both bodies slept and had no contact in this step, adds their
-/// mean forces over the time in which both were still. If one body was awake, updates this time, and clears the sums
-/// over this time when one of the bodies moves.
+/// Completes the sums of a pair at the end of a step. If both bodies slept in this step and had no contact in it, their
+/// mean forces over the time in which both were still count as the forces of this step. If a body was awake, the length
+/// of this still time is updated, and the sums over the still time are cleared when a body moves.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
@@ -284,11 +284,11 @@ void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> res
 }
 
 void ForceLedger::add_drift(const Model& model, Real seconds, StepScratch& scratch) {
-    // Attachments are visited in reverse order, as in measure_reactions: a node counts for the last attachment that
-    // holds it.
+    // Attachments are visited in reverse order, as in measure_reactions. If several attachments hold a node, the node
+    // counts for the last of them.
     for (std::size_t a = model.attachments.slot.size(); a-- > 0;) {
         const Range nodes = model.attachments.nodes[a];
-        // The momentum of a rigid body is not in its nodes.
+        // the momentum of a rigid body cannot be computed from node velocities
         if (model.is_rigid(static_cast<std::size_t>(model.attachments.body[a]))) continue;
         for (auto i = static_cast<std::size_t>(nodes.begin); i < static_cast<std::size_t>(nodes.end); ++i) {
             const auto n = static_cast<std::size_t>(model.attachments.node[i]);

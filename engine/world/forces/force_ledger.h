@@ -1,5 +1,5 @@
-// Sums of contact and attachment forces over one call of advance. They are measured only while a user requests them,
-// and no step depends on them.
+// Sums of contact and attachment forces over one call of advance. They are measured only on request of the user, and no
+// step depends on them.
 #pragma once
 
 #include <compare>
@@ -18,10 +18,10 @@ struct Model;
 struct StepScratch;
 struct ForceReport;
 
-/// Key of a pair. It names both partners by slot, as handles do, so that it stays valid when table rows move. Pairs
-/// with a collider are sorted first.
+/// Key of a pair of contact partners. It names each partner by its slot, as handles do, so that the key stays valid
+/// when table rows move. Pairs with a collider are sorted first.
 struct PairKey {
-    bool bodies = false;                  // the second partner is a body, not a collider
+    bool bodies = false;                  // true: the second partner is a body; false: it is a collider
     std::uint32_t first = 0, second = 0;  // slots
 
     auto operator<=>(const PairKey&) const = default;
@@ -29,30 +29,30 @@ struct PairKey {
 
 class ForceLedger {
 public:
-    /// Largest force and contact counts of one object or pair over the steps of a call, and its sums over the present
-    /// step.
+    /// Largest force and numbers of contacts of an object or pair over the steps of a call. Also contains the sums over
+    /// the present step.
     struct Peak {
         Real largest_force = 0;  // [N]
         Index contacts = 0, most_contacts = 0;
-        // Sums over the present step. end_step sets them to zero.
+        // Impulse and number of contacts in the present step. end_step sets both to zero.
         Vec3 impulse = Vec3::Zero();  // [N s]
         Index step_contacts = 0;
         void add(const Vec3& more, Index of_contacts) {
             impulse += more;
             step_contacts += of_contacts;
         }
-        /// Ends a step. `kick`: time for which forces act in the step [s].
+        /// Ends a step. `kick`: time for which forces act on velocities in the step [s].
         void end_step(Real kick);
         void begin_call() { *this = {}; }
     };
     struct PairRow {
         PairKey key{};
-        ContactSums sums{};   // sums over the call
-        ContactSums still{};  // sums over the time in which both objects were still
+        ContactSums sums{};   // sums of contact impulses over the call of advance
+        ContactSums still{};  // sums of contact impulses over the time in which both objects were still
         Real still_seconds = 0;
-        Index still_contacts = 0;  // number of contacts in the last step in which one of the objects was awake
+        Index still_contacts = 0;  // number of contacts in the last step in which a body of the pair was awake
         Peak peak{};
-        bool touched = false;  // the pair had contacts in the present step
+        bool touched = false;  // true if the pair had contacts in the present step
     };
     struct AttachmentRow {
         ImpulseAndMoment sums, still;
@@ -66,20 +66,21 @@ public:
     /// a collider.
     Real seconds_on(const Model& model, Index row) const;
     /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
-    /// implicit, this is the sum of the step lengths. Otherwise it is the sum of the kicks.
+    /// implicit, it is the sum of the step lengths. Otherwise it is the sum of the kicks of the steps.
     Real seconds_of(const Model& model, const PairKey& key) const;
 
-    /// Starts measuring. Sleeping bodies get the contact and attachment forces of the last step before they fell
-    /// asleep.
+    /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they
+    /// fell asleep are used.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
-    /// Must be called before the first step of a call, and again after a call that took no step. Stores the velocities
+    /// Must be called before the first step of a call, and again after a call that made no step. Stores the velocities
     /// of held nodes.
     void begin_call(const Model& model, StepScratch& scratch);
-    /// Must be called after a committed step. `rested`: by body, nonzero if it was asleep when the step began.
+    /// Must be called after a committed step. `rested`: for each body, nonzero if the body was asleep when the step
+    /// began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
-    /// Must be called after leapfrog has moved positions ahead by `seconds`. Held nodes must already have their new
-    /// velocities.
+    /// Must be called after a drift of leapfrog has moved positions ahead by `seconds` [s]. Held nodes must already
+    /// have their new velocities.
     void add_drift(const Model& model, Real seconds, StepScratch& scratch);
     void forget_body(std::uint32_t slot);
     void forget_collider(std::uint32_t slot);
@@ -102,12 +103,12 @@ private:
 
     bool on_ = false;
     Vec3 moment_point_ = Vec3::Zero();  // [m]
-    // Durations of forces [s]. On implicit bodies forces act for the whole step, on all other objects for the kick.
+    // Duration of forces [s]: the whole step for implicit bodies, the kick for all other objects.
     struct Seconds {
         Real whole = 0, kick = 0;
     };
     Seconds step_, call_;
-    Real measured_seconds_ = 0;   // time since measuring began [s]
+    Real measured_seconds_ = 0;   // time since the start of the measurement [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // by slot
     std::vector<Peak> bodies_, colliders_;

@@ -20,7 +20,7 @@ bool has(const std::vector<T>& list, const T& item) {
     return std::ranges::find(list, item) != list.end();
 }
 
-/// The bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes.
+/// Returns the bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes.
 SurfaceTree tree_of(WorldState& world, std::size_t body) {
     const Model& model = world.model;
     QueryTrees& trees = world.query_trees;
@@ -49,8 +49,8 @@ SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t bo
 }
 
 /// Returns the nearest hit on all surfaces that the filter admits. Bodies are searched before colliders, both in the
-/// order in which they were added. The functions of_tree and of_shape return the nearest hit within a limit. The limit
-/// shrinks to the distance of the best hit so far.
+/// order in which they were added. The functions of_tree and of_shape return the nearest hit of one object within a
+/// limit. This limit is always the distance of the nearest hit found so far.
 std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter, Real limit, auto&& of_tree,
                                    auto&& of_shape) {
     world.settle();

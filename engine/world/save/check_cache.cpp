@@ -15,7 +15,7 @@ void expect_ascending(const Hdf5File& file, const std::string& path, const auto&
         file.complain(path, "unsorted keys", "ascending keys");
 }
 
-/// Checks that a step length is positive. Denormal numbers are refused too, since a step treats them as zero.
+/// Checks that a step length is positive. Denormal numbers are refused too, since steps treat them as zero.
 void expect_step(const Hdf5File& file, const std::string& path, Real step) {
     if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
 }
@@ -60,8 +60,8 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
             file.complain("/pairs/second", at_row(second, p), "the same body as /pairs/first");
     }
 
-    // A column of the contact search has one row per object, or no row at all. Without rows the next step searches all
-    // pairs.
+    // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
+    // searches all pairs.
     const SearchState& search = cache.search;
     const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
         if (found != 0) expect_size(file, path, found, expected);
@@ -78,7 +78,7 @@ bool inside(Index row, Range range) {
     return row >= range.begin && row < range.end;
 }
 
-/// True if a candidate joins a feature of body `a` with a part or a point of a collider.
+/// True if a candidate consists of a feature of body `a` and of a part or a point of a collider.
 bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a, ColliderShape shape) {
     const Index parts = collider_part_count(shape), second = second_local(candidate.feature);
     if (is_edge_edge(candidate.feature))

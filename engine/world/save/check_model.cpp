@@ -31,7 +31,7 @@ void check_sizes(const Hdf5File& file, Model& model) {
     expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
-/// Checks that each row has a handle, and that each live handle has a row.
+/// Checks that each row has a handle, and that each handle in use has a row.
 template <class Handle>
 void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {
@@ -234,7 +234,8 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
     }
 }
 
-/// Checks the data for evaluating stable steps. Empty columns mean that no evaluation has started yet.
+/// Checks the data for evaluating stable steps in parallel with the steps. Empty columns mean that no evaluation has
+/// started yet.
 void check_watch(const Hdf5File& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();
@@ -246,7 +247,7 @@ void check_watch(const Hdf5File& file, const Model& model) {
     expect_between(file, "/watch/progress/body", std::array{watch.body}, 0, watch.kept);
 }
 
-/// Checks the clusters, and computes the columns that follow from their lists of nodes.
+/// Checks the clusters, and computes the columns that follow from the node lists of the clusters.
 void check_clusters(const Hdf5File& file, Model& model) {
     NodeClusters& clusters = model.clusters;
     const std::size_t count = clusters.body.size();
@@ -305,7 +306,7 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     }
 }
 
-/// Checks that the rows of a joining table name existing bodies.
+/// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies.
 void check_joined_bodies(const Hdf5File& file, const Model& model, const char* name, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;

@@ -1,5 +1,5 @@
-// Checks that the data of a saved world fit together: every named row exists, and every range lies within its table.
-// Errors name the file and the data set.
+// Checks the consistency of a saved world: every row number refers to an existing row, and every range lies within its
+// table. Errors name the file and the data set.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace skerry {
 
-/// Checks sizes, links, ranges and handles of the model. Must be called before anything is derived from the tables.
+/// Checks sizes, links, ranges and handles of the model. Must be called before any data are derived from the tables.
 void check_model(const Hdf5File& file, Model& model);
-/// Checks pairs, warm start and search data. Surfaces must have been built.
+/// Checks pairs, warm-start impulses and data of the contact search. Surfaces must have been built.
 void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache);
 void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs);
 /// Checks the contacts of the last step.
@@ -32,11 +32,11 @@ std::string at_row(Index found, std::size_t row);
 /// Checks that a column has the expected number of rows.
 void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected);
 
-/// Checks that all saved columns of a table have `rows` rows, and gives the unsaved columns this size. Columns with
-/// lists, in which rows have ranges, may have any size.
+/// Checks that all saved columns of a table have `rows` rows, and resizes the unsaved columns to this size. Columns
+/// that contain lists may have any size.
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
 
-/// Checks that every entry is a row number of a table with `count` rows. `none`: no_index is allowed too.
+/// Checks that every entry is a row number of a table with `count` rows. If `none` is true, no_index is accepted too.
 void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none = false);
 
@@ -46,7 +46,7 @@ void expect_between(const Hdf5File& file, std::string_view path, std::span<const
 void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
                     std::uint8_t least, std::uint8_t most);
 
-/// Checks that the ranges follow each other and together cover `count` rows.
+/// Checks that each range begins where the previous range ends, and that the ranges together cover `count` rows.
 void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
 inline std::span<const Index> part(std::span<const Index> rows, Range range) {

@@ -1,5 +1,5 @@
-// Text before the HDF5 part of a saved world. It identifies the file and reveals damage. libhdf5 may crash on damaged
-// files, so it gets only data that are exactly as written.
+// Text at the start of a saved world, before the HDF5 part. It identifies the file and shows whether the file is
+// damaged. libhdf5 may crash on damaged files, so only undamaged data are passed to it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Size of the text in bytes. HDF5 allows a user block of this size before its data.
+/// Size of the text [bytes]. HDF5 allows a block of this size for the user's own data before the HDF5 data.
 inline constexpr std::size_t head_bytes = 512;
 inline constexpr int world_file_version = 22;
 

@@ -8,8 +8,8 @@ namespace skerry {
 
 namespace {
 
-/// Lists the saved columns of a table, except for the column at the address `left_out`. The path of a column in the
-/// file is `path` followed by the name of the column.
+/// Lists the saved columns of a table, except for the column at the address `left_out`. In the file, each column has
+/// the path `path` followed by its name.
 void list_table(const std::string& path, AnyTable table, Archive& archive, const void* left_out = nullptr) {
     for (const ColumnInfo& info : table.columns()) {
         if (!is_saved(info.role) || table.column(info).is(left_out)) continue;
@@ -61,7 +61,7 @@ void list_watch(StepWatch& watch, Archive& archive) {
 
 void list_model(Model& model, Archive& archive) {
     for (const AnyTable& table : model.tables()) {
-        // rest positions are not saved with this table: the file contains them once per mesh
+        // rest positions are saved elsewhere: the file contains them once for each mesh
         const void* const of_meshes = &model.nodes.rest_position;
         list_table(std::string("/") + table.name() + "/", table, archive, of_meshes);
     }
@@ -120,7 +120,7 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     list_ragged("/run/start/moved_name", start.moved_name, archive);
     archive.column("/run/start/translation", start.translation);
     archive.value("/last_step/kick", world.scratch.parameters.kick);
-    // saved although they belong to one step, because users can read them until the next step
+    // these contacts belong to one step only, but users can read them until the next step
     const AnyTable contacts(saved.contacts);
     for (const ColumnInfo& info : contacts.columns())
         archive.column(std::string("/last_step/contacts/") + info.name, contacts.column(info));

@@ -1,4 +1,5 @@
-// The only list of the contents of a saved world. The code that writes files and the code that reads them both use it.
+// The only list of the data in a saved world. Both the code that writes files and the code that reads files use this
+// list.
 #pragma once
 
 #include <string>
@@ -26,7 +27,7 @@ private:
 };
 
 void list_settings(Settings& settings, Tuning& tuning, SavedRows& saved, Archive& archive);
-/// Lists all data except the settings. A world must be made from its settings before the other data are read.
+/// Lists all data except the settings. When a file is read, the world must be made from the saved settings first.
 void list_state(WorldState& world, SavedRows& saved, Archive& archive);
 
 }  // namespace skerry

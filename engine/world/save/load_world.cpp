@@ -20,7 +20,8 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinity: as a bound that does not exist, or in an unused lane.
+/// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
+/// lane.
 bool may_be_infinite(std::string_view path) {
     constexpr std::array<std::string_view, 18> paths{"/watch/step",
                                                      "/watch/look/in_frame",
@@ -43,7 +44,7 @@ bool may_be_infinite(std::string_view path) {
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 
-/// The archive that reads from a file.
+/// The archive (see list_state.h) that reads from a file.
 class Reader final : public Archive {
 public:
     explicit Reader(const Hdf5File& file) : file_(file) {}
@@ -56,7 +57,8 @@ public:
     }
 
 private:
-    using Place = FunctionRef<std::byte*(std::size_t)>;  // function that allocates memory for a number of rows
+    // function that allocates memory for a number of rows and returns its address
+    using Place = FunctionRef<std::byte*(std::size_t)>;
 
     void put_value(const std::string& path, void* value, const RowType& type) override {
         read(path, type, [&](std::size_t count) {
@@ -136,7 +138,8 @@ private:
     const Hdf5File& file_;
 };
 
-/// Makes a world with the saved settings. The caller may replace the backend and the number of threads.
+/// Makes a world with the saved settings. The caller may replace the backend and the number of threads of the saved
+/// world.
 World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
     Tuning tuning;
@@ -155,25 +158,26 @@ World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader,
     return tuned_world(settings, tuning);
 }
 
-/// Checks the saved data, and computes all other data of the world from them.
+/// Checks the saved data, and computes all data of the world that are not saved.
 void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
     put_records(saved, file, model);
-    // Material laws without a rotated frame write neither rotation nor rotation_next. The step swaps these two columns,
-    // so they must be equal.
+    // If a material law has no rotated frame, a step writes neither rotation nor rotation_next, but swaps these two
+    // columns. Their values must therefore be equal.
     model.elements.rotation_next = model.elements.rotation;
     model.rebuild_outlines();
     model.derive_all();
-    model.forced = true;  // a force may have been taken away just before
+    // assumed at first, because the last force may have been removed just before saving; note_forces corrects it
+    model.forced = true;
     note_forces(model);
     model.links_open = true;
     find_holders(model);
     model.note_rest();
     check_cache(file, model, world.cache);
     put_candidates(saved, file, model, world.cache.pairs);
-    // this column is not saved, and only a search of all pairs would resize it
+    // this column is not saved; without this resize, only a search of all pairs would give it the right size
     world.cache.search.memory.sphere.resize(model.bodies.slot.size());
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);

@@ -13,7 +13,7 @@ namespace skerry {
 
 namespace {
 
-/// The archive that writes to a file.
+/// The archive (see list_state.h) that writes to a file.
 class Writer final : public Archive {
 public:
     explicit Writer(Hdf5Image& image) : image_(image) {}

@@ -1,4 +1,4 @@
-// Values of a world that are in no table, with their names in a file.
+// Values of a world that are not stored in tables, with their names in a file.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Members of StepWatch that are saved here. The columns and the member `look` are saved separately. All other members
-/// are computed before each step.
+/// Members of StepWatch that are saved with this list. The columns and the member `look` are saved separately. All
+/// other members are computed before each step.
 template <>
 struct MembersOf<StepWatch> {
     static auto list() {
@@ -94,7 +94,8 @@ struct MembersOf<RunCounters> {
     }
     static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "a member is not saved");
 };
-/// Members of Settings that are saved here. The member step_size is saved separately, because it may have no value.
+/// Members of Settings that are saved with this list. The member step_size is saved separately, because it may have no
+/// value.
 template <>
 struct MembersOf<Settings> {
     static auto list() {

@@ -28,7 +28,7 @@ std::string text_of(std::span<const std::uint8_t> row) {
     return {row.begin(), row.end()};
 }
 
-/// All data that distinguish two meshes. Meshes are stored once if all these data are equal.
+/// All data in which two meshes may differ. A mesh is stored only once if another mesh equals it in all these data.
 struct MeshParts {
     std::span<const Vec3> nodes;
     std::span<const std::array<Index, 4>> tetrahedra;
@@ -102,7 +102,8 @@ struct SizeOf {
 
 static_assert(std::variant_size_v<Shape> == static_cast<std::size_t>(ColliderShape::mesh) + 1);
 
-/// Makes a shape from its saved members `s`. `mesh`: used only for a mesh collider.
+/// Makes a shape from its kind and its saved members `s`. `mesh`: the mesh of a mesh collider; not used for other
+/// shapes.
 Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMesh& mesh) {
     switch (kind) {
         case ColliderShape::plane:
@@ -141,7 +142,7 @@ void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T
                       "ascending offsets from 0 to the number of items");
 }
 
-/// Checks that a saved mesh could be added to a world.
+/// Checks that a saved mesh is valid, so that it could be added to a world.
 void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) {
     const std::string path = "/meshes/nodes";
     const MeshParts parts = parts_of(meshes, m);
@@ -183,7 +184,7 @@ void check_cover(const MeshParts& parts, std::size_t places, const std::string& 
                           "a tetrahedron index below " + std::to_string(parts.tetrahedra.size()));
 }
 
-/// Makes a handle from its saved parts. A null handle has no world number.
+/// Makes a handle from its saved slot and generation. A null handle gets no world number.
 template <class HandleType>
 HandleType handle_of(std::uint32_t slot, std::uint32_t generation, std::uint32_t world) {
     return slot == HandleType{}.slot ? HandleType{} : HandleType{slot, generation, world};
@@ -249,7 +250,7 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.limit_tries.push_back(entry.tries);
         saved.limit_seconds.push_back(entry.seconds);
     }
-    // After a refused step the contacts may not be finite, and users cannot see them.
+    // After a refused step the contacts are not saved: they may not be finite, and users cannot see them.
     if (world.scratch.findings.verdict.fault == StepFault::none) saved.contacts = world.scratch.contacts;
     return saved;
 }

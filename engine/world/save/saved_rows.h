@@ -9,7 +9,7 @@
 
 namespace skerry {
 
-/// Meshes of bodies and colliders. Equal meshes are stored once.
+/// Meshes of bodies and colliders. Objects with equal meshes share one entry.
 struct SavedMeshes {
     Column<Index> of_body;
     Ragged<Vec3> nodes;                       // rest positions [m]
@@ -21,9 +21,10 @@ struct SavedMeshes {
 
 /// Overlaps found before the first step. Handles are stored as slot and generation.
 struct SavedStart {
-    Column<std::array<std::uint32_t, 6>> overlap;  // slot and generation of both bodies and the collider
+    // slot and generation of the first body, of the second body and of the collider
+    Column<std::array<std::uint32_t, 6>> overlap;
     Column<OverlapKind> kind;
-    Column<std::array<Real, 7>> measure;  // depth [m], direction (unit vector), place [m]
+    Column<std::array<Real, 7>> measure;  // depth [m], direction (unit vector) and location [m] of the overlap
     Column<std::uint8_t> resolved;
     Ragged<std::uint8_t> first_name, second_name, moved_name;
     Column<std::array<std::uint32_t, 2>> moved;
@@ -31,19 +32,21 @@ struct SavedStart {
 };
 
 struct SavedRows {
-    Real step_size = 0;  // Settings::step_size; 0: no value [s]
+    Real step_size = 0;  // value of Settings::step_size [s]; 0 if it is not set
     SavedMeshes meshes;
-    std::uint32_t world = 0;  // world number in the handles of this world
+    std::uint32_t world = 0;  // world number that is part of all handles of this world
     Column<ElementKind> body_element, body_asked;
     Column<std::uint8_t> body_settled, collider_settled;
-    Column<DynamicsReason> choice_reason;         // reason of BodyRecord::choice
-    Column<std::array<Real, 7>> choice_estimate;  // all members of BodyRecord::choice except the reason, in their order
-    Ragged<Index> tetrahedron_material;           // BodyRecord::tetrahedron_material
+    Column<DynamicsReason> choice_reason;  // reason of BodyRecord::choice
+    // all members of BodyRecord::choice except the reason, in the order of their declaration
+    Column<std::array<Real, 7>> choice_estimate;
+    Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8
     Column<ColliderShape> shape_kind;               // alternative of Shape
-    Column<std::array<Real, 6>> shape_size;         // members of the shape in their order, then zeros
-    Ragged<Candidate> candidates;                   // by pair
-    Column<Real> asleep_until;                      // by candidate [m]
+    // members of the shape in the order of their declaration, filled up with zeros
+    Column<std::array<Real, 6>> shape_size;
+    Ragged<Candidate> candidates;  // contact candidates of each pair
+    Column<Real> asleep_until;     // by candidate [m]
     Column<StepLimit> limit;
     Column<std::uint32_t> limit_slot, limit_generation;
     Ragged<std::uint8_t> limit_name;
@@ -55,12 +58,12 @@ struct SavedRows {
 
 SavedRows rows_to_save(const WorldState& world);
 
-// The functions below throw SceneError with the name of `file` if saved data do not fit each other or the columns of
-// the world.
+// The following functions throw SceneError with the name of `file` if saved data are inconsistent with each other or
+// with the columns of the world.
 
-/// Restores meshes and names of bodies and colliders. The ranges of the bodies must have been checked.
+/// Restores meshes and names of bodies and colliders. Must be called after the ranges of the bodies were checked.
 void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
-/// Restores the contact candidates of pairs. Surfaces must have been built.
+/// Restores the contact candidates of pairs. Must be called after the surfaces were built.
 void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
 void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
 void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);

@@ -8,20 +8,20 @@
 
 namespace skerry {
 
-/// Data in a file besides the world: a text of the caller.
+/// Additional data in a file besides the world: a text that the caller provides.
 struct SavedNote {
     std::string text;
 };
 
-/// Does the work of World::save. The world does not change.
+/// Implementation of World::save. The world does not change.
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file);
 
 struct LoadedWorld {
     World world;
     SavedNote note;
 };
-/// Reads a file as World::load does. `compare_hash`: refuse a world whose hash differs from the saved hash. Tests of
-/// the reading code pass false, so that all consistent values are accepted.
+/// Implementation of World::load. If `compare_hash` is true, a world whose hash differs from the saved hash is refused.
+/// Tests of the reading code pass false, so that all consistent values are accepted.
 LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings, bool compare_hash = true);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Finds overlaps before the first step after objects were added. The overlaps are resolved, refused or left, as the
-// settings say.
+// Finds overlaps before the first step after objects were added. Depending on the settings, overlaps are resolved,
+// refused or left unchanged.
 #include <algorithm>
 #include <map>
 
@@ -34,8 +34,8 @@ StartOverlap report_of(const Model& model, const PairOverlap& found) {
     return report;
 }
 
-/// Moves overlapping bodies apart. Each round moves bodies until all gaps found so far are open, and then searches for
-/// new overlaps.
+/// Moves overlapping bodies apart in rounds. Each round shifts bodies until all overlaps found so far have become gaps,
+/// and then searches for new overlaps.
 class MoveApart {
 public:
     MoveApart(const Model& model, StartSearch& search) : model_(model), search_(search) {}
@@ -63,8 +63,8 @@ public:
     }
 
 private:
-    /// A separation that a pair needs. The first body must be shifted by at least `least` along `direction`, relative
-    /// to the second body.
+    /// A gap that an overlapping pair needs: the first body must be shifted by at least `least` along `direction`,
+    /// relative to the second body.
     struct Gap {
         Vec3 direction;  // unit vector
         Real least;      // [m]
@@ -74,8 +74,8 @@ private:
         refuse_overlap(report_of(model_, found), others_, why);
     }
 
-    /// Inverse mass of a body [1/kg]. It is 0 for bodies that must not move: held bodies, bodies that have made a step,
-    /// and mesh colliders.
+    /// Inverse mass of a body [1/kg], or 0 for a body that must not move. These are held bodies, bodies that have made
+    /// a step, and mesh colliders.
     Real mobility(Index body) const {
         const auto b = static_cast<std::size_t>(body);
         const bool stays = model_.bodies.kind[b] != BodyKind::deformable || model_.bodies.pinned_count[b] > 0 ||
@@ -84,8 +84,8 @@ private:
     }
     Real mobility_of_second(const StartPair& pair) const { return pair.is_analytic ? 0 : mobility(pair.second); }
 
-    /// Greatest depth of an overlap that can be resolved: half the thickness of the thinner object [m]. If an object is
-    /// deeper than this, the shorter way out may lead to the wrong side.
+    /// Largest depth of an overlap that can be resolved [m]: half the thickness of the thinner object. If two objects
+    /// overlap more deeply, the shorter way out may lead to the wrong side.
     Real deepest(const StartPair& pair) {
         Real thickness = search_.extent(pair.first).minCoeff();
         if (!pair.is_analytic && search_.has_inside(pair.second))
@@ -122,8 +122,8 @@ private:
         return pair.is_analytic ? first : first - direction.dot(search_.shift(pair.second));
     }
 
-    /// Adds the separation that an overlap requires to its pair. Replaces earlier separations of the pair in nearly the
-    /// same direction. A body in a corner needs separations in several directions.
+    /// Adds the gap that an overlap requires to the list of its pair. Replaces earlier gaps of the pair in nearly the
+    /// same direction. A body in a corner needs gaps in several directions.
     void ask_for(const PairOverlap& found) {
         constexpr Real about_the_same = 0.9;  // cosine
         const Vec3& direction = found.overlap.direction;
@@ -133,11 +133,11 @@ private:
         gaps.push_back(gap);
     }
 
-    /// Shifts one pair after the other, in repeated sweeps, until all required gaps are open up to a tolerance. The
-    /// common centre of mass of a shifted pair stays in place.
+    /// Shifts one pair after the other, in repeated sweeps, until all pairs have their required gaps up to a tolerance.
+    /// The common centre of mass of a shifted pair does not move.
     void satisfy() {
         constexpr int most_sweeps = 1000;
-        constexpr Real slack = 0.1;  // tolerance of a gap, as a fraction of the margin
+        constexpr Real slack = 0.1;  // tolerance of a gap, divided by the margin of the pair
         bool moving = true;
         for (int sweep = 0; sweep < most_sweeps && moving; ++sweep) {
             moving = false;
@@ -156,7 +156,7 @@ private:
     const Model& model_;
     StartSearch& search_;
     std::map<StartPair, std::vector<Gap>> gaps_;  // sorted by rows
-    std::size_t others_ = 0;                      // number of overlaps besides the reported one
+    std::size_t others_ = 0;  // number of overlaps in addition to the one that an error message describes
 };
 
 std::vector<StartMove> take_over_shifts(const StartSearch& search, Model& model) {

@@ -15,7 +15,7 @@ std::string text(Real value) {
     return buffer;
 }
 
-/// Text of a vector. Components that are only rounding errors of the largest component are written as 0.
+/// Formats a vector. Components as small as the rounding errors of the largest component are written as 0.
 std::string text(Vec3 value) {
     constexpr Real rounding = 1e-9;
     const Real largest = value.cwiseAbs().maxCoeff();

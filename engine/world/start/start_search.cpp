@@ -14,11 +14,11 @@ namespace skerry {
 
 namespace {
 
-// Largest gap to leave between separated bodies, as a fraction of the mean edge length. It limits the gap if the user
-// has set a very large contact distance.
+// Largest gap that is left between separated bodies, as a fraction of the mean edge length. It limits the gap if the
+// user has set a very large contact distance.
 constexpr Real largest_margin = 0.02;
 
-/// True if a part of the box lies behind the plane.
+/// True if a part of the box lies on the inner side of the plane.
 bool reaches_behind(const Aabb& box, const RigidMotion& plane) {
     const Vec3 normal = plane.rotation.col(2);
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
@@ -93,7 +93,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
     const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
-    // A step treats such a small overlap as touching, too.
+    // An overlap this small counts as touching, as it does in a step.
     if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
     return overlap;
 }
@@ -112,8 +112,8 @@ std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
         second->motion.position += shift(pair.second);
         return overlap_of_round(*first, second->geometry, second->motion, rounding(pair));
     }
-    // Between a round body and a body with faces, the search uses the triangles that draw the round body. An overlap of
-    // the exact shapes may be missed if it is small; the contacts of the steps resolve it.
+    // If only one of the two bodies has faces, the triangles that draw the round body are tested against these faces. A
+    // small overlap of the exact shapes may then be missed; the contacts of the steps resolve such an overlap.
     return find_overlap({solid(pair.first), shift(pair.first)}, {solid(pair.second), shift(pair.second)},
                         rounding(pair));
 }

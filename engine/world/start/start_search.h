@@ -11,11 +11,12 @@
 
 namespace skerry {
 
-/// A pair to search: a body, and a second body, the body of a mesh collider or an analytic collider.
+/// A pair of objects to search for overlaps. The first object is a body. The second object is another body, the body of
+/// a mesh collider, or an analytic collider.
 struct StartPair {
-    Index first;       // row of BodyTable with the kind `deformable`
+    Index first;       // row of BodyTable; the kind of this body is `deformable`
     Index second;      // row of BodyTable; for an analytic collider, row of ColliderTable
-    bool is_analytic;  // `second` is a row of ColliderTable
+    bool is_analytic;  // true: `second` is a row of ColliderTable
 
     auto operator<=>(const StartPair&) const = default;
 };
@@ -25,17 +26,19 @@ struct PairOverlap {
     Overlap overlap;
 };
 
-/// Finds overlaps in the present state of a world, with bodies shifted by move(). The world itself does not change.
+/// Finds overlaps in the present state of a world. The search can shift bodies by move(); the world itself does not
+/// change.
 class StartSearch {
 public:
-    /// `now`: present time, for which scripts give the poses of colliders [s].
+    /// `now`: present time [s], at which scripts are evaluated to get the poses of colliders.
     StartSearch(const Model& model, Real now);
 
-    /// Finds all overlapping pairs, sorted by their rows. Pairs of two objects that an earlier search has checked are
+    /// Finds all overlapping pairs, sorted by table rows. Pairs of two objects that an earlier search has checked are
     /// skipped.
     std::vector<PairOverlap> find_all();
-    /// Finds pairs whose bounding boxes overlap. At least one object of a pair must be marked, and at least one must
-    /// not have been checked by an earlier search. `marked`: by row of BodyTable.
+    /// Finds pairs of objects whose bounding boxes overlap. At least one object of a pair must be marked, and at least
+    /// one must not have been checked by an earlier search. `marked`: for each row of BodyTable, nonzero if the body is
+    /// marked.
     std::vector<StartPair> close_pairs(const std::vector<char>& marked) const;
     std::optional<Overlap> look_at(const StartPair& pair);
 
@@ -44,11 +47,11 @@ public:
     const Vec3& shift(Index body) const { return shift_[static_cast<std::size_t>(body)]; }
     /// Edge lengths of the bounding box of a body [m].
     Vec3 extent(Index body) const;
-    /// Gap that remains between the two objects of a pair that is moved apart: their contact distance, but at most a
-    /// fraction of the mean edge length [m].
+    /// Gap that remains between two objects after they are moved apart [m]: their contact distance, but at most a
+    /// fraction of the mean edge length.
     Real margin(const StartPair& pair) const;
-    /// True if a body has a closed surface or tetrahedra. Another body pushed half through it may come out on the wrong
-    /// side.
+    /// True if a body has a closed surface or tetrahedra. Another body that is pushed half through such a body may come
+    /// out on the wrong side.
     bool has_inside(Index body) { return solid(body).closed; }
 
 private:
@@ -57,19 +60,19 @@ private:
     bool collides(const StartPair& pair) const;
     const Solid& solid(Index body);
     Real mean_edge(const StartPair& pair) const;
-    /// Depth below which an overlap cannot be distinguished from contact, because of rounding [m].
+    /// Depth below which rounding makes an overlap indistinguishable from contact [m].
     Real rounding(const StartPair& pair) const;
-    /// The shape of a sphere or capsule at its shifted position; nullopt for all other bodies.
+    /// Returns the shape of a sphere or capsule at its shifted position, or nullopt for all other bodies.
     std::optional<RoundSolid> round(Index body) const;
     std::optional<Overlap> look_at_bodies(const StartPair& pair);
     std::optional<Overlap> look_at_collider(const StartPair& pair);
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;
 
     const Model& model_;
-    std::vector<RigidMotion> collider_;  // their poses
+    std::vector<RigidMotion> collider_;  // poses of the colliders
     std::vector<Aabb> box_;              // bounding boxes of bodies before their shifts [m]
     std::vector<Vec3> shift_;
-    std::vector<std::unique_ptr<Solid>> solid_;  // by body; null until the body is searched
+    std::vector<std::unique_ptr<Solid>> solid_;  // surfaces by body; null until the body is searched
 };
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Contact data that outlive a step: warm-start impulses, contacts of sleeping bodies, close pairs and their contact
-// candidates.
+// Contact data that are used in more than one step: warm-start impulses, contacts of sleeping bodies, close pairs and
+// their contact candidates.
 #pragma once
 
 #include "components/contact_table.h"
@@ -16,11 +16,11 @@ struct ContactCache {
     SearchState search;
     CrossingTable crossings;
 
-    /// Deletes the stored distances of all pairs of an object that was moved between steps, including the distances
-    /// within a body. The next step searches these pairs again, and no other pairs.
+    /// Deletes the stored distances of all pairs of an object that was moved between steps. For a body these include
+    /// the distances between its own parts. The next step searches only these pairs again.
     void forget_body(Model& model, std::size_t body);
     void forget_collider(const Model& model, std::size_t collider);
-    /// Adds rows for new bodies and colliders. Their distances are unknown.
+    /// Adds rows for new bodies and colliders, whose distances to other objects are still unknown.
     void extend(const Model& model);
 };
 

@@ -1,5 +1,5 @@
-// Results for the explicit elements of a body that later bodies with the same mesh and materials copy, since copying is
-// faster than computing them.
+// Stored results for the explicit elements of a body. Later bodies with the same mesh and materials copy them, since
+// copying is faster than computing.
 #pragma once
 
 #include "components/column.h"
@@ -11,10 +11,11 @@
 namespace skerry {
 
 /// Order, mass shares and relaxation of the elements of a body, and the stable step of its mesh. These data depend only
-/// on mesh, materials and element kind. The entry is deleted when the world is settled or rows of bodies move.
+/// on mesh, materials and element kind. The entry is deleted when pending changes of the world are completed or rows of
+/// bodies move.
 struct KnownElements {
-    Index body;           // row of the body with this mesh and these materials
-    ElementKind element;  // the kind requested by the user
+    Index body;           // row of a body with this mesh and these materials
+    ElementKind element;  // element kind requested by the user
 
     ElementPlaces places;
     Column<ElementLane> mass_share, relaxation_rate, own_frequency;
@@ -23,7 +24,7 @@ struct KnownElements {
     Column<Real> frame_bound, relaxing_share;
     Real rest_step;  // stable step at rest [s]
 
-    /// Calls visit(stored column, column of the model) for each stored column.
+    /// Calls visit(stored column, column of the model) for each column that is stored here.
     static void for_each_column(auto& known, auto& elements, auto&& visit) {
         visit(known.mass_share, elements.mass_share);
         visit(known.relaxation_rate, elements.relaxation_rate);

@@ -170,7 +170,7 @@ void Model::extend_derived() {
         body_mass[b] = 0;
         for (const Real mass : rows_of(nodes.mass, bodies.nodes[b])) body_mass[b] += mass;
     }
-    if (!watch.step.empty()) {  // empty before the first step
+    if (!watch.step.empty()) {  // this column is empty before the first step
         watch.position.resize(nodes.position.size(), Vec3::Zero());
         watch.stiffness_sum.resize(nodes.position.size());
         watch.step.resize(bodies.slot.size(), StepWatch::not_looked_at);
@@ -190,8 +190,8 @@ void Model::derive_all() {
         if (bodies.implicit[b].size() > 0) stiffen(b);
     loaded_bodies = 0;
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) note_loads(b, false);
-    // A step does not write velocity_next of sleeping nodes, nor push_out of nodes that no contact pushes. These values
-    // must be zero.
+    // Steps do not write velocity_next of sleeping nodes, nor push_out of nodes that no contact pushes. Both values
+    // must be zero for these nodes.
     std::ranges::fill(nodes.velocity_next, Vec3::Zero());
     std::ranges::fill(nodes.push_out, Vec3::Zero());
 }

@@ -38,28 +38,30 @@
 
 namespace skerry {
 
-/// Slot of the attachment of a mesh collider. Users have no handle to this attachment.
+/// Slot of the attachments that move mesh colliders. Users have no handles to these attachments.
 inline constexpr std::uint32_t no_slot = 0xffffffffu;
 
-/// Data of a body for users and files.
+/// Data of a body that are not stored in tables. They serve users and files.
 struct BodyRecord {
     std::string name;
-    ElementKind element;  // the resolved kind, never `smoothed`
-    ElementKind asked;    // the kind requested by the user; used again when the dynamics change
+    ElementKind element;  // element kind in use, never `smoothed`
+    ElementKind asked;    // element kind requested by the user; used again when the dynamics of the body change
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
-    // Row of MaterialTable by tetrahedron; empty: the material of the body.
+    // Material of each tetrahedron, as row of MaterialTable. If the column is empty, all tetrahedra have the material
+    // of the body.
     std::vector<Index> tetrahedron_material;
-    // Tetrahedra that the element in each lane of the element blocks of the body covers; none in an unused lane.
+    // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
+    // has no tetrahedra.
     Ragged<Index> element_tetrahedra;
-    bool settled = false;       // the body was checked for overlaps
-    DynamicsEstimate choice{};  // estimate made for BodyDynamics::automatic
+    bool settled = false;       // true if the body was checked for overlaps
+    DynamicsEstimate choice{};  // estimate behind the choice, for a body added as `automatic`
 };
 
 struct ColliderRecord {
     std::string name;
     Shape shape;
-    bool settled = false;  // the collider was checked for overlaps
+    bool settled = false;  // true if the collider was checked for overlaps
 };
 
 struct Model {
@@ -72,12 +74,13 @@ struct Model {
     ElementBlockTable elements;
     ElementNodeTable element_nodes;
     ElementPatches patches;  // derived: extend_derived
-    // Clusters of the implicit elements. They are state, not derived data: their matrices are updated when elements
-    // stiffen.
+    // Clusters of the implicit elements. They cannot be derived from other data, because their matrices are updated
+    // when elements stiffen.
     NodeClusters clusters;
     RigidBodyTable rigid_bodies;
     ImplicitNodeTable implicit_nodes;
-    StiffBodies stiff_bodies;  // by row of rigid_bodies; derived: derive_all, stiffen
+    // matrices of implicit bodies, by row of rigid_bodies; computed by derive_all and stiffen
+    StiffBodies stiff_bodies;
     SurfaceTables surface;
     BvhTable bvh;
     BvhLeafTable bvh_leaves;
@@ -93,25 +96,25 @@ struct Model {
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
     StepWatch watch;
-    std::vector<BodyRecord> body_records;          // by row
-    std::vector<ColliderRecord> collider_records;  // by row
-    std::vector<KnownElements> known_elements;     // one entry for each mesh added since the last settle()
+    std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
+    std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
+    std::vector<KnownElements> known_elements;     // results for meshes that were added since the last call of settle()
 
-    Column<Real> body_mass;  // by body: mass of all nodes, including held ones [kg]; derived: extend_derived
+    Column<Real> body_mass;  // mass of all nodes of each body, including held nodes [kg]; computed by extend_derived
     // True if the implicit elements must be chosen again, because bodies, colliders or settings have changed.
     bool clusters_open = true;
-    bool settled = true;      // all bodies and colliders were checked for overlaps
-    Index loaded_bodies = 0;  // number of bodies with loads; derived: derive_all, note_loads
-    bool forced = false;      // true if any force element acts, loads included; derived: note_forces
-    // For each body: sum of ForceElement::add_rate over all force elements [1/s^2]; empty: all zero. Derived:
-    // note_forces.
+    bool settled = true;      // true if all bodies and colliders were checked for overlaps
+    Index loaded_bodies = 0;  // number of bodies with loads; computed by derive_all and note_loads
+    bool forced = false;      // true if any force element (loads included) is present; computed by note_forces
+    // For each body: sum of the bounds that ForceElement::add_rate adds for all force elements [1/s^2]. If the column
+    // is empty, all sums are zero. Computed by note_forces.
     Column<Real> force_rate;
-    BodyLinks links;  // pairs of bodies that a joining row connects, such as a joint; derived: note_changed_seams
-    bool links_open = false;  // joining rows have changed since links were derived
-    // True if a body is asleep. If false, no stage tests for sleeping bodies. Derived: note_rest.
+    BodyLinks links;          // pairs of bodies that are joined, for example by a joint; computed by note_changed_seams
+    bool links_open = false;  // true if joints (or other rows that join bodies) have changed since `links` was computed
+    // True if a body is asleep. If false, no stage tests for sleeping bodies. Computed by note_rest.
     bool any_asleep = false;
 
-    /// Sets the world number that is a part of all handles of this world.
+    /// Sets the number of this world, which is a part of all handles of its objects.
     void set_world(std::uint32_t number);
 
     Index row(BodyHandle body, const char* call) const;
@@ -120,13 +123,13 @@ struct Model {
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
 
-    /// All elements, including elements of sleeping and of unstrained bodies.
+    /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
-    /// The elements of all bodies that are neither asleep nor unstrained.
+    /// The elements of all bodies that are neither asleep nor marked as unstrained.
     ElementInputs awake_elements() const;
     Range all_blocks() const { return {0, static_cast<Index>(elements.first.size())}; }
-    /// Number of a tetrahedron in the mesh that the user gave. `place`: place of the tetrahedron in the table, counted
-    /// in lanes.
+    /// Returns the number of a tetrahedron in the mesh given by the user. `place`: position of the tetrahedron in the
+    /// table, counted in lanes.
     Index user_tetrahedron(std::size_t body, Index place) const;
 
     /// Wakes one body, or all bodies.
@@ -138,12 +141,12 @@ struct Model {
     /// loads.
     void note_loads(std::size_t body, bool before);
     bool has_loads(std::size_t body) const;
-    /// Shape and pose of a round body, in the form used for colliders.
+    /// Shape and pose of a round body, in the form in which colliders have them.
     struct RoundShape {
         ColliderGeometry geometry;
         RigidMotion motion;  // without velocities
     };
-    /// Returns nullopt for a body that has faces and is not round.
+    /// Returns nullopt for a body that has faces, so that it is not round.
     std::optional<RoundShape> round_shape(std::size_t body) const;
     /// Name of the shape of a round body: "sphere", "capsule" or "cylinder".
     const char* round_name(std::size_t body) const;
@@ -153,7 +156,7 @@ struct Model {
                : bodies.implicit[body].size() == 0 ? BodyDynamics::rigid
                                                    : BodyDynamics::implicit_elastic;
     }
-    /// True for rigid and implicit bodies: they have a row of rigid_bodies, which holds their momentum, and no rows of
+    /// True for rigid and implicit bodies, which have a row of rigid_bodies with their momentum, and no rows of
     /// elements.
     bool has_frame(std::size_t body) const { return bodies.rigid[body].size() > 0; }
     /// True if an attachment holds a rigid body as a whole, or the frame of an implicit body.
@@ -163,30 +166,32 @@ struct Model {
     bool node_has_frame(std::size_t node) const {
         return rigid_bodies.size() > 0 && has_frame(static_cast<std::size_t>(nodes.body[node]));
     }
-    /// The elements of an implicit body, which no table stores. Their node numbers are local to the body.
+    /// Builds the elements of an implicit body, because no table contains them. Their node numbers are local to the
+    /// body.
     ElementList elements_of_implicit(std::size_t body) const;
-    /// Computes the entry of an implicit body in stiff_bodies from its record, masses and materials.
+    /// Computes the matrices of an implicit body (its entry in stiff_bodies) from its record, masses and materials.
     void stiffen(std::size_t body);
-    /// Computes the derived columns of newly appended rows. Existing rows are unchanged.
+    /// Computes the derived columns of newly appended rows. Existing rows do not change.
     void extend_derived();
-    /// Computes the derived columns of all rows, counts the bodies with loads, and sets velocities that a step may
-    /// leave unchanged to zero.
+    /// Computes the derived columns of all rows and counts the bodies with loads. Sets velocities to zero where steps
+    /// do not write them.
     void derive_all();
-    /// Rebuilds the clusters of all bodies, or of marked bodies, after elements became implicit or explicit.
+    /// Builds the clusters of all bodies, or of marked bodies, again after elements became implicit or explicit.
     void rebuild_clusters();
     void rebuild_clusters(std::span<const std::uint8_t> body_changed);
 
-    /// True if a body has exactly this mesh (bitwise).
+    /// True if a body has exactly the given mesh (bitwise).
     bool has_mesh(std::size_t body, const RestMesh& mesh) const;
-    /// Searches a few bodies before row `end` for this mesh. Returns the last of them that has it, or no_index.
+    /// Searches the last few bodies before row `end` for a body with the given mesh. Returns the last such body, or
+    /// no_index.
     Index body_of_mesh(std::size_t end, const RestMesh& mesh) const;
 
     /// Builds the surface and the bounding volume hierarchy of one body from its record and its rest shape. The body
-    /// must be the last one in these tables. If a body just before it has the same mesh, the data of that body are
-    /// copied.
+    /// must be the last one in these tables. If one of the last bodies before it has the same mesh, the data of that
+    /// body are copied.
     void append_outline(std::size_t body);
-    /// Copies surface and hierarchy from a body just before this one with the same mesh. Returns false, and does
-    /// nothing, if there is no such body.
+    /// Copies surface and hierarchy from one of the last bodies with the same mesh. If there is no such body, returns
+    /// false and does nothing.
     bool append_outline_again(std::size_t body);
     /// Rebuilds the surfaces and bounding volume hierarchies of all bodies.
     void rebuild_outlines();
@@ -211,9 +216,9 @@ struct Model {
         visit("joints", joints);
         visit("disabled_pairs", disabled_pairs);
     }
-    /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns with
-    /// the joined bodies. So these tables are saved, checked, hashed, renumbered and erased with a body without code of
-    /// their own.
+    /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
+    /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
+    /// their rows with a body.
     void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
 };
 

@@ -1,5 +1,5 @@
-// Bounding volume hierarchies around the present surfaces, for queries between steps. BvhTable has other boxes: those
-// of the last contact search of each body.
+// Bounding volume hierarchies around the present surfaces, for queries between steps. The boxes in BvhTable cannot be
+// used, because they belong to the last contact search of each body.
 #pragma once
 
 #include "components/bvh_table.h"
@@ -8,10 +8,10 @@
 namespace skerry {
 
 struct QueryTrees {
-    Column<Aabb> box;             // bounding box for each row of BvhTable [m]
-    Column<std::uint8_t> fitted;  // by body, nonzero if its boxes fit its present surface; empty: no boxes do
+    Column<Aabb> box;             // present bounding box of each row of BvhTable [m]
+    Column<std::uint8_t> fitted;  // for each body, nonzero if its boxes fit its present surface; empty: no boxes fit
 
-    /// Must be called after nodes or table rows have moved.
+    /// Marks all boxes as out of date. Must be called after nodes or table rows have moved.
     void forget() { fitted.clear(); }
 };
 

@@ -1,4 +1,4 @@
-// Records of a run for users. No step depends on these records.
+// Records of a run that users can read. No step depends on these records.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace skerry {
 
-/// Subscription to contact problems. Without a subscriber it costs only a skipped stage.
+/// Subscription of a user to the contact problems of steps. Without a subscriber, the only cost is a skipped stage.
 struct ProblemWatch {
     std::function<void(const StepProblem&)> take;
     std::uint64_t every = 1;
@@ -24,7 +24,7 @@ struct ProblemWatch {
 
 struct RunRecord {
     RunCounters counters;
-    std::vector<StartOverlap> start_overlaps;  // found by the last check for overlaps
+    std::vector<StartOverlap> start_overlaps;  // overlaps that the last check has found
     std::vector<StartMove> start_moves;
     StepLimits limits;
     Balance balance;
@@ -33,10 +33,11 @@ struct RunRecord {
     ProblemWatch problem_watch;
     ForceLedger forces;
     std::function<void(const StepReport&)> step_watch;
-    std::vector<Contact> contact_view;  // the result of contacts()
-    Column<Index> contact_rows;  // by entry of contact_view: row of the contact; ~row for a contact of sleeping bodies
+    std::vector<Contact> contact_view;  // the contacts that World::contacts() returns
+    // for each entry of contact_view: row of the contact in its table; ~row for a contact of sleeping bodies
+    Column<Index> contact_rows;
     bool contact_view_is_current = false;
-    bool balance_of_rest = false;  // nothing has moved since the last check of the balance
+    bool balance_of_rest = false;  // true if nothing has moved since the last check of the balance
 };
 
 }  // namespace skerry

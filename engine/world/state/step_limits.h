@@ -1,4 +1,4 @@
-// Causes that limited the length of the steps of a run.
+// Counts of the causes that limited the length of the steps of a run.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace skerry {
 
-/// Counts of steps and attempts by cause and body. Counting for a known cause and body allocates no memory.
+/// Counts steps and discarded attempts for each pair of cause and body. Counting for a known pair allocates no memory.
 class StepLimits {
 public:
-    /// Counts a committed step of length `h` [s].
+    /// Counts a committed step of length `h` whose length the given cause has limited [s].
     void count_step(StepLimit limit, BodyHandle body, const std::string& name, Real h);
-    /// Counts an attempt at a step that was given up.
+    /// Counts an attempt at a step that was given up for the given cause.
     void count_try(StepLimit limit, BodyHandle body, const std::string& name);
-    /// All entries, those with the most steps first.
+    /// Returns all entries, starting with the entry of most steps.
     std::vector<StepLimitReport> report() const;
-    /// All entries, in the order of their first occurrence.
+    /// Returns all entries in the order of their first occurrence.
     const std::vector<StepLimitReport>& entries() const { return entries_; }
     void restore(std::vector<StepLimitReport> entries) { entries_ = std::move(entries); }
 

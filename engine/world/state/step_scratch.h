@@ -1,6 +1,6 @@
-// Data that the stages of one step pass to each other, and their working memory. Nothing here outlives the step, with
-// two exceptions: contacts and regions can be read until the next step, and the data for estimating the cost of the
-// solver are not cleared.
+// Data that the stages of one step pass to each other, and working memory of the stages. These data are not used after
+// the step, with two exceptions: contacts and regions can be read until the next step, and the data for estimating the
+// cost of the solver are not cleared.
 #pragma once
 
 #include "components/contact_table.h"
@@ -30,12 +30,13 @@ namespace skerry {
 struct StepParameters {
     Real h = 0;     // step length: time by which positions move [s]
     Real kick = 0;  // time for which forces act on velocities in this step [s]
-    // Ratio of the kick of this step to the kick of the previous step. It is 0 if the elements do not store the relaxed
-    // strain of the previous step.
+    // Ratio of this step's kick to the previous step's kick. It is 0 if the elements do not contain the relaxed strain
+    // of the previous step.
     Real kick_over_last = 0;
-    Real longest = 0;             // estimated upper bound of the length of the next step [s]
-    Real lag = 0;                 // time by which velocities are behind positions at the kick [s]
-    Real work_lag = 0;            // lag between the steps: equals lag, or 0 for leapfrog [s]
+    Real longest = 0;  // estimated upper bound of the length of the next step [s]
+    Real lag = 0;      // time by which velocities are older than positions when the kick begins [s]
+    // time by which velocities are older than positions between steps: `lag`, or 0 with leapfrog [s]
+    Real work_lag = 0;
     Vec3 gravity = Vec3::Zero();  // m/s^2
     ContactRegions contact_regions = ContactRegions::separate;
     CollisionSettings collision;
@@ -43,31 +44,33 @@ struct StepParameters {
     Real max_strain_step = 0;
     Real theta = 1;
     LongStepTimes long_step;
-    bool takes_long_steps = false;  // implicit bodies may take long steps
+    bool takes_long_steps = false;  // true if implicit bodies may take long steps
     SleepSettings sleep;
-    bool let_invert = false;  // elements may turn inside out in this attempt at the step
-    // True if the elastic forces of the previous attempt at this step are still valid, because it had the same length.
+    bool let_invert = false;  // true if elements may turn inside out in this attempt at the step
+    // True if the elastic forces of the previous attempt at this step are still valid, because the previous attempt had
+    // the same length.
     bool forces_known = false;
-    bool problem_wanted = false;       // a user requested the contact problem of this step
-    bool forces_wanted = false;        // a user requested forces of contacts and attachments
-    Vec3 moment_point = Vec3::Zero();  // reference point of the requested moments [m]
-    bool draws_late = false;           // true: nodes that only draw round bodies are updated on demand
+    bool problem_wanted = false;       // true if a user requested the contact problem of this step
+    bool forces_wanted = false;        // true if a user requested forces of contacts and attachments
+    Vec3 moment_point = Vec3::Zero();  // reference point of the moments that a user requested [m]
+    bool draws_late = false;           // true: nodes that only draw round bodies are updated later, on demand
 };
 
 /// Results of the stages of a step.
 struct StepFindings {
     StepVerdict verdict;
     Inversions inversions;
-    Index crossings = 0;  // number of crossings in this attempt; if not zero, the step is repeated
+    Index crossings = 0;  // number of crossings found in this attempt; if nonzero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
-    Index unstrained = 0;  // number of bodies whose elements are skipped in this step
+    Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
     Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
     Real damped = 0;       // energy dissipated by damping in this step [J]
-    // Energy that the update of clusters with stiffened elements has added at the start of this attempt [J].
+    // Energy that the clusters have gained at the start of this attempt, because their matrices were updated for
+    // stiffened elements [J].
     Real stiffened = 0;
     StrainFindings strained;  // results of the deformation of implicit bodies
 };
@@ -75,37 +78,39 @@ struct StepFindings {
 inline bool inverts(const Inversions& inversions, const StepParameters& parameters) {
     return inversions.first && !parameters.let_invert;
 }
-/// True if a step can be committed.
+/// True if the attempt has found no reason against committing the step.
 inline bool can_be_taken(const StepVerdict& verdict, Index crossings, const Inversions& inversions,
                          const StepParameters& parameters) {
     return verdict.fault == StepFault::none && crossings == 0 && !inverts(inversions, parameters);
 }
 
-/// Copy of the state that defines the contact problem of a step and that the step overwrites.
+/// Copy of the state from which the contact problem of a step is exported, and which the step itself overwrites.
 struct KeptVelocities {
-    Column<Vec3> velocity;       // at the start of the step [m/s]
+    Column<Vec3> velocity;       // node velocities at the start of the step [m/s]
     Column<Vec3> velocity_next;  // predicted [m/s]
-    // Positions of nodes and rigid bodies at the start of the step; only if a body has a frame [m].
+    // Positions of nodes and rigid bodies at the start of the step [m]. Stored only if there are rigid or implicit
+    // bodies.
     Column<Vec3> position, center;
     Column<Mat3> rotation;          // orientation of rigid bodies at the start of the step
     Column<Vec3> angular_momentum;  // angular momentum of rigid bodies at the start of the step [kg m^2/s]
-    // Deformation velocities of implicit bodies: after the kick, and at the start of the step [m/s].
+    // Deformation velocities of implicit bodies [m/s]: after the kick (before contacts are solved), and at the start of
+    // the step.
     Column<Vec3> deforming, deforming_before;
 };
 
 /// Impulses of contacts and attachments in one step.
 struct ForceScratch {
     Column<PairSums> pairs;              // result of sum_contact_impulses
-    Column<Vec3> held_impulse;           // by node; result of sum_contact_impulses [N s]
+    Column<Vec3> held_impulse;           // impulse on each held node; result of sum_contact_impulses [N s]
     Column<Vec3> node_impulse;           // result of measure_reactions
-    Column<ImpulseAndMoment> reactions;  // by attachment; result of measure_reactions
-    Column<Vec3> held_velocity;          // by node: velocity of held nodes after the previous step [m/s]
+    Column<ImpulseAndMoment> reactions;  // impulse and moment of each attachment; result of measure_reactions
+    Column<Vec3> held_velocity;          // velocity of each held node after the previous step [m/s]
 };
 
-/// Contact solver settings of a world, taken from `settings` and `tuning`.
+/// Returns the settings of the contact solver, taken from `settings` and `tuning`.
 SolverSettings solver_settings(const Settings& settings, const Tuning& tuning);
 
-/// Step parameters that follow from the settings alone.
+/// Returns the step parameters that follow from the settings alone.
 StepParameters step_parameters(const Settings& settings, const Tuning& tuning);
 
 struct StepScratch {
@@ -115,24 +120,24 @@ struct StepScratch {
     JointBlockTable joints;
     RegionTable regions;
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
-    bool ran_inline = false;  // all stages ran on the calling thread
-    bool left_out = false;    // no stage ran, since nothing moves
+    bool ran_inline = false;  // true if all stages ran on the calling thread
+    bool left_out = false;    // true if no stage ran, since nothing moves
 
     SeparationMemory separation_memory;
     SolverMemory solver_memory;
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
-    Column<Real> stiffness_sum;        // by node; working memory of stable_step
-    Column<std::uint8_t> beside_fast;  // by node; working memory of check_state
+    Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
+    Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters
     Column<Real> cluster_work;         // used by kick_clusters
     ImplicitCoupling coupling;         // used by couple_implicit_bodies
     Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
-    Column<std::uint8_t> pressed;      // by body, nonzero if it is asleep and a contact presses on it in this step
-    Column<ExternalWork> work_parts;   // used by measure_work
-    InversionMemory inversions;        // used by find_inversions
-    Column<WatchPart> watch_parts;     // used by watch_stable_steps
+    Column<std::uint8_t> pressed;     // for each body, nonzero if it is asleep and a contact presses on it in this step
+    Column<ExternalWork> work_parts;  // used by measure_work
+    InversionMemory inversions;       // used by find_inversions
+    Column<WatchPart> watch_parts;    // used by watch_stable_steps
     Column<WatchPieces> watch_pieces;  // used by keep_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
     RestingMemory resting_memory;      // used by keep_resting_contacts

@@ -1,4 +1,4 @@
-// The loop that fills a time interval with steps, and its reaction when a step cannot be taken.
+// The loop that divides a time interval into steps, and its reaction when a step cannot be taken.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,27 +14,28 @@ namespace skerry {
 
 namespace {
 
-/// Number of steps in a round. In each round the stable step of every body is evaluated once, since it changes with
-/// deformation. The stable step in use is never older than two rounds. With clusters the rounds are shorter: steps are
-/// then several times longer, and explicit elements deform more in each step.
+/// Number of steps in a round. In each round the stable step of every body is evaluated once, because it changes when
+/// the body deforms. The stable step in use is never older than two rounds. With clusters the rounds are shorter,
+/// because steps are several times longer and explicit elements deform more in each step.
 std::uint64_t steps_per_round(const WorldState& world) {
     return world.model.clusters.empty() ? 128u : 64u;
 }
 
-/// Counts a step of the present round. At the end of a round, replaces the stable steps by the newly evaluated ones.
+/// Counts a step of the present round. At the end of a round, the newly evaluated stable steps replace the old ones.
 /// Returns true at the end of every second round, when the energy balance must be checked.
 bool keep_watch(WorldState& world) {
     StepWatch& watch = world.model.watch;
     ++watch.steps;
     if (watch.steps < steps_per_round(world)) return false;
-    world.record.balance.work +=
-        follow_stiffening(world.model);  // must come first, because stable steps depend on the updated clusters
+    // The clusters must be updated first, because stable steps depend on them.
+    world.record.balance.work += follow_stiffening(world.model);
     world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
 }
 
-/// Limits of the first attempt at a step in a call. They follow from the velocities at the start of the call.
+/// Limits of the first attempt at a step in a call of advance. They follow from the velocities at the start of the
+/// call.
 Tries first_tries(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
@@ -117,7 +118,7 @@ void note_inversions(WorldState& world, StepReport& report) {
     world.record.counters.inversions += static_cast<std::uint64_t>(inversions.count);
 }
 
-/// Records in the report that Settings::step_size was too long for a body.
+/// Records in the report which body is unstable at Settings::step_size.
 void note_limit(WorldState& world, StepReport& report) {
     if (!world.model.settings.step_size) return;
     Index body = no_index;
@@ -129,8 +130,8 @@ void note_limit(WorldState& world, StepReport& report) {
     report.limited_by = world.model.body_records[static_cast<std::size_t>(body)].name;
 }
 
-/// Throws SceneError if a call would need too many steps. Steps are counted with an int, and a call with a step too
-/// small to advance time would never end.
+/// Throws SceneError if a call would need too many steps. Steps are counted with an int. Without this check, a call
+/// whose steps are too small to advance time would never end.
 void require_countable(const Model& model, Real dt) {
     constexpr Real most = std::numeric_limits<int>::max();
     Index body = no_index;
@@ -166,7 +167,7 @@ private:
 }  // namespace
 
 Real lag_between_steps(const WorldState& world) {
-    // With leapfrog the drift at the end of a call removes the lag.
+    // With leapfrog, a drift at the end of the call removes the lag of the velocities.
     if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
     return (before > 0 ? before : trusted_step(world.model)) / 2;
@@ -187,8 +188,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    // Sets the floating-point mode for the code between the stages. This code must not depend on the mode of the
-    // caller.
+    // Sets the floating-point mode for the code that runs between the stages. This code must not depend on the mode of
+    // the caller.
     const ArithmeticScope arithmetic;
     settle_start();
     const AdvanceScope scope(world.advancing);
@@ -204,13 +205,15 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     const Real end = clock.time + dt;
     Real left = dt;
     Tries tries = first_tries(world);
-    world.cache.crossings.row
-        .clear();  // these rows belong to an abandoned step, and bodies may have changed since then
+    // The stored crossings belong to an abandoned step, and bodies may have changed since then.
+    world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
-    world.scratch.parameters.draws_late = !model.forced;  // force elements read all nodes in every step
-    Real stiffened = 0;                                   // energy added by clusters since the last committed step [J]
-    // Leapfrog checks the balance at the end of the call, since only then all energies belong to one time.
+    // force elements read all nodes in every step, so these nodes must be up to date
+    world.scratch.parameters.draws_late = !model.forced;
+    Real stiffened = 0;  // energy that clusters have gained since the last committed step [J]
+    // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
+    // time.
     bool look_at_end = false;
     // Exception thrown by a callback. It is rethrown at the end of the call.
     std::exception_ptr thrown;
@@ -250,7 +253,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, tries);
-        stiffened += world.scratch.findings.stiffened;  // also for attempts that are not committed
+        stiffened += world.scratch.findings.stiffened;  // also counted for attempts that are not committed
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -281,15 +284,16 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         });
         if (!heard) break;
     }
-    clock.long_step = {};                // at the end of a call implicit bodies have reached the present time
-    world.cache.search.end_step(false);  // only needed if the last attempt was not committed
+    clock.long_step = {};                // at the end of a call, implicit bodies have reached the present time
+    world.cache.search.end_step(false);  // only has an effect if the last attempt was not committed
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
         if (forces.on()) forces.begin_call(model, world.scratch);
     } else {
         drift(0);
-        stiffened += follow_stiffening(model);  // otherwise the next call would do this update
+        // otherwise the next call would make this update and gain its energy
+        stiffened += follow_stiffening(model);
         world.record.balance.work += stiffened;
     }
     world.draw();

@@ -16,7 +16,7 @@ namespace {
 struct Present {
     Real kinetic = 0, elastic = 0, potential = 0;  // J
     Vec3 momentum = Vec3::Zero();                  // kg m/s
-    Real momentum_size = 0;                        // sum of the magnitudes of all momenta [kg m/s]
+    Real momentum_size = 0;  // sum of the magnitudes of the momenta of all nodes and bodies [kg m/s]
 };
 
 Present measure(const Model& model, Real lag) {
@@ -31,8 +31,8 @@ Present measure(const Model& model, Real lag) {
         now.momentum_size += momentum.norm();
     }
     Real implicit = 0;  // [J]
-    // Momentum of all nodes and bodies that receive kicks [kg m/s]. Nodes of held implicit bodies do not: the theta
-    // method moves them.
+    // Momentum of all nodes and bodies whose velocities are changed by kicks [kg m/s]. Nodes of held implicit bodies
+    // are not included, because the theta method moves them.
     Vec3 kicked = now.momentum;
     for (const Index body : model.rigid_bodies.body) {
         const auto b = static_cast<std::size_t>(body);
@@ -45,14 +45,14 @@ Present measure(const Model& model, Real lag) {
         if (!model.is_held(b)) kicked += sums.momentum;
     }
     now.kinetic += added_energy(model);
-    // The velocities lag by half a step. Adds the change of kinetic energy in half of the next kick, to first order and
-    // without contacts. Let v and v' be the velocities before and after a kick, and m the mass. Elastic bodies conserve
-    // m v.v' / 2 plus their elastic energy, as leapfrog does.
+    // The velocities are half a step older than the positions. The kinetic energy is corrected to first order by its
+    // change in half of the next kick, without contacts. The reason: let v and v' be the velocities before and after a
+    // kick, and m the mass. Elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // balance.work also uses the forces of the last step
+        if (model.forced)  // the sum balance.work also uses the forces of the last step
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);
@@ -70,8 +70,8 @@ bool damps_held_body(const Model& model) {
     return false;
 }
 
-/// True if an implicit element has a held node. The added inertia of the element then lets moving nodes pull at the
-/// held node.
+/// True if a node of an implicit element is held. Through the added inertia of the element, moving nodes then pull at
+/// the held node.
 bool holds_implicit_element(const Model& model) {
     if (model.clusters.empty()) return false;
     const ElementInputs elements = model.all_elements();
@@ -104,7 +104,7 @@ void add_step(const StepScratch& step, Balance& balance) {
                       contacts.dissipated - step.findings.damped - step.findings.strained.damped -
                       step.findings.relaxed - step.findings.viscous - step.findings.rest.energy;
     ++balance.steps;
-    // Impulses that cancel each other, such as those of weight and support, also count as exchanged.
+    // Impulses that cancel each other also count as exchanged momentum, for example those of weight and support.
     Vec3 impulse = Vec3::Zero();
     for (const Vec3& part : impulses) {
         impulse += part;
@@ -129,8 +129,9 @@ void check_balance(const Model& model, Real lag, Balance& balance) {
         balance.steps = 0;
         balance.work = balance.energy_flow = balance.momentum_flow = 0;
     }
-    balance.momentum_known &= !holds_implicit_element(model);  // elements may become implicit during a run
-    // Only the change of the potential energy counts, since its zero point is arbitrary.
+    // checked again, because elements may become implicit during a run
+    balance.momentum_known &= !holds_implicit_element(model);
+    // Only the change of the potential energy counts as exchanged, since the zero point of this energy is arbitrary.
     const Real exchanged =
         now.kinetic + now.elastic + std::abs(now.potential - balance.potential) + balance.energy_flow;
     balance.energy_scale = std::max(balance.energy_scale, exchanged);

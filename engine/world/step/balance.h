@@ -1,4 +1,5 @@
-// Balance of energy and momentum in a run. Energy and momentum lost or gained without a cause estimate the error.
+// Balance of energy and momentum in a run. Energy or momentum that changes without a known cause is an estimate of the
+// error.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +11,25 @@ namespace skerry {
 struct Model;
 struct StepScratch;
 
-/// Sums since the last external change, such as a body added or velocities set, and the largest errors of the whole
-/// run.
+/// Sums since the last change from outside (such as an added body or set velocities), and the largest errors of the
+/// whole run. The balance is opened at the first check after such a change.
 struct Balance {
     bool open = false;
-    // False while a damped body is held, or an implicit element has a held node. Held nodes then take up momentum,
-    // through damping or through the inertia of the element, that is not measured.
+    // True if all exchanged momentum is measured. False while a damped body is held, or a held node belongs to an
+    // implicit element. The held nodes then take up momentum that is not measured, through damping or through the
+    // inertia of the element.
     bool momentum_known = true;
     std::uint64_t steps = 0;  // since the opening
     // at the opening
-    Real energy = 0;                          // kinetic energy of moving nodes, elastic and potential energy [J]
-    Real potential = 0;                       // [J]
-    Vec3 momentum = Vec3::Zero();             // momentum of moving nodes [kg m/s]
-    Vec3 impulse = Vec3::Zero();              // external impulse since the opening [N s]
-    Real work = 0;                            // external work minus dissipation since the opening [J]
-    Real energy_flow = 0, momentum_flow = 0;  // sums of |work| and |impulse| over all steps and causes [J, N s]
-    // Largest values of the run.
-    Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy available for exchange [J]
+    Real energy = 0;     // kinetic energy of moving nodes, plus elastic and potential energy, at the opening [J]
+    Real potential = 0;  // [J]
+    Vec3 momentum = Vec3::Zero();  // momentum of moving nodes at the opening [kg m/s]
+    Vec3 impulse = Vec3::Zero();   // external impulse since the opening of the balance [N s]
+    Real work = 0;                 // external work minus dissipation since the opening of the balance [J]
+    // sums of |work| and |impulse| over all steps and causes since the opening [J, N s]
+    Real energy_flow = 0, momentum_flow = 0;
+    // The largest values in the run:
+    Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy that could be exchanged [J]
     Real momentum_error = 0, momentum_scale = 0;  // [kg m/s]
 
     void close() { open = false; }
@@ -40,7 +43,7 @@ void add_step(const StepScratch& step, Balance& balance);
 /// The kinetic energy is corrected for this lag with the present forces.
 void check_balance(const Model& model, Real lag, Balance& balance);
 
-/// Returns a copy of the balance after check_balance, for a report. A closed balance is returned unchanged.
+/// Returns a copy of the balance, checked by check_balance, for a report. A closed balance is returned unchanged.
 Balance checked_balance(const Model& model, Real lag, Balance balance);
 
 }  // namespace skerry

@@ -1,5 +1,5 @@
-// Choice of the implicit elements: the few elements that would make the steps of all bodies much shorter
-// (docs/methods/clusters.md 5).
+// Choice of the elements to be integrated implicitly: the few elements that would make the steps of all bodies much
+// shorter (docs/methods/clusters.md 5).
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -22,27 +22,29 @@ namespace skerry {
 
 namespace {
 
-// Cost of one entry of a cluster matrix in a step [ns]. On a busy core six thrown meshes took 100 ns per element and
-// 1.5 ns per entry. Only the ratio to element_cost matters.
+// Computing time that one entry of a cluster matrix needs in a step [ns]. On a busy core six thrown meshes took 100 ns
+// per element and 1.5 ns per entry. Only the ratio to element_cost matters.
 constexpr Real entry_cost = 0.7;
-/// Factor by which clusters must at least reduce the cost of a simulated second. Smaller savings do not justify the
-/// slight change of the results.
+/// Least factor by which clusters must reduce the computing time of a simulated second. A smaller reduction does not
+/// justify the slight change of the results.
 constexpr Real least_gain = 1.5;
-/// Bounds of the moment of inertia I that clusters may add to a body, where I is the smallest principal moment. The
-/// larger of two bounds counts: the fraction most_moment of I, and the fraction of_lumping of the increase of I by
-/// lumped masses. In typical meshes the larger bound is 3 to 20 % of I.
+/// Bounds of the moment of inertia that clusters may add to a body. Let I be the smallest principal moment of the body.
+/// The bound is the larger of two values: most_moment * I, and of_lumping times the amount by which lumped masses
+/// increase I. In typical meshes it is 3 to 20 % of I.
 constexpr Real most_moment = 0.01, of_lumping = 0.25;
-constexpr std::size_t largest_cluster = 1024;  // nodes; their matrix takes 8 MB and about a second to invert
-/// The matrices of clusters are computed for elements that are stiffer than at rest by this factor. Steps then stay
-/// stable while strain stiffens these elements.
+// number of nodes; a cluster matrix of this size takes 8 MB and about a second to invert
+constexpr std::size_t largest_cluster = 1024;
+/// Factor by which the elements of clusters are assumed to be stiffer than at rest when cluster matrices are computed.
+/// Steps then stay stable while strain stiffens these elements.
 constexpr Real headroom = 4;
-constexpr Real most_lengthening = 32;  // largest ratio of the step with clusters to the step without
-/// Least ratio of the step with clusters to the step without. With a smaller ratio the cost could hardly fall by the
-/// factor least_gain.
+// largest ratio of the stable step with clusters to the stable step without clusters
+constexpr Real most_lengthening = 32;
+/// Least ratio of the stable step with clusters to the stable step without clusters. With a smaller ratio the cost
+/// could hardly fall by the factor least_gain.
 constexpr Real least_lengthening = 1.68;
 /// Assumed ratio of the stable step with mass forms to the stable step with mass shares, for explicit elements. The
-/// search for implicit elements computes the latter, but steps use mass forms. The ratio was 1.27 to 1.34 for four
-/// meshes.
+/// ratio is needed because the search for implicit elements computes stable steps with mass shares, whereas the
+/// simulation uses mass forms. The measured ratio was 1.27 to 1.34 for four meshes.
 constexpr Real gain_of_forms = 1.25;
 
 bool has_elements(const Model& model, std::size_t b) {
@@ -55,7 +57,7 @@ Real step_of(const Model& model, std::size_t b, std::span<const Vec3> position, 
         .step;
 }
 
-/// Copy of mass shares, mass forms, frame masses and implicit moduli of a body, to restore them.
+/// Copy of the mass shares, mass forms, frame masses and implicit moduli of a body, from which they can be restored.
 struct Kept {
     std::vector<ElementLane> mass_share, modulus;
     std::vector<ElementForm> mass_form;
@@ -82,8 +84,8 @@ struct Kept {
     }
 };
 
-/// Updates all data of a body that depend on its implicit elements: inversion barriers, leeway of tetrahedra and
-/// viscosity.
+/// Updates all data of a body that depend on which of its elements are implicit: inversion barriers, leeway of
+/// tetrahedra (tetrahedra.leeway) and viscosity.
 void note_implicit(Model& model, std::size_t b) {
     const Range of_body = model.bodies.blocks[b];
     arm_guards(model.all_elements(), of_body, model.nodes.inverse_mass,
@@ -97,7 +99,7 @@ void note_implicit(Model& model, std::size_t b) {
     model.patches.resize_viscous(model.elements.first.size());
 }
 
-/// Largest allowed increase of the smallest moment of inertia of a body by clusters, as a fraction of this moment.
+/// Largest increase of the smallest moment of inertia of a body that clusters may cause, as a fraction of this moment.
 Real most_moment_of(const Model& model, std::size_t b) {
     const Range blocks = model.bodies.tetrahedron_blocks[b];
     return std::max(most_moment, of_lumping * moment_of_lumping(rows_of(model.tetrahedra.node, blocks),
@@ -106,8 +108,8 @@ Real most_moment_of(const Model& model, std::size_t b) {
 }
 
 struct Found {
-    bool possible = false;  // true unless there are too many implicit elements or too heavy clusters
-    Real moment = 0;        // moment of inertia that clusters add, divided by its limit
+    bool possible = false;  // false if there are too many implicit elements or too heavy clusters
+    Real moment = 0;        // moment of inertia that clusters add, divided by the largest allowed value
     ClusterSizes sizes{};
 };
 
@@ -132,8 +134,8 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// Finds the implicit elements of a body for a step length [s]. Writes the element columns of the body even if the
-    /// result is not possible.
+    /// Finds the implicit elements of a body for a step length [s]. Writes the element columns of the body even if
+    /// `possible` of the result is false.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         for (const Result& known : twins.known) {
@@ -166,17 +168,17 @@ private:
     };
     struct OfTwins {
         std::size_t bodies = 0, searched = 0;
-        Real most_moment = 0;                    // limit of the added moment of inertia, as a fraction
-        std::optional<ImplicitSearch> search{};  // made when first used
+        Real most_moment = 0;  // largest increase of the smallest moment of inertia, as a fraction of this moment
+        std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> known{};
     };
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
-    std::vector<OfTwins> of_first_;  // by row of the first of several equal bodies
+    std::vector<OfTwins> of_first_;  // for each group of equal bodies, at the row of the first body
 };
 
-/// Makes every element of a body explicit again, with mass shares as for a new body.
+/// Makes every element of a body explicit again, and finds mass shares and mass forms as for a new body.
 void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     const Range blocks = model.bodies.blocks[b];
     const std::span<ElementLane> share = rows_of(model.elements.mass_share, blocks);
@@ -191,7 +193,8 @@ void make_explicit(Model& model, std::size_t b, std::span<Real> stiffness_sum) {
     model.bodies.stable_step[b] = step_of(model, b, model.nodes.position, stiffness_sum);
 }
 
-/// Computing time of a simulated second with steps of length `step` [ns].
+/// Computing time of a simulated second with steps of length `step` [ns]. `entries`: number of entries of all cluster
+/// matrices.
 Real cost_of(const Model& model, std::size_t entries, Real step) {
     const Real elements = static_cast<Real>(model.elements.first.size() * element_lanes);
     return (element_cost * elements + entry_cost * static_cast<Real>(entries)) / step;
@@ -199,17 +202,17 @@ Real cost_of(const Model& model, std::size_t entries, Real step) {
 
 struct PlannedBody {
     std::size_t row;
-    Real moment;    // moment of inertia that clusters add, divided by its limit
-    Kept elements;  // its planned elements
+    Real moment;    // moment of inertia that clusters add, divided by the largest allowed value
+    Kept elements;  // elements of the body after the planned change
 };
 
-/// A choice of the implicit elements of all bodies, for one step length.
+/// A choice of implicit elements in all bodies, for one step length.
 struct Plan {
-    Real step = 0;  // step length; 0: every element is explicit [s]
+    Real step = 0;  // step length for which the plan is made; 0: every element is explicit [s]
     Real cost = 0;  // computing time of a simulated second [ns]
     bool possible = true;
     std::size_t entries = 0;
-    std::vector<PlannedBody> body;  // the bodies with implicit elements
+    std::vector<PlannedBody> body;  // plans of the bodies that have implicit elements
 };
 
 Plan plan_for(Model& model, Real step, Searches& searches) {
@@ -235,15 +238,16 @@ Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffne
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// Sets the step length for which the clusters of a body are made. `stands`: stable step of its explicit elements [s].
+/// Sets the step length for which the clusters of a body are made. `stands`: stable step of the explicit elements of
+/// the body [s].
 void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
     model.bodies.rest_step[b] = std::min(step, stands);
 }
 
-/// Longest step at which clusters planned for the length `step` are not too heavy [s]. `moment`: moment of inertia that
-/// the clusters add at the length `step`, divided by its limit.
+/// Longest step for which the planned clusters are not too heavy [s]. `step`: step length for which they were planned.
+/// `moment`: moment of inertia that the clusters add at this length, divided by the largest allowed value.
 Real longest_by_moment(Real step, Real moment) {
     return moment > 0 ? step / std::sqrt(moment) : infinity;
 }
@@ -252,13 +256,16 @@ Real longest_step(const Model& model) {
     return model.settings.step_size.value_or(infinity) / model.tuning.step_safety;
 }
 
-/// Makes the planned elements of all bodies implicit. The stable steps with mass forms then limit the step length.
+/// Makes the planned elements of all bodies implicit. The step length of the clusters is then limited by the stable
+/// steps of explicit elements, evaluated with mass forms.
 void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model);
-    std::vector<Real> stands(twin.size());  // stable step of explicit elements by body; 0: no clusters [s]
+    // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
+    std::vector<Real> stands(twin.size());
     for (const PlannedBody& body : plan.body) {
-        if (const std::size_t first = twin[body.row]; stands[first] > 0) {  // equal bodies have equal plans
+        // equal bodies have equal plans, so the values of the first body are copied
+        if (const std::size_t first = twin[body.row]; stands[first] > 0) {
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
@@ -278,7 +285,7 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
 }
 
-/// Shortest stable step at rest of all bodies with elements [s].
+/// Shortest stable step at rest among all bodies with elements [s].
 Real shortest_step(const Model& model) {
     Real shortest = infinity;
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
@@ -286,9 +293,9 @@ Real shortest_step(const Model& model) {
     return shortest;
 }
 
-/// Makes plans for steps of 2, 4, ... times the shortest stable step. Then makes plans for some steps between the
-/// cheapest of these steps and the next longer one. Returns the cheapest plan, or a plan with step 0 if clusters do not
-/// pay.
+/// Returns the cheapest plan of several step lengths, or a plan with step 0 if clusters do not reduce the cost enough.
+/// First makes plans for 2, 4, ... times the shortest stable step. Then makes plans for some steps between the cheapest
+/// of these and the next longer one.
 Plan choose_plan(Model& model, std::span<Real> stiffness_sum) {
     const Real shortest = shortest_step(model), longest = longest_step(model);
     Plan best{.body = {}};
@@ -320,16 +327,17 @@ bool clusters_allowed(const Settings& settings) {
 }
 
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum) {
-    constexpr Real inversion_cost = 0.4;  // cost of inverting a matrix, divided by the cube of its width [ns]
-    constexpr Real lasts = 128;           // assumed number of steps between two inversions
+    // computing time for inverting a matrix, divided by the cube of its width [ns]
+    constexpr Real inversion_cost = 0.4;
+    constexpr Real lasts = 128;  // assumed number of steps between two inversions of a cluster matrix
     const Range blocks = model.bodies.blocks[body];
     const Kept kept(model, body);
     const std::size_t entries = model.clusters.inverse.size();
     const std::size_t before =
         cluster_sizes(model.all_elements(), blocks, kept.modulus, model.nodes.inverse_mass).entries;
     const Real of_clusters = std::max(step, model.bodies.cluster_step[body]);
-    // Mass forms are removed, because the search for implicit elements evaluates stable steps with mass shares. The
-    // division of nodal masses by shares adapts to the deformed shape; mass forms are the same in every shape.
+    // Mass forms are removed, because the search for implicit elements evaluates stable steps with mass shares. Mass
+    // shares adapt to the deformed shape, whereas mass forms are the same in every shape.
     forget_mass_forms(model, blocks);
     const Real most = most_moment_of(model, body);
     const Found found =

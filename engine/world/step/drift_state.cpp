@@ -1,6 +1,6 @@
-// The drift of leapfrog before the first kick and after the last kick of a call. Positions drift by half a step. Kicks
-// then lie in the middle of their steps, and the state at both ends of a call belongs to one time. Each step is
-// symmetric in time, whatever its length.
+// The drift of leapfrog before the first kick and after the last kick of a call. Each drift moves positions by half a
+// step. Every kick then lies in the middle of its step, and positions and velocities at both ends of a call belong to
+// one time. Each step is symmetric in time, whatever its length.
 #include <algorithm>
 
 #include "engine/world/step/step.h"
@@ -40,7 +40,7 @@ void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, Searc
     move_colliders(ColliderMotionInputs::bind({}, c), clock.time, seconds, c.motion);
     move_colliders(ColliderMotionInputs::bind({}, a), clock.time, seconds, a.motion);
     drive_nodes(NodeMotionInputs::bind({}, a), seconds, n.position, n.velocity);
-    const bool pushed = false;  // no contact pushes positions during a drift
+    const bool pushed = false;  // false, because no contact pushes positions during a drift
     RigidBodyTable& r = model.rigid_bodies;
     ImplicitNodeTable& i = model.implicit_nodes;
     forget_impulses(r);
@@ -69,14 +69,15 @@ void measure_displacement_again(Executor& executor, Model& model, SearchMemory& 
             n.position.span().subspan(first, count), n.displacement_origin.span().subspan(first, count),
             model.bodies.frame[static_cast<std::size_t>(k.body[b])].offset);
     }
-    measure_displacement_of(executor, model, 0, search);  // a duration of 0 s: the frames do not move
+    measure_displacement_of(executor, model, 0, search);  // with a duration of 0 s the frames of bodies do not move
 }
 
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders) {
     for (std::size_t c = 0; c < colliders.slot.size(); ++c) {
         const RigidMotion& motion = colliders.motion[c];
-        // The fastest point of a rotating shape is the one farthest from the axis. Only points near a body matter. They
-        // lie within the distance `extent` from the origin of the collider, as found by the contact search.
+        // The fastest point of a rotating shape is the point farthest from the axis. Only points near a body matter.
+        // These points lie within the distance `extent` from the origin of the collider, as found by the contact
+        // search.
         const Real turning = motion.angular_velocity.norm();
         const Real rim_speed = turning > 0 && c < extent.size() ? turning * extent[c] : 0;
         colliders.travel[c] += seconds * (motion.velocity.norm() + rim_speed);

@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-/// Compares numbers bitwise and not by value, so that NaN equals itself.
+/// Compares numbers bitwise and not by value, so that equal NaNs count as equal.
 template <class Rows>
 bool same_bits(const Rows& a, const Rows& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);

@@ -1,4 +1,5 @@
-// Search for equal bodies, with the same mesh and elements. Results for one of them hold for all.
+// Search for equal bodies, which have equal meshes and elements. Results for one of these bodies are valid for all of
+// them.
 #pragma once
 
 #include <vector>
@@ -7,8 +8,9 @@
 
 namespace skerry {
 
-/// Returns for each body the row of the first body with equal rest shape, elements, materials, masses and held nodes;
-/// the row of the body itself if no earlier body is equal. Equal means bitwise and in the same order.
+/// Returns for each body the row of the first body that equals it in rest shape, elements, materials, masses and held
+/// nodes. If no earlier body is equal, this is the row of the body itself. Numbers are compared bitwise, and lists in
+/// order.
 std::vector<std::size_t> find_twins(const Model& model);
 
 }  // namespace skerry

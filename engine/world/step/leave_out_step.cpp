@@ -1,4 +1,4 @@
-// Steps that are skipped because all bodies sleep and nothing moves. No stage would change anything
+// Steps that are skipped because all bodies sleep and nothing moves. In such a step no stage would change anything
 // (docs/methods/skipping.md 3.2).
 #include <algorithm>
 
@@ -12,19 +12,22 @@ namespace {
 bool all_bodies_rest(const BodyTable& bodies) {
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         if (bodies.kind[b] == BodyKind::deformable && !bodies.asleep[b]) return false;
-        if (bodies.max_speed[b] != 0)
-            return false;  // a body that has just fallen asleep: a step with stages must first set its speed to zero
+        // A body that has just fallen asleep still has a speed. A step that runs the stages must first set this speed
+        // to zero.
+        if (bodies.max_speed[b] != 0) return false;
     }
     return true;
 }
 
-/// Computes the motion of all rows of a table in this step. Returns true if no row moves.
+/// Computes the motion of all rows of a table (colliders or attachments) in this step. Returns true if none of them
+/// moves.
 bool all_stand_still(auto& table, Real time, Real h) {
     move_colliders(ColliderMotionInputs::bind({}, table), time, h, table.motion);
     return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
 }
 
-/// True if a stable step must still be evaluated for a body that is asleep now but moved when its shape was stored.
+/// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
+/// shape was stored and has fallen asleep since.
 bool looks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
         if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_looked_at) return true;
@@ -52,7 +55,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
 
 void look_at_balance(WorldState& world) {
     Balance& balance = world.record.balance;
-    // nothing has moved since the last check
+    // the balance cannot have changed, because nothing has moved since the last check
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;
     check_balance(world.model, lag_between_steps(world), balance);
     world.record.balance_of_rest = world.scratch.left_out;

@@ -9,7 +9,8 @@ namespace skerry {
 
 namespace {
 
-/// For each row, links the first joined body to each other body that the row joins.
+/// Adds links between joined bodies: for each row of the table, between its first body and each other body that the row
+/// joins.
 void add_links(AnyTable table, BodyLinks& links) {
     std::span<const Index> first;
     for (const ColumnInfo& info : table.columns()) {
@@ -41,7 +42,7 @@ void note_forces(Model& model) {
         model.force_rate.resize(model.bodies.slot.size());
         element->add_rate(model, model.force_rate);
     }
-    // The next step accounts for the work of forces that are gone.
+    // If the last force element was removed, the next step must still account for the work of its last forces.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });

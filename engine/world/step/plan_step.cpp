@@ -1,4 +1,5 @@
-// The length of the next step, and its position within a long step of implicit bodies (docs/step_length.md).
+// The length of the next step, and the position of this step within a long step of implicit bodies
+// (docs/step_length.md).
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +11,7 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     StepPlan plan;
     plan.stable = trusted_step(model, &plan.stiffest);
     const Real longest = std::min(plan.stable, fast_limit);
-    // A remainder of the size of rounding errors belongs to the last step.
+    // The tolerance prevents an extra step for a remaining time that is only a rounding error.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;
     plan.h = left / plan.steps;
     return plan;
@@ -19,7 +20,7 @@ StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
     if (!(model.settings.implicit_step > 0) || model.implicit_nodes.size() == 0) return left;
     if (clock.length == 0) {
-        // A remainder of the size of rounding errors belongs to the last long step.
+        // The tolerance prevents an extra long step for a remaining time that is only a rounding error.
         const Real count = std::max(1.0, std::ceil(left / model.settings.implicit_step - 1e-9));
         clock.length = clock.left = left / count;
     }
@@ -28,7 +29,8 @@ Real left_in_long_step(const Model& model, Real left, LongStepClock& clock) {
 
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan) {
     const LongStepTimes times{clock.length, clock.left == clock.length, plan.steps == 1};
-    return times.starts && times.ends ? LongStepTimes{} : times;  // the long step is one ordinary step
+    // a long step that consists of one step is treated like an ordinary step
+    return times.starts && times.ends ? LongStepTimes{} : times;
 }
 
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock) {

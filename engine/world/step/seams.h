@@ -1,5 +1,5 @@
-// Interfaces for extensions of a step: force elements, motion models and constraint laws. step.cpp visits the lists of
-// all three kinds and names no entry of these lists.
+// Interfaces for extensions of a step: force elements, motion models and constraint laws. step.cpp iterates over one
+// list for each of these three kinds, and does not name any entry.
 #pragma once
 
 #include <array>
@@ -15,58 +15,62 @@ namespace skerry {
 using ListStages = void (*)(WorldState&, TaskGraph&);
 
 /// A force element: a force on nodes that is neither elastic nor a constraint. It acts on the nodes of all bodies,
-/// however these bodies move. The balance of a run counts its forces as external work.
+/// whatever their motion model. The balance of a run counts its forces as external work.
 struct ForceElement {
     // Returns whether the world has this force element. If none is present, the stages of all force elements are
     // skipped.
     bool (*any)(const Model&);
     ListStages add_forces;  // adds forces to NodeTable::applied_force at the start of the step
-    // For each body, adds an upper bound of the contribution of this element to the squared natural frequencies. This
-    // bound limits the stable step [1/s^2]. Null: the forces do not depend on positions.
+    // For each body, adds an upper bound of the contribution of this force element to the squared natural frequencies
+    // of the body [1/s^2]. This bound limits the stable step. The pointer is null if the forces do not depend on
+    // positions.
     void (*add_rate)(const Model&, std::span<Real> of_body) = nullptr;
 };
 
-/// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member lists the stages
-/// of the model in one phase of the step; null: the model has no stages in this phase.
+/// A motion model: the rule by which the degrees of freedom of some bodies move in a step. Each member is a function
+/// that lists the stages of the model in one phase of the step. A null pointer means that the model has no stages in
+/// this phase.
 struct MotionModel {
     ListStages add_forces = nullptr;  // adds the elastic forces for the positions at the start of the step
     ListStages predict = nullptr;     // computes the velocities at the end of the step, without contacts
-    ListStages couple = nullptr;      // prepares the response of bodies to contact impulses, beyond lumped masses
-    ListStages apply = nullptr;       // moves internal degrees of freedom by the solved contact impulses
-    ListStages find_pose = nullptr;   // computes the pose at the end of the step, before the checks
-    ListStages check = nullptr;       // checks the state at the end of the step, and measures losses
-    ListStages integrate = nullptr;   // moves the bodies if the step can be committed
+    // prepares the response of bodies to contact impulses, if it is more than that of lumped masses
+    ListStages couple = nullptr;
+    ListStages apply = nullptr;  // changes internal degrees of freedom by the contact impulses that the solver found
+    ListStages find_pose = nullptr;  // computes the pose at the end of the step, before the checks
+    ListStages check = nullptr;      // checks the state at the end of the step, and measures losses
+    ListStages integrate = nullptr;  // moves the bodies if the step can be committed
 };
 
-/// A constraint law: rows of the contact problem with one kind of law. Each member lists the stages of the law in one
-/// phase of the step; null: the law has no stages in this phase.
+/// A constraint law: rows of the contact problem that obey one kind of law. Each member is a function that lists the
+/// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
 struct ConstraintLaw {
-    ListStages find = nullptr;      // finds the rows of this step and their initial impulses
-    ListStages measure = nullptr;   // measures work, losses and errors of the solved rows
-    ListStages check = nullptr;     // checks that the end of the step violates no constraint
-    ListStages remember = nullptr;  // stores the impulses for the next step if the step can be committed
+    ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
+    ListStages measure = nullptr;   // measures work, losses and errors of the rows after the solve
+    ListStages check = nullptr;     // checks that no constraint is violated at the end of the step
+    ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
 };
 
 extern const ForceElement nodal_loads;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies;
 extern const ConstraintLaw contact_law, joint_law;
 
-/// All force elements. Nodal loads come first: their stage sets the sum to which the other force elements add.
+/// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
+/// elements add.
 inline constexpr std::array<const ForceElement*, 1> force_elements{&nodal_loads};
-/// All motion models. The order matters where two models write the same columns: rigid bodies come first, since the
-/// frames of implicit bodies move as rigid bodies do.
+/// All motion models. The order matters where two models write the same columns. Rigid bodies come first, because the
+/// frames of implicit bodies move like rigid bodies.
 inline constexpr std::array<const MotionModel*, 4> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies};
 /// All constraint laws.
 inline constexpr std::array<const ConstraintLaw*, 2> constraint_laws{&contact_law, &joint_law};
 
-/// Condition of a stage that changes the state of the world: the step can be committed.
+/// Condition of a stage that changes the state of the world: the stage runs only if the step can be committed.
 inline auto if_taken(const WorldState& world) {
     const StepFindings& found = world.scratch.findings;
     return only_if(can_be_taken, read(found.verdict), read(found.crossings), read(found.inversions),
                    value(world.scratch.parameters));
 }
-/// Condition of a stage that checks the end of the step: no fault has been found so far.
+/// Condition of a stage that checks the end of the step: the stage runs only if no fault has been found so far.
 inline auto if_possible(const WorldState& world) {
     return only_if([](const StepVerdict& verdict) { return verdict.fault == StepFault::none; },
                    read(world.scratch.findings.verdict));

@@ -26,14 +26,14 @@ constexpr Real step_of_rigid_bodies = 1.0 / 120;
 
 Real step_of_body(const Model& model, std::size_t body) {
     Real step = model.bodies.stable_step[body];
-    // Adds the bounds of squared natural frequencies: 4 / step^2 of the elements, and `rate` of the force elements. The
+    // Adds bounds of squared natural frequencies: 4 / step^2 for the elements, and `rate` for the force elements. The
     // largest eigenvalue of a sum of symmetric matrices is at most the sum of their largest eigenvalues.
     if (const Real rate = model.force_rate.empty() ? 0 : model.force_rate[body]; rate > 0)
         step = 2 / std::sqrt(4 / (step * step) + rate);
     const Index material = model.bodies.material[body];
     const Real damping = material == no_index ? 0 : model.materials.damping[static_cast<std::size_t>(material)];
-    // Damping multiplies velocities by a factor, `kept`, in a step. A mode of the circular frequency omega is then
-    // stable for steps h with omega h < sqrt(2 (1 + kept)).
+    // In each step, damping multiplies velocities by a factor k. A mode of the circular frequency omega is then stable
+    // for step lengths h with omega h < sqrt(2 (1 + k)).
     return damping > 0 && std::isfinite(step) ? step * std::sqrt((1 + std::exp(-damping * step)) / 2) : step;
 }
 
@@ -69,9 +69,9 @@ Real step_with_frame(const Model& model) {
 
 namespace {
 
-/// Better bound of the stable step for a body with clusters that is strained in a few places [s]. It covers the
-/// explicit elements only. `stands`: a step length known to be stable. `asked`: no longer step is searched for. Returns
-/// `stands` if it is at least `asked`, or if no longer stable step is found.
+/// Better bound of the stable step for a body with clusters that is strained in a few places only [s]. The bound covers
+/// the explicit elements. `stands`: a step length known to be stable. `asked`: largest step length that is of interest.
+/// Returns `stands` if it is at least `asked`, or if no longer stable step is found.
 Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
@@ -94,8 +94,8 @@ Real explicit_step(const Model& model, std::size_t body, std::span<const Vec3> p
     return strained_step_of(model, body, position, model.bodies.rest_step[body], step, stiffness_sum);
 }
 
-/// Stable step of a body with its clusters, given the stable step `step` of its explicit elements [s]. NaN for an
-/// invalid shape.
+/// Stable step of a body with its clusters [s]; NaN for an invalid shape. `step`: stable step of the explicit elements
+/// of the body.
 Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3> position, Real step) {
     const Real of_clusters = model.bodies.cluster_step[body];
     if (!(of_clusters > 0)) return step;
@@ -114,7 +114,7 @@ Real look_at_stable_step(const Model& model, std::size_t body, std::span<const V
 
 namespace {
 
-/// Stores newly evaluated stable steps, body by body, and adds clusters where they help.
+/// Stores newly evaluated stable steps, body by body. Makes elements implicit where clusters reduce the computing time.
 class LooksTaken {
 public:
     LooksTaken(Model& model, Column<Real>& stiffness_sum) : model_(model), stiffness_sum_(stiffness_sum) {
@@ -124,11 +124,10 @@ public:
     }
 
     void take(std::size_t b, Real step) {
-        // A body gets clusters when strain makes its stable step shorter than goal_ by the factor worth_clusters. Its
-        // implicit elements are chosen for the step length reserve * goal_, so that the body stays stable until the
-        // next evaluation. If a body already has clusters, both factors are different, so that more clusters are added
-        // later. The reason: implicit elements stay implicit, although the stable step grows again when the strain
-        // decreases.
+        // A body gets clusters when strain has made its stable step shorter than goal_ / worth_clusters. Its implicit
+        // elements are chosen for the step length reserve * goal_, so that the body stays stable until the next
+        // evaluation. For a body that already has clusters, both factors are chosen so that more clusters are added
+        // later. The reason: elements stay implicit, although the stable step grows again when the strain decreases.
         const bool has_clusters = model_.bodies.cluster_step[b] > 0;
         const Real worth_clusters = has_clusters ? 2.5 : 1.25, reserve = has_clusters ? 1 / 1.5 : 1.05;
         BodyTable& bodies = model_.bodies;
@@ -146,7 +145,7 @@ public:
         bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
-    /// Energy that the inertia of new clusters has added to the balance [J].
+    /// Energy that the inertia of newly added clusters has added to the balance [J].
     Real end() {
         if (changed_.empty()) return 0;
         model_.rebuild_clusters(changed_);
@@ -156,9 +155,10 @@ public:
 private:
     Model& model_;
     Column<Real>& stiffness_sum_;
-    Real goal_ = infinity;               // shortest stable step of all bodies at rest [s]
-    Real energy_before_ = 0;             // J
-    std::vector<std::uint8_t> changed_;  // by body, nonzero if its implicit elements have changed; empty: no changes
+    Real goal_ = infinity;    // shortest stable step at rest among all bodies [s]
+    Real energy_before_ = 0;  // J
+    // for each body, nonzero if its implicit elements have changed; empty: no body has changed
+    std::vector<std::uint8_t> changed_;
 };
 
 }  // namespace
@@ -190,8 +190,8 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     const auto pieces_of = [&](Index row) {
         return pieces_of_look(elements, bodies.blocks[static_cast<std::size_t>(row)]);
     };
-    // The pieces are counted in parallel. The count is slow, because it reads memory at scattered addresses, and a step
-    // cannot begin before the count is known.
+    // Counting the pieces of work is slow, because it reads memory at scattered addresses. A step cannot begin before
+    // the count is known, so it runs in parallel.
     constexpr std::size_t bodies_per_block = 64;
     const WatchPieces all = reduce(
         executor, bodies.slot.size(), bodies_per_block, pieces_memory, {},
@@ -212,7 +212,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     std::uint64_t kept = all.kept;
     const auto share = static_cast<Real>(std::min(watch.steps + 1, round)) / static_cast<Real>(round);
     watch.target = static_cast<std::uint64_t>(std::ceil(share * static_cast<Real>(all.total)));
-    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // saved worlds have one row per node, too
+    watch.position.resize(model.nodes.position.size(), Vec3::Zero());  // one row per node, as in saved worlds
     watch.stiffness_sum.resize(model.nodes.position.size());
     watch.step.resize(bodies.slot.size());
     const auto first = static_cast<std::size_t>(watch.kept);

@@ -1,7 +1,7 @@
 // The step on one page: a list of stages in phases. The task graph derives the order of the stages from the data that
-// they read and write. So forces and contact search run in parallel, and so do the solves of different regions
-// (docs/figures/step_graph.svg). A stage is named folder/function. The function bind() of an input struct lists the
-// columns that the stage reads.
+// the stages read and write. So forces and contact search run in parallel, and so do the solves of different regions
+// (docs/figures/step_graph.svg). The name of a stage has the form folder/function. The function bind() of an input
+// struct lists the columns that the stage reads.
 #include "engine/world/step/step.h"
 
 #include "engine/world/kernels.h"
@@ -100,7 +100,7 @@ void move_as_scripted(WorldState& w, TaskGraph& g) {
             write(n.velocity));
 }
 
-/// Lists the stage that evaluates stable steps, in parallel with all other stages.
+/// Lists the stage that evaluates stable steps. This stage runs in parallel with all other stages.
 void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/watch_stable_steps", kernels().watch_stable_steps,
@@ -108,8 +108,8 @@ void watch_stable_steps_beside(WorldState& w, TaskGraph& g) {
             make(w.scratch.watch_parts), make(m.watch));
 }
 
-/// Lists the stages that divide contacts into regions. Contacts that share a moving block of degrees of freedom belong
-/// to one region.
+/// Lists the stages that divide contacts into regions. Two contacts belong to the same region if impulses of both
+/// change the motion of the same degrees of freedom.
 void separate(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     ContactTable& c = w.scratch.contacts;
@@ -153,7 +153,7 @@ void measure_forces(WorldState& w, TaskGraph& g) {
 }
 
 /// Lists the checks that all motion models share: velocities are finite and slow enough, and no element deforms too
-/// much in one step. Also lists the measurement of external work.
+/// much in one step. Also lists the stage that measures external work.
 void check_end(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     NodeTable& n = m.nodes;

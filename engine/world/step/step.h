@@ -1,4 +1,4 @@
-// The parts of a step, grouped by source file. World::advance (advance.cpp) calls them.
+// The functions that together make up a step, grouped by source file. World::advance (advance.cpp) calls them.
 #pragma once
 
 #include "engine/world/world_state.h"
@@ -17,58 +17,62 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 
 // note_forces.cpp
 
-/// After force elements, or bodies with any, were added, changed or removed: derives Model::forced and force_rate.
+/// Computes Model::forced and force_rate. Must be called after force elements, or bodies on which they act, were added,
+/// changed or removed.
 void note_forces(Model& model);
-/// Before steps: derives Model::links if rows that join bodies have changed, and Model::forced if the last force
-/// element is gone.
+/// Must be called before steps. Computes Model::links again if rows that join bodies have changed, and Model::forced if
+/// the last force element was removed.
 void note_changed_seams(Model& model);
 
 // stable_steps.cpp
 
-/// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of this body.
+/// Shortest of the stable steps of all bodies, as last evaluated [s]. `body`: receives the row of the body with this
+/// step.
 Real stable_step(const Model& model, Index* body = nullptr);
-/// Stable step of one body: the bound of its elements, reduced for damping (docs/methods/stable_step.md 6.1) and for
-/// force elements [s].
+/// Stable step of one body [s]. It is the stable step of the body's elements, shortened because of damping
+/// (docs/methods/stable_step.md 6.1) and of force elements.
 Real step_of_body(const Model& model, std::size_t body);
-/// Stable step for reports [s]. If all bodies are stable at any step, because they are rigid or implicit, it is the
+/// Stable step for reports [s]. If all bodies are rigid or implicit, and therefore stable at any step length, it is the
 /// result of trusted_step.
 Real told_step(const Model& model, Index* body = nullptr);
-/// The longest step that is taken: the stable step, or the limit of the settings if this limit is shorter [s].
+/// The longest step that is taken [s]: the stable step times Tuning::step_safety, or the step length from the settings
+/// (with rigid or implicit bodies at most 1/120 s by default), whichever is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
-/// Longest step that would be taken if a rigid or implicit body were added [s].
+/// Longest step that would be taken after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
 /// Evaluates the stable step of one body for the given node positions [s].
 Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
                          Column<Real>& stiffness_sum);
-/// Evaluates the stable steps of all bodies at once. A body whose stable step is much shorter than at rest gets
-/// clusters where they help. Returns the energy that the inertia of new clusters adds to the balance [J].
+/// Evaluates the stable steps of all bodies at once. If the stable step of a body is much shorter than at rest, makes
+/// elements of this body implicit where this reduces the cost. Returns the energy that the inertia of new clusters adds
+/// to the balance [J].
 Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum);
-/// Ends a round in which stable steps were evaluated in parallel with the steps. Bodies use the new stable steps, and
-/// get clusters as in look_at_stable_steps. Returns the energy that the inertia of new clusters adds to the balance
-/// [J].
+/// Ends a round in which stable steps were evaluated in parallel with the steps. The new stable steps are used from now
+/// on. Elements become implicit as in look_at_stable_steps. Returns the energy that the inertia of new clusters adds to
+/// the balance [J].
 Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
-/// Must be called before each step. Copies the shapes of some bodies, whose stable steps are then evaluated in parallel
-/// with this step. After a round of `round` steps, all bodies have been evaluated.
+/// Must be called before each step. Copies the shapes of some bodies; the stable steps for these shapes are then
+/// evaluated in parallel with the step. In a round of `round` steps, all bodies are evaluated.
 void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
 
-/// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do it. Returns the
+/// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do. Returns the
 /// energy that this update adds to the balance [J].
 Real follow_stiffening(Model& model);
 
 // choose_clusters.cpp
 
-/// Cost of an element in a step, including its share of nodes and contacts [ns]. It serves only to compare costs.
+/// Computing time of an element in a step, including its share of nodes and contacts [ns]. It serves only to compare
+/// costs.
 inline constexpr Real element_cost = 70;
-/// True if elements of this world may be implicit.
+/// True if the settings allow clusters, so that elements of explicit bodies may be integrated implicitly.
 bool clusters_allowed(const Settings& settings);
-/// Must be called after a change of the world. Chooses the step length and the implicit elements with the least
-/// estimated cost of a simulated second.
+/// Must be called after a change of the world. Chooses the step length and the implicit elements for which the
+/// estimated computing time of a simulated second is smallest.
 void settle_clusters(Model& model, Column<Real>& stiffness_sum);
-/// Makes the elements of a body implicit that are unstable at `step` [s], in addition to its present implicit elements.
-/// Returns false, and changes nothing, if there would be too many of them, or if steps of the present length `present`
-/// [s] cost less.
+/// Makes more elements of a body implicit: those that are unstable at the step length `step` [s]. Returns false, and
+/// changes nothing, if too many elements would be implicit, or if steps of the present length `present` [s] cost less.
 bool make_implicit(Model& model, std::size_t body, Real step, Real present, std::span<Real> stiffness_sum);
-/// Kinetic energy added by the inertia of all implicit elements [J].
+/// Kinetic energy of the inertia that all implicit elements add to their nodes [J].
 Real added_energy(const Model& model);
 
 // advance.cpp
@@ -80,43 +84,46 @@ Real lag_between_steps(const WorldState& world);
 // plan_step.cpp
 struct StepPlan {
     Real h = 0;                 // s
-    Real steps = 1;             // number of steps of length `h` to the end of the planned interval
-    Real stable = 0;            // the longest step that stability or the settings allow [s]
-    Index stiffest = no_index;  // row of BodyTable: the body with the shortest stable step
+    Real steps = 1;             // number of steps of length `h` until the end of the planned interval
+    Real stable = 0;            // longest step that stability and the settings allow [s]
+    Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
 };
-/// Plans the next step of an interval, of which `left` seconds remain. The step is at most `fast_limit` long [s].
+/// Plans the next step of an interval of which `left` seconds remain. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
-/// Time to the end of the long step that contains the next step. Begins a long step if there is none. In worlds without
-/// long steps it is `left`, the time to the end of the call [s].
+/// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
+/// none. In worlds without long steps, returns `left`, the time until the end of the call.
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);
-/// Position of the planned step within the current long step of the implicit bodies.
+/// Returns the length of the current long step of the implicit bodies, and whether the planned step is the first or the
+/// last step within this long step.
 LongStepTimes times_in_long_step(const LongStepClock& clock, const StepPlan& plan);
-/// Updates the clock of long steps after a committed step.
+/// Updates the time that is left in the current long step, after a committed step. Ends the long step after its last
+/// step.
 void move_on_in_long_step(const StepPlan& plan, LongStepClock& clock);
 
 // leave_out_step.cpp
 
-/// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and an earlier
-/// step has left no contacts or speeds. Also sets the motion of colliders and held nodes for this step.
+/// True if the planned step would change nothing but time: all bodies sleep, no script moves anything, and no contacts
+/// or speeds remain from earlier steps. Also computes the motion of colliders and held nodes for this step.
 bool nothing_moves(WorldState& world);
-/// Clears the contact and attachment forces of a skipped step, in which no stage measured them.
+/// Sets the contact and attachment forces to zero after a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
-/// Calls check_balance, unless nothing has moved since the last call.
+/// Checks the balance of energy and momentum (check_balance), unless nothing has moved since the last check.
 void look_at_balance(WorldState& world);
 
 // drift_state.cpp
 
-/// Moves positions, colliders and attachments by a drift, until they are `offset` seconds ahead of the velocities.
+/// Moves positions, colliders and attachments by a drift. Afterwards the positions are `offset` seconds ahead of the
+/// velocities.
 void drift_to(Executor& executor, Real offset, Model& model, Clock& clock, SearchMemory& search);
-/// Must be called after positions were restored. Measures the distance of each node from its displacement origin again.
+/// Must be called after positions were restored. Measures again the distance of each node from its displacement origin.
 void measure_displacement_again(Executor& executor, Model& model, SearchMemory& search);
-/// Adds the travel of colliders at their present velocities over `seconds`. The travel of bodies is found by
-/// measure_displacement.
+/// Adds to each collider the distance that it travels at its present velocity in `seconds` [s]. The travel of bodies is
+/// measured by measure_displacement.
 void add_collider_travel(Real seconds, std::span<const Real> extent, ColliderTable& colliders);
 
 // watch_problems.cpp
 
-/// State of rigid bodies, and deformation of implicit bodies, before contacts are solved.
+/// State of rigid bodies, and deformation velocities of implicit bodies, before contacts are solved.
 struct KeptFrames {
     std::span<const Vec3> center, angular_momentum;     // RigidBodyTable
     std::span<const Mat3> rotation;                     // RigidBodyTable
@@ -130,10 +137,10 @@ struct KeptFrames {
                 .deforming_before = binder.read(implicit.velocity)};
     }
 };
-/// Copies the data that define the contact problem of this step.
+/// Copies the data from which the contact problem of this step can be exported.
 void keep_velocities(std::span<const Vec3> velocity, std::span<const Vec3> velocity_next,
                      std::span<const Vec3> position, const KeptFrames& frames, KeptVelocities& kept);
-/// Passes the contact problem of the last step to its subscriber, if there is one.
+/// Passes the contact problem of the last step to the function of the subscriber. Does nothing without a subscriber.
 void show_contact_problem(const WorldState& world, Real time);
 
 }  // namespace skerry

@@ -12,41 +12,43 @@ namespace skerry {
 
 namespace {
 
-/// Total number of elements and contacts below which the stages run on the calling thread. Waking the workers would
-/// take longer than such a step (profiling/step measures it).
+/// Number of elements plus contacts below which the stages run on the calling thread. Waking the workers would take
+/// longer than such a small step (profiling/step measures it).
 constexpr std::size_t inline_work = 1024;
 
 /// Largest number of attempts with the same step length if surfaces cross. Crossings found in an attempt become
-/// contacts of the following attempts. After the last of these attempts the step is shortened.
+/// contacts of the following attempts. If surfaces cross in the last of these attempts too, the step is shortened.
 constexpr int tries_at_one_length = 4;
 
-/// A step in which surfaces cross is repeated with half its length, down to the stable step divided by this factor.
-/// Afterwards the step length grows again. Limits predicted from the speed of deformation have the same lower bound.
-/// The bound applies to the length and not to the number of halvings, because repeated halvings in successive steps
-/// would make steps shorter and shorter.
+/// A step in which surfaces cross is repeated with half its length. The shortest length is the stable step divided by
+/// this factor. Afterwards the step length grows again. Limits predicted from the speed of deformation have the same
+/// lower bound. The bound applies to the length and not to the number of halvings, because repeated halvings in
+/// successive steps would make steps shorter and shorter.
 constexpr Real most_shortening = 128;
 
-/// A step that deforms an element too fast, or for which Newton's method fails, is shortened down to the stable step
-/// divided by this factor. The factor is large because material squeezed between a rigid body and held nodes is ejected
-/// at some hundred times the speed of the rigid body. Steps this short must remain the exception.
+/// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length. The
+/// shortest length is the stable step divided by this factor. The factor is large because material squeezed between a
+/// rigid body and held nodes is ejected at some hundred times the speed of the rigid body. Steps this short must remain
+/// the exception.
 constexpr Real most_shortening_against_speed = 1024;
 
-/// A step that turns elements inside out is shortened down to the stable step divided by this factor. In thrown meshes,
-/// half the step length saves a third of these elements from inversion. Where elements are squeezed and not thrown,
-/// shorter steps do not prevent inversion, but they conserve the energy of crushed bodies. With the factor 2 instead of
-/// 4, or with faster growth of the steps, a ball shot at a wall gains a third more energy.
+/// A step that turns elements inside out is repeated with a shorter length. The shortest length is the stable step
+/// divided by this factor. In thrown meshes, half the step length saves a third of these elements from inversion. Where
+/// elements are squeezed and not thrown, shorter steps do not prevent inversion, but they conserve the energy of
+/// crushed bodies. With the factor 2 instead of 4, or with faster growth of the steps, a ball shot at a wall gains a
+/// third more energy.
 constexpr Real most_shortening_against_inversion = 4;
 
-/// Factor by which the step bound grows in each step after an inversion or a crossing.
+/// Factor by which the largest allowed step length grows in each step after an inversion or a crossing.
 constexpr Real step_growth = 1.2;
 
-/// Largest factor of growth between steps while the speed of deformation limits the steps.
+/// Largest ratio of a step length to the previous one while the speed of deformation limits the steps.
 constexpr Real fast_growth = 1.5;
 
-/// The next step is planned with this fraction of the allowed strain change, because it may deform elements faster than
-/// this step. The margin usually suffices.
+/// Fraction of the allowed strain change for which the next step is planned, because the next step may deform elements
+/// faster than the present one. This margin usually suffices.
 constexpr Real strain_margin = 0.9;
-/// A step that deforms an element too fast is repeated with a length between these two fractions of its length.
+/// If a step deforms an element too fast, the length of its repetition lies between these two fractions of its length.
 constexpr Real least_at_once = 0.9, most_at_once = 0.25;
 
 void copy(std::span<const Real> from, Column<Real>& to) {
@@ -54,7 +56,8 @@ void copy(std::span<const Real> from, Column<Real>& to) {
     std::ranges::copy(from, to.begin());
 }
 
-/// Resets the velocities that a contact may have given to sleeping bodies in an attempt that is not committed.
+/// Resets the velocities of sleeping bodies, to which a contact may have given a velocity in an attempt that is not
+/// committed.
 void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     for (std::size_t b = 0; b < bodies.asleep.size(); ++b) {
         const Range nodes = bodies.nodes[b];
@@ -63,22 +66,22 @@ void keep_at_rest(const BodyTable& bodies, std::span<Vec3> velocity_next) {
     }
 }
 
-/// Kick of a step: time for which forces act [s]. Symplectic Euler is leapfrog with velocities half a step behind the
-/// positions. Its kick lasts from the middle of the last step to the middle of this step (docs/methods/time_stepping.md
-/// 1.5). With leapfrog the kick lasts as long as the step.
+/// Kick of a step: time for which forces act on velocities [s]. Symplectic Euler is leapfrog with velocities half a
+/// step behind the positions. Its kick lasts from the middle of the last step to the middle of this step
+/// (docs/methods/time_stepping.md 1.5). With leapfrog the kick lasts as long as the step.
 Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) {
     if (model.settings.integrator != Integrator::symplectic_euler || clock.step_before == 0) return plan.h;
     Real before = clock.step_before;
-    // If the last step was much longer than the present stable step, a body is new or has become stiffer. A kick from
-    // the middle of the last step would then be too long for it.
+    // If the last step was much longer than the present stable step, a body was added or has become stiffer. For this
+    // body, a kick from the middle of the last step would be too long.
     constexpr Real growth = 2;
     if (before > growth * plan.stable)
         before = std::min(before, growth * model.tuning.step_safety * stable_step(model));
     return (before + plan.h) / 2;
 }
 
-/// Ratio of the present kick to the last kick: exactly 1 if they differ only by rounding, 0 if the last kick is not
-/// known.
+/// Returns the ratio of the present kick to the last kick. The ratio is exactly 1 if the kicks differ only by rounding,
+/// and 0 if the last kick is not known.
 Real kick_over_last(Real kick, Real last) {
     constexpr Real rounding = 1e-12;
     if (!(last > 0)) return 0;
@@ -124,8 +127,8 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Makes the element rotations and viscous strains of this step the input of the next step. For unstrained bodies the
-/// swapped columns contain equal values.
+/// Makes the element rotations and viscous strains of this step the input of the next step, by swapping columns. For
+/// unstrained bodies the swapped columns contain equal values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
@@ -134,13 +137,13 @@ void keep_frames(WorldState& world) {
         return;
     }
     ElementInputs awake = world.model.awake_elements();
-    // A body that this step has woken was asleep during the stages, so its element rotations were not computed.
+    // A body that this step has woken was asleep while the stages ran, so its element rotations were not computed.
     awake.body_asleep = world.transaction.rested(world.model.bodies);
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, which can
-/// deform any body.
+/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, because this
+/// can deform any body.
 void forget_unstrained(BodyTable& bodies) {
     std::ranges::fill(bodies.unstrained, std::uint16_t{0});
 }
@@ -163,8 +166,8 @@ void commit(WorldState& world) {
     world.clock.kick_before = parameters.kick;
 }
 
-/// The cause of a short step is strain, not the rest shape, if the stable step of the body is less than this fraction
-/// of its stable step at rest.
+/// Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
+/// short step. Above this ratio the cause is the rest shape.
 constexpr Real as_at_rest = 0.9;
 
 struct Blamed {
@@ -176,8 +179,8 @@ Blamed blamed(const Model& model, Index body) {
     static const std::string nobody;
     if (body == no_index) return {{}, nobody};
     const auto b = static_cast<std::size_t>(body);
-    const bool has_handle =
-        model.bodies.kind[b] == BodyKind::deformable;  // the remaining bodies are the meshes of mesh colliders
+    // The remaining bodies are the meshes of mesh colliders, which have no handle.
+    const bool has_handle = model.bodies.kind[b] == BodyKind::deformable;
     return {has_handle ? model.body_map.handle_of_slot(model.bodies.slot[b]) : BodyHandle{},
             model.body_records[b].name};
 }
@@ -199,7 +202,7 @@ void note_step(const Model& model, const StepPlan& plan, const Tries& tries, Ste
     limits.count_step(limit, handle, name, plan.h);
 }
 
-/// Reason why an attempt is given up for a shorter step.
+/// Returns the reason why an attempt is given up for a shorter step.
 StepLimit shortened_by(const StepFindings& found) {
     return found.crossings > 0                          ? StepLimit::crossing
            : found.verdict.fault == StepFault::too_fast ? StepLimit::speed
@@ -208,7 +211,7 @@ StepLimit shortened_by(const StepFindings& found) {
 }
 
 /// Limits of the next attempt, after an attempt that is given up for a shorter step. If the deformation was too fast,
-/// its rate determines the new length. For all other causes the length is halved.
+/// the rate of deformation determines the new length. For all other causes the length is halved.
 Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& tries) {
     const StepFindings& found = world.scratch.findings;
     const StrainRate& fastest = found.verdict.fastest;
@@ -235,7 +238,7 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
 }
 
 /// Limits of the first attempt at the next step, after a committed step. The fastest deformation limits the length.
-/// After a step that was shortened for this reason, the length grows by at most the factor fast_growth.
+/// After a step that was shortened because of fast deformation, the length grows by at most the factor fast_growth.
 Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& tries) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
     Tries next{.longest = tries.longest * step_growth,
@@ -244,14 +247,15 @@ Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& 
                .limit = tries.limit,
                .body = tries.body};
     if (fastest.body == no_index && scratch.parameters.longest < plan.stable && tries.slow_enough < tries.longest) {
-        next.slow_enough =
-            fast_growth * plan.h;  // the check reports only deformation that is too fast for a step of length `longest`
+        // The check found no deformation that is too fast for a step of length `longest`. Longer steps were not
+        // checked.
+        next.slow_enough = fast_growth * plan.h;
         next.fastest = tries.fastest;
     }
     return next;
 }
 
-/// Counts an attempt that is given up.
+/// Counts an attempt that is given up for a shorter step.
 void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits) {
     const StepFindings& found = scratch.findings;
     const StepLimit limit = shortened_by(found);
@@ -262,7 +266,7 @@ void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits
     limits.count_try(limit, handle, name);
 }
 
-/// Finds the outcome of an attempt, as in the table of StepOutcome.
+/// Returns the outcome of an attempt, according to the table of StepOutcome.
 StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
     const StepFindings& found = scratch.findings;
     if (beyond_lists) {
@@ -306,8 +310,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     scratch.parameters.moment_point = world.record.forces.moment_point();
     world.cache.crossings.last_try = tries.letting_through;
     world.cache.crossings.beyond_lists = false;
-    // Several repetitions may be needed, because contact forces change the motion in the next attempt, and the lists
-    // cannot cover every motion.
+    // Largest number of repetitions with longer contact lists. Several may be needed, because contact forces change the
+    // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
     world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
@@ -322,7 +326,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // after an inversion, the crossings found in earlier attempts remain contacts of the shorter attempt
+            // After an inversion, the crossings found in earlier attempts remain contacts of the shorter attempt.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
             tries = shorter_tries(world, plan, tries);
@@ -335,8 +339,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     }
     if (ran) {
         world.transaction.roll_back_try(world.model);
-        world.clock.kick_before =
-            0;  // the attempt has overwritten the relaxed strain of the previous step in the elements
+        // The attempt has overwritten the relaxed strain that the previous step stored in the elements.
+        world.clock.kick_before = 0;
     }
     return outcome;
 }

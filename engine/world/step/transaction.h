@@ -30,35 +30,35 @@ struct WorldState;
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
     committed,
-    again_with_longer_lists,  // repeated with longer contact lists, because features near enough to cross were not in
-                              // the lists
+    again_with_longer_lists,  // the contact lists lacked features that might cross; the next attempt has longer lists
     again_with_crossings,     // crossing features are contacts of the next attempt with the same length
-    again_shorter,            // the next attempt is half as long, or as long as the speed limit allows
+    again_shorter,            // the next attempt is half as long, or as long as the rate of deformation allows
     again_letting_through,    // the next attempt accepts crossings and inversions, and reports them
-    refused,                  // the cause is in world.scratch.findings
+    refused,                  // the step cannot be taken; the cause is in world.scratch.findings
 };
 
-/// Limits of the next attempt at a step, found in attempts at the present and at earlier steps.
+/// Limits of the next attempt at a step. They come from attempts at this step and at earlier steps.
 struct Tries {
-    // Bound of the step length after crossings, inversions or unsolved steps [s]. It grows in each committed step.
+    // Upper bound of the step length after crossings, inversions or steps that Newton's method could not solve [s]. The
+    // bound grows in each committed step.
     Real longest = infinity;
-    Real slow_enough = infinity;   // bound of the step length by the rate of deformation [s]
-    Index fastest = no_index;      // row of BodyTable: the body that deforms fastest
-    int with_longer_lists = 0;     // attempts at this step whose contact lists were incomplete
-    int with_crossings = 0;        // attempts at this length in which features crossed
-    bool letting_through = false;  // the next attempt is the last: it accepts crossings and inversions
-    // Cause of the bound `longest`: the last cause, other than speed, for which an attempt was shortened.
+    Real slow_enough = infinity;   // upper bound of the step length by the rate of deformation [s]
+    Index fastest = no_index;      // body that deforms fastest, as row of BodyTable
+    int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
+    int with_crossings = 0;        // number of attempts with this step length in which features crossed
+    bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions
+    // Cause of the bound `longest`: the last cause for which an attempt was shortened, apart from speed.
     StepLimit limit = StepLimit::inversion;
-    Index body = no_index;  // row of BodyTable: the body that caused `longest`
+    Index body = no_index;  // body that caused the bound `longest`, as row of BodyTable
 
     Real at_most() const { return std::min(longest, slow_enough); }
 };
 
-/// Longest step at this rate of deformation, but at least the shortest length that is attempted [s]. `stable`: bound of
-/// the step length by all other limits [s].
+/// Longest step for the given rate of deformation, but not less than the shortest length that is attempted [s].
+/// `stable`: upper bound of the step length by all other limits [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
-/// Attempts the planned step within the limits `tries`, and returns the outcome.
+/// Attempts the planned step within the limits `tries`. Returns the outcome, and updates `tries` for the next attempt.
 StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
 
 /// Restores data that an attempt, or a call of advance, overwrites before its success is known. This is the only list
@@ -89,21 +89,22 @@ public:
     void roll_back_try(Model& model) const;
     /// For each body, nonzero if it was asleep when the attempt began. Valid until `rested` is called.
     std::span<const std::uint8_t> asleep_before() const { return asleep_; }
-    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. Such a body did not take part
-    /// in the attempt, or does not take part in its completion.
+    /// For each body, nonzero if it was asleep when the attempt began or is asleep now. The stages, or the completion
+    /// of the attempt, skip such a body.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
-    /// Store and restore the state at the start of a call, if the integrator is leapfrog. Only leapfrog moves positions
-    /// before the first step of a call. With symplectic Euler these functions do nothing.
+    /// These two functions store and restore the state at the start of a call of advance, if the integrator is
+    /// leapfrog. Only leapfrog moves positions before the first step of a call. With symplectic Euler the functions do
+    /// nothing.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
 private:
     Column<std::uint8_t> asleep_;           // bodies.asleep
     Column<Real> max_speed_, frame_speed_;  // bodies.max_speed, bodies.frame_speed [m/s]
-    Column<Vec3> driven_velocity_;          // velocities of attachments.node [m/s]
+    Column<Vec3> driven_velocity_;          // velocities of the nodes in attachments.node [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
-    Column<Vec3> position_, velocity_;      // all nodes [m, m/s]
+    Column<Vec3> position_, velocity_;      // positions and velocities of all nodes [m, m/s]
     Column<Vec3> center_;                   // rigid bodies [m]
     Column<Vec3> moments_;                  // rigid bodies [kg m^2]
     Column<Mat3> rotation_, axes_;          // rigid bodies

@@ -1,4 +1,4 @@
-// Contact problems for subscribers, mostly other solvers.
+// Passes contact problems to subscribers, mostly for comparison with other solvers.
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -18,7 +18,7 @@ void copy(std::span<const T> from, Column<T>& to) {
     std::copy(from.begin(), from.end(), to.begin());
 }
 
-/// Replaces rows of the contacts of a step by their places in the list of all contacts, which includes contacts of
+/// Converts row numbers of the contacts of a step to positions in the list of all contacts, which includes contacts of
 /// sleeping bodies.
 void say_places_among_all(const ContactTable& contacts, const RestingContactTable& resting, std::vector<Index>& place) {
     if (resting.empty()) return;
@@ -69,7 +69,7 @@ void show_contact_problem(const WorldState& world, Real time) {
     problem.time = time;
     problem.step_size = scratch.parameters.h;
     problem.problem.name = "step " + std::to_string(problem.step);
-    // Copied, since the call may end the subscription.
+    // The function is copied, because its call may end the subscription.
     const std::function<void(const StepProblem&)> take = record.problem_watch.take;
     take(problem);
 }

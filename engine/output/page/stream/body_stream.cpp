@@ -22,8 +22,8 @@ Lattice Lattice::around(std::span<const Vec3> points) {
 }
 
 Code3 Lattice::code(const Vec3& point, const Code3& code_prev) const {
-    // Largest distance of a lattice point from the origin, in lattice steps. Doubles represent sums of a few numbers of
-    // this size exactly.
+    // Largest distance of a lattice point from the origin, in lattice steps. Sums of a few coordinates of this size are
+    // still exact as doubles.
     constexpr Real far = static_cast<Real>(std::int64_t{1} << 45);
     Code3 code = code_prev;
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,7 @@ BodyStream::BodyStream(const BodyFrame& body) {
     triangles_.reserve(body.surface.size());
     for (const auto& [a, b, c] : body.surface) triangles_.push_back({vertex_of(a), vertex_of(b), vertex_of(c)});
     lattice_ = Lattice::around(points);
-    // One entry is needed at least: first_code() of a body without a surface is 0.
+    // A body without a surface also gets one entry, because first_code() reads the first entry (here 0).
     now_.resize(std::max<std::size_t>(node_.size(), 1));
     before_ = now_;
     for (Values& values : values_) values.code.resize(node_.size());
@@ -95,7 +95,8 @@ void BodyStream::put_positions(const BodyFrame& body, std::string& out) {
 
 void BodyStream::put_values(std::span<const std::vector<Real>> values, std::span<const ValueScale> scales,
                             std::string& out) {
-    // Changes of the stress codes since the last frame. They predict the changes of the strain codes.
+    // Changes of the stress codes since the last frame. The changes of the strain codes are predicted from these
+    // changes.
     std::vector<int> stress_change(node_.size());
     const std::int64_t stress_sum_prev = values_[stress_field].sum;
     for (std::size_t field = 0; field < page_field_count; ++field) {

@@ -65,13 +65,13 @@ private:
     struct Values {
         int exponent = ValueScale::lowest;
         std::vector<int> code;  // by vertex
-        std::int64_t sum = 0;   // sum of the codes of all vertices
+        std::int64_t sum = 0;   // sum of the codes of one field over all vertices
     };
 
     Lattice lattice_;
     std::vector<Index> node_;                      // node number within the body, by vertex
-    std::vector<std::array<Index, 3>> triangles_;  // corners as vertex numbers
-    // Lattice coordinates by vertex, in the last frame and in the frame before; next_ is scratch memory.
+    std::vector<std::array<Index, 3>> triangles_;  // triangle corners as vertex numbers
+    // Lattice coordinates of each vertex: now_ in the last frame, before_ in the frame before, next_ as working memory.
     std::vector<Code3> now_, before_, next_;
     int frames_ = 0;
     std::array<Values, page_field_count> values_;

@@ -13,8 +13,8 @@ auto key_of(const ContactSides& sides, const std::array<Index, 4>& node) {
     return std::tuple(sides, node);
 }
 
-/// Returns the lattice on which the point of a contact is encoded, and the lattice coordinates of the first vertex of
-/// the body to which the lattice belongs.
+/// Returns the lattice on which the point of a contact is encoded, and the lattice coordinates of a reference point:
+/// the first vertex of the body to which the lattice belongs.
 std::pair<Lattice, Code3> place_of(const ContactSides& sides, const std::vector<BodyStream>& bodies) {
     const Index body = sides.first >= 0 ? sides.first : sides.second;
     if (body < 0) return {Lattice{}, Code3{}};

@@ -13,7 +13,8 @@
 
 namespace skerry {
 
-/// The partners of a contact, as body and collider numbers of the page; -1 means that there is no such partner.
+/// The partners of a contact: numbers of bodies and of a collider on the page. The number -1 means that the contact has
+/// no such partner.
 struct ContactSides {
     Index first = -1, second = -1, collider = -1;
 
@@ -40,14 +41,16 @@ public:
                    const ValueScale& force, std::string& out);
 
 private:
-    static constexpr std::size_t number_count = 7;  // 3 for the point, 3 for the force, 1 for the normal force
+    // numbers of a contact: 3 for the point, 3 for the force, 1 for the normal force
+    static constexpr std::size_t number_count = 7;
 
     struct Row {
         ContactSides sides;
         std::array<Index, 4> node;
         std::array<std::int64_t, number_count> code;
     };
-    /// Sorts the row numbers of the previous frame by partners and nodes of the contacts. The result is order_prev_.
+    /// Sorts the rows of the previous frame by partners and nodes of their contacts. Writes the sorted row numbers to
+    /// order_prev_.
     void sort_rows();
     Index find(const ContactSides& sides, const std::array<Index, 4>& node) const;
 

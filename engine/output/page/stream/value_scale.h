@@ -17,7 +17,7 @@ namespace skerry {
 class ValueScale {
 public:
     static constexpr int last = 2047;
-    /// Smallest exponent, of a new scale, and largest exponent. 4^highest is finite.
+    /// Smallest exponent, with which a new scale starts, and largest exponent. The value 4^highest is still finite.
     static constexpr int lowest = -255, highest = 511;
 
     void widen(Real value) {

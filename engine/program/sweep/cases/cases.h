@@ -12,7 +12,7 @@ namespace skerry {
 struct Parameter {
     std::string name;                 // heading of the parameter's column in tables
     std::vector<std::string> places;  // places in the scene that are set to the value of the parameter
-    Place place;                      // position of the parameter in the file of cases
+    Place place;                      // location of the parameter in the file of cases, for error messages
 };
 
 struct Cases {

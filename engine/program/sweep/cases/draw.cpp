@@ -36,7 +36,8 @@ double natural_log(double x) {
 
 double exponential(double x) {
     const double turns = std::floor(x / std::numbers::ln2 + 0.5);
-    const double rest = x - turns * std::numbers::ln2;  // remainder, between -0.35 and 0.35
+    // remainder of x after whole multiples of ln 2, between -0.35 and 0.35
+    const double rest = x - turns * std::numbers::ln2;
     double sum = 1;
     for (int k = 18; k >= 1; --k) sum = 1 + sum * rest / k;
     return std::ldexp(sum, static_cast<int>(turns));

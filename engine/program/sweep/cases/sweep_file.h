@@ -75,7 +75,7 @@ struct SweepFile {
     std::string name;
     std::string description;
     FilePath scene;
-    // Values by place in the scene. They are set in every case, before the parameters of the case.
+    // Values of places in the scene. Every case sets these values before its parameters.
     Named<AnyValue> set;
     std::vector<GridEntry> grid;
     std::vector<Named<AnyValue>> list;

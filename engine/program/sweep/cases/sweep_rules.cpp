@@ -14,7 +14,7 @@ const KeyDoc set_doc{.meaning = "the place in the scene, as `skerry run --set` t
                      .required = true};
 const KeyDoc name_doc{.meaning = "of the column in tables; by default the place"};
 
-/// Doubles represent all whole numbers up to this number exactly.
+/// A double represents every whole number up to this number exactly.
 constexpr Real most_whole = 9007199254740992.0;  // 2^53
 
 void check_ends(const Place& place, Real from, Real to, bool log) {

@@ -118,7 +118,7 @@ CaseFile read_case(const std::filesystem::path& file, int index, const std::stri
             return read;
         }
         return {CaseFileState::whole, result_from(json), {}};
-    } catch (const std::exception&) {  // the document is no valid JSON, or lacks a key, or has an invalid status
+    } catch (const std::exception&) {  // the document is not valid JSON, lacks a key, or has an invalid status
         return read;
     }
 }

@@ -36,7 +36,7 @@ struct CaseResult {
     std::vector<std::pair<std::string, double>> figures;
 };
 
-/// Data in the file of a case that do not belong to the result.
+/// Data in the result file of a case that identify the case.
 struct CaseHead {
     std::string sweep, scene, case_hash;
     Json parameters;  // values of the parameters, by name
@@ -59,8 +59,8 @@ void write_case(const std::filesystem::path& file, const CaseHead& head, const C
 enum class CaseFileState { whole, missing, other };
 struct CaseFile {
     CaseFileState state = CaseFileState::missing;
-    CaseResult result;  // result, if the state is `whole`
-    std::string found;  // description of the content, if the state is `other`
+    CaseResult result;  // result of the case, if the state is `whole`
+    std::string found;  // description of the file's content, if the state is `other`
 };
 CaseFile read_case(const std::filesystem::path& file, int index, const std::string& case_hash);
 

@@ -5,6 +5,6 @@
 
 namespace skerry {
 
-extern const std::string_view sweep_page_html;  // with the fields @TITLE@ and @DATA@
+extern const std::string_view sweep_page_html;  // template with the fields @TITLE@ and @DATA@
 
 }  // namespace skerry

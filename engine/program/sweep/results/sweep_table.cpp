@@ -107,7 +107,8 @@ std::string totals_text(const SweepTable& table) {
     return text + "; " + duration_text(cpu) + " of CPU in all\n";
 }
 
-/// Returns a note if all cases ended in the same state, which means that the parameters had no effect. Otherwise empty.
+/// Returns a note if all cases ended in exactly equal states, which means that the parameters had no effect. Otherwise
+/// returns an empty text.
 std::string sameness_text(const SweepTable& table) {
     std::string hash;
     int same = 0;

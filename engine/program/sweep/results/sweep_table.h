@@ -12,7 +12,7 @@ namespace skerry {
 struct SweepTable {
     const SweepFile& sweep;
     const Cases& cases;
-    std::vector<CaseFile> files;  // one file for each case
+    std::vector<CaseFile> files;  // result file of each case
 };
 
 /// Returns the names of all numbers in CaseResult::figures, in the order of their first appearance.

@@ -1,5 +1,5 @@
-// Force element of loads on nodes. It is the first force element: its stage sets applied_force, and the stages of other
-// force elements add to it.
+// Force element for loads on nodes. It must be the first force element in the list: its stage sets applied_force, and
+// the stages of other force elements add to applied_force.
 #include "systems/forces/add_nodal_loads.h"
 
 #include "engine/world/step/seams.h"

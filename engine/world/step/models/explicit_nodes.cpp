@@ -1,4 +1,4 @@
-// Motion model of nodes with lumped masses, which are integrated explicitly by symplectic Euler.
+// Motion model of nodes with lumped masses. They are integrated explicitly by symplectic Euler.
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/elements/find_unstrained.h"

@@ -1,4 +1,4 @@
-// Motion model of the deformation of implicit bodies in their frames (docs/methods/implicit_bodies.md).
+// Motion model of the deformation of implicit bodies relative to their frames (docs/methods/implicit_bodies.md).
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 
@@ -29,7 +29,7 @@ void list_coupling(WorldState& w, TaskGraph& g) {
             make(m.stiff_bodies), make(w.scratch.coupling));
 }
 
-/// Lists the stage in which implicit bodies deform and push on their supports.
+/// Lists the stage in which implicit bodies deform and exert forces on their supports.
 void list_strain(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     const StepParameters& p = w.scratch.parameters;

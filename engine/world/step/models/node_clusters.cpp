@@ -1,5 +1,5 @@
-// Motion model of clusters. A cluster consists of the nodes around elements that would be unstable at the step length;
-// these nodes are integrated together implicitly (docs/methods/clusters.md).
+// Motion model of clusters. A cluster consists of the nodes of elements that would be unstable at the step length.
+// These nodes are integrated together by an implicit method (docs/methods/clusters.md).
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
 #include "systems/dynamics/clusters/stiffen_clusters.h"

@@ -18,8 +18,8 @@ void list_rigid_kick(WorldState& w, TaskGraph& g) {
             value(p.h), value(p.kick), outputs<RigidKicks>(m.rigid_bodies, m.nodes));
 }
 
-/// Lists the stage that computes the next pose. It also sets velocity_next of the nodes, the constant velocity that
-/// leads to their next positions.
+/// Lists the stage that computes the next pose of each body. The stage also sets velocity_next of the nodes, which is
+/// the constant velocity that leads to the nodes' next positions.
 void list_turn(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/turn_rigid_bodies", turn_rigid_bodies, rigid_inputs(m),
