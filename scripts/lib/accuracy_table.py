@@ -8,11 +8,12 @@ from records import by_item, cells, rows_of, write_csv
 
 HEADER = """# Accuracy
 
-On this page you see how near the engine comes to closed forms. `scripts/accuracy` runs the tests tagged `[accuracy]` in
-`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks of {items} items with notes
-in `build/accuracy/accuracy.csv`. The table has the {shown} items that use most of their tolerance, each with the check
-that does. The error is absolute or relative, like its tolerance. Units are SI; `h` is the step and `n` a number of
-elements. The formulas are derived in [the methods](methods/accuracy.md).
+On this page you see how near the engine comes to closed-form solutions. `scripts/accuracy` runs the tests tagged
+`[accuracy]` in `tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks with notes in
+`build/accuracy/accuracy.csv`. The checks form {items} items, one for each problem with a known solution. The table has the
+{shown} items with the largest ratio of error to tolerance; each row shows the check with this ratio. Errors and tolerances
+in % are relative, all others absolute. Units are SI. In the formulas, `n` is a number of elements, and `h` is the time
+step, or in some items a length. [The methods](methods/accuracy.md) explain the formulas.
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|

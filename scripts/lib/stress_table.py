@@ -10,8 +10,9 @@ HEADER = """# Stress
 
 On this page you see which extreme inputs the engine withstands. `scripts/stress` runs the tests tagged `[stress]` in
 `tests/scene/stress`, writes this page, and lists all {checks} checks with their tests in `build/stress/stress.csv`.
-Every item also requires that each step is taken, or refused with a message, and that the state stays finite. An item
-without a number is a problem that users of other engines reported. {items} numbered items, {failed} checks failed.
+An item is a group of checks of one kind of input. The table names the first scene of each item. In all items
+the engine must take each step or refuse it with a message, and the state must stay finite. The item `-` contains
+problems that users of other engines reported. {items} numbered items, {failed} checks failed.
 
 | item | checks | passed | first scene |
 |---:|---:|---:|---|
@@ -21,14 +22,16 @@ COLUMNS = ["item", "scene", "criterion", "found", "passed", "file", "test"]
 NOTES = """
 ## Notes
 
-- **2**: One step serves all bodies here. A stiff body can be [implicit](methods/implicit_bodies.md).
-- **6**: Where all nodes lie on an exact line, no force points off it, so the body stays there. Any disturbance opens
-  it again. A body thrown into a heap may end twisted, with every tetrahedron the right way round.
-- **9**: The push moves overlapping nodes at 0.5 m/s at most. The body follows by its elasticity, and can leave at up to
-  twice this speed.
-- **10, 12, 15, 16, 17, 22, 23**: contact problems by themselves; `tests/unit/solver` has more of them.
-- **20**: Contacts are solved to a relative error of 1e-3 by default, and a heap creeps by that part of its motion under
-  weight in a step. A heap that has to lie still for an hour falls asleep (`sleep`) or needs `tolerance` 1e-8.
+- **2**: The stiffest body sets the time step of all bodies. To avoid short steps, make stiff bodies
+  [implicit](methods/implicit_bodies.md).
+- **6**: If all nodes of a body lie exactly on a line, all elastic forces point along the line, so the body stays on
+  this line until it is disturbed. A body pressed into a random heap of nodes may end twisted, without inverted
+  tetrahedra.
+- **9**: The push-out moves overlapping nodes apart at no more than 0.5 m/s. The rest of the body follows by its
+  elasticity, so the body can leave at up to twice this speed.
+- **10, 12, 16, 17, 22, 23**: contact problems without a simulation; `tests/unit/solver` contains more of them.
+- **20**: By default contacts are solved to a relative error of 1e-3. So in each step a heap can creep by 1e-3 of the
+  distance that gravity would move it. To keep a heap still for an hour, let it sleep or set `tolerance` to 1e-8.
 """
 
 
