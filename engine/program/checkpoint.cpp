@@ -112,7 +112,8 @@ Restart read_restart(const std::filesystem::path& file, const LoadSettings& sett
 }
 
 void put_in_place(const std::filesystem::path& file, World world, Scene& scene) {
-    const char* const hint = "restore the scene file from which the checkpoint was written, or start without --restart";
+    const char* const hint =
+        "the scene has changed since the checkpoint was written; restore the scene, or start without --restart";
     const auto bodies = world.bodies(), of_scene = scene.world.bodies();
     if (!same_slots(bodies, of_scene))
         refuse(file, counted(bodies.size(), "bodies in the checkpoint"),

@@ -82,7 +82,7 @@ Json bound_json(const StepBound& bound) {
 /// Describes the ratio of the step without the worst tetrahedra to the present step. The ratio may be below 1: removing
 /// tetrahedra reduces the mass of their nodes, and this shortens the steps of the neighbouring tetrahedra.
 std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long, because neighbours lose mass";
+    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter, because neighbours lose mass";
     if (ratio < 1) return "slightly shorter";
     return ratio < hardly_longer ? "slightly longer" : short_number(ratio) + " times as long";
 }
