@@ -14,7 +14,7 @@ namespace {
     Complaint{.file = {}, .object = who, .field = {}, .found = found, .expected = expected, .hint = hint}.raise();
 }
 
-const char* const by_hand = "give --rank I --of N on the command line instead";
+const char* const by_hand = "set the share by hand with --rank I --of N, where I is from 0 to N - 1";
 
 class Variables {
 public:
