@@ -9,9 +9,9 @@
 namespace skerry {
 
 inline std::string cluster_text(const WorldReport& report) {
-    return grouped(report.implicit_elements) + " implicit elements move " + grouped(report.cluster_nodes) +
-           " nodes in " + grouped(report.clusters) + (report.clusters == 1 ? " cluster" : " clusters") +
-           (report.guards > 0 ? ", " + grouped(report.guards) + " of whose tetrahedra have guards" : "");
+    return grouped(report.clusters) + (report.clusters == 1 ? " cluster of " : " clusters of ") +
+           grouped(report.cluster_nodes) + " nodes and " + grouped(report.implicit_elements) + " implicit elements" +
+           (report.guards > 0 ? "; inversion barriers on " + grouped(report.guards) + " tetrahedra" : "");
 }
 
 }  // namespace skerry

@@ -17,20 +17,21 @@ std::string solver_lines(const RunResult& result) {
     const WorldReport& r = result.report;
     const std::string method = std::string(name_of(result.settings.method)) + ", " +
                                std::string(name_of(result.settings.friction)) + ", " +
-                               std::string(name_of(result.settings.contact_regions)) + " regions";
+                               std::string(name_of(result.settings.contact_regions)) + " contact regions";
     if (r.solved == 0) return summary_line("solver", method + ": no contacts to solve");
     std::string text =
-        summary_line("regions", "mean " + short_number(r.mean_regions, 4) + ", most " +
-                                    grouped(static_cast<std::uint64_t>(r.max_regions)) + ", the largest of " +
+        summary_line("regions", short_number(r.mean_regions, 4) + " per step on average, at most " +
+                                    grouped(static_cast<std::uint64_t>(r.max_regions)) + ", the largest with " +
                                     grouped(static_cast<std::uint64_t>(r.largest_region)) + " contacts");
-    text += summary_line("solver", method + ": " + short_number(r.mean_iterations) + " sweeps a region, worst error " +
-                                       short_number(r.worst_error) + " (a region of " +
-                                       grouped(static_cast<std::uint64_t>(r.worst_region)) + " contacts), " +
-                                       grouped(r.unconverged) + " regions not converged");
-    text += summary_line(
-        "", grouped(r.solved) + " regions solved, " +
-                percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) + " in closed form, " +
-                percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) + " by the warm start alone");
+    text += summary_line("solver", method + ": " + short_number(r.mean_iterations) +
+                                       " sweeps per region on average, largest error " + short_number(r.worst_error) +
+                                       " (in a region of " + grouped(static_cast<std::uint64_t>(r.worst_region)) +
+                                       " contacts), " + grouped(r.unconverged) + " regions not converged");
+    text += summary_line("", grouped(r.solved) + " regions solved, " +
+                                 percent(static_cast<double>(r.closed_form) / static_cast<double>(r.solved)) +
+                                 " in closed form, " +
+                                 percent(static_cast<double>(r.certified) / static_cast<double>(r.solved)) +
+                                 " by the warm start without any sweep");
     return text;
 }
 
@@ -60,15 +61,15 @@ std::string limit_lines(const WorldReport& r) {
             case StepLimit::setting:
                 return "step_size";
             case StepLimit::rest:
-                return of.body_name + ", stable step at rest";
+                return "the stable step of " + of.body_name + " at rest";
             case StepLimit::strain:
-                return of.body_name + ", stable step of its deformed shape";
+                return "the stable step of " + of.body_name + " in its deformed shape";
             case StepLimit::speed:
-                return of.body_name + " deforms too quickly";
+                return "fast deformation of " + of.body_name;
             case StepLimit::inversion:
-                return of.body_name + " would turn elements inside out";
+                return "elements of " + of.body_name + " that would turn inside out";
             case StepLimit::crossing:
-                return "surfaces would cross";
+                return "surfaces that would cross";
         }
         return {};
     };
@@ -76,10 +77,11 @@ std::string limit_lines(const WorldReport& r) {
     for (const StepLimitReport& of : r.step_limits) {
         const double share = static_cast<double>(of.steps) / static_cast<double>(std::max<std::uint64_t>(r.steps, 1));
         if (share < 0.01 || of.limit == StepLimit::setting) continue;
-        text +=
-            summary_line(text.empty() ? "step limits" : "",
-                         percent(share) + " of steps, " + with_unit(of.seconds / static_cast<double>(of.steps), "s") +
-                             " each: " + why(of) + (of.tries > 0 ? " (" + grouped(of.tries) + " tries repeated)" : ""));
+        text += summary_line(text.empty() ? "step limits" : "",
+                             percent(share) + " of the steps, " +
+                                 with_unit(of.seconds / static_cast<double>(of.steps), "s") +
+                                 " long on average, limited by " + why(of) +
+                                 (of.tries > 0 ? " (" + grouped(of.tries) + " discarded attempts)" : ""));
     }
     return text;
 }
@@ -88,21 +90,23 @@ std::string limit_lines(const WorldReport& r) {
 std::string step_length_lines(const WorldReport& r) {
     std::string text;
     if (!r.stable_step_body.empty())
-        text += summary_line("stable step", with_unit(r.stable_step, "s") + " now, of body " + r.stable_step_body);
+        text += summary_line("stable step", with_unit(r.stable_step, "s") + " at the end, the stable step of body " +
+                                                r.stable_step_body);
     if (r.shortened + r.retried + r.limited > 0)
-        text += summary_line("step changes", grouped(r.shortened) + " tries repeated with a shorter step, " +
-                                                 grouped(r.retried) + " repeated for crossings, " + grouped(r.limited) +
-                                                 " steps shorter than step_size, which is too long");
+        text += summary_line("step changes",
+                             grouped(r.shortened) + " attempts repeated with a shorter step, " + grouped(r.retried) +
+                                 " attempts repeated because surfaces would have crossed, " + grouped(r.limited) +
+                                 " steps shorter than step_size, because step_size exceeds the stable step");
     return text + limit_lines(r);
 }
 
 std::string energy_line(const RunResult& result) {
     const Energy& energy = result.report.energy;
-    return summary_line("energy", "kinetic " + with_unit(energy.kinetic, "J") + " (at most " +
+    return summary_line("energy", "kinetic " + with_unit(energy.kinetic, "J") + " (largest value " +
                                       with_unit(result.peak_kinetic_energy, "J") + "), elastic " +
                                       with_unit(energy.elastic, "J") + ", potential " +
                                       with_unit(energy.potential, "J") + ", dissipated " +
-                                      with_unit(energy.dissipated, "J") + ", unexplained " +
+                                      with_unit(energy.dissipated, "J") + ", error of the energy balance " +
                                       with_unit(result.report.energy_error, "J"));
 }
 
@@ -116,12 +120,15 @@ std::string details_of(const RunResult& result) {
     for (const std::string& choice : choice_texts(r)) text += summary_line("dynamics", choice);
     if (r.clusters > 0) text += summary_line("clusters", cluster_text(r));
     if (r.large_strain_steps > 0)
-        text += summary_line("large strain", grouped(r.large_strain_steps) + " steps of implicit bodies, in " +
-                                                 grouped(r.newton_steps) + " steps of Newton's method with " +
-                                                 grouped(r.tangent_factors) + " factorisations");
+        text += summary_line("large strain", grouped(r.large_strain_steps) +
+                                                 " steps of implicit bodies at large strain, solved in " +
+                                                 grouped(r.newton_steps) + " iterations of Newton's method with " +
+                                                 grouped(r.tangent_factors) + " matrix factorisations");
     text += solver_lines(result) + energy_line(result);
-    text += summary_line("contact shell", "entered by at most " + with_unit(r.max_gap_violation, "m"));
-    text += summary_line("volume ratio", "at least " + short_number(r.worst_volume_ratio) +
+    text += summary_line("contact shell", "surfaces came closer than the contact distance by at most " +
+                                              with_unit(r.max_gap_violation, "m"));
+    text += summary_line("volume ratio", "current over rest volume of the most compressed element: " +
+                                             short_number(r.worst_volume_ratio) +
                                              (r.worst_volume_body.empty() ? "" : " (" + r.worst_volume_body + ")"));
     text += summary_line("stages", "") + stage_table(result);
     return text + summary_line("state hash", hash_text(result.state_hash));

@@ -28,7 +28,8 @@ inline std::vector<std::string> choice_texts(const WorldReport& report) {
             ++same->second;
     }
     for (const auto& [first, count] : kinds)
-        texts.push_back(first->name + (count > 1 ? " and " + grouped(count - 1) + " more: " : ": ") + first->message());
+        texts.push_back(first->name + (count > 1 ? " and " + grouped(count - 1) + " more bodies: " : ": ") +
+                        first->message());
     return texts;
 }
 

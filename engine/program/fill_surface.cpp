@@ -27,7 +27,7 @@ using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 NamelessFile nameless_file() {
     NamelessFile file(std::tmpfile(), std::fclose);
-    if (!file) throw std::runtime_error("no room for a temporary file: " + std::generic_category().message(errno));
+    if (!file) throw std::runtime_error("cannot create a temporary file: " + std::generic_category().message(errno));
     return file;
 }
 
@@ -41,7 +41,8 @@ void write_surface(std::FILE* out, const SurfaceMesh& surface, Real largest_edge
     std::fprintf(out, "%zu %zu %.17g\n", surface.nodes.size(), surface.triangles.size(), largest_edge);
     for (const Vec3& x : surface.nodes) std::fprintf(out, "%.17g %.17g %.17g\n", x.x(), x.y(), x.z());
     for (const auto& t : surface.triangles) std::fprintf(out, "%d %d %d\n", t[0], t[1], t[2]);
-    if (std::fflush(out) != 0) throw std::runtime_error("no room for a temporary file");
+    if (std::fflush(out) != 0)
+        throw std::runtime_error("cannot write to a temporary file; free space in the folder for temporary files");
     std::rewind(out);
 }
 
@@ -92,7 +93,7 @@ int run_fill(std::FILE* in, std::FILE* out, const std::function<void()>& wait) {
     FileActions files(fileno(in), fileno(out));
     pid_t child = 0;
     if (const int error = posix_spawn(&child, program.c_str(), &files.actions, nullptr, arguments, environ); error != 0)
-        throw std::runtime_error(program + " does not start: " + std::generic_category().message(error));
+        throw std::runtime_error(program + " cannot be started: " + std::generic_category().message(error));
     int status = 0;
     while (waitpid(child, &status, WNOHANG) == 0) {
         wait();
@@ -105,12 +106,13 @@ int run_fill(std::FILE* in, std::FILE* out, const std::function<void()>& wait) {
 
 void require_fill() {
     if (access(fill_program().c_str(), X_OK) == 0) return;
-    Complaint{.file = fill_program().string(),
-              .object = "mesh repair",
-              .field = {},
-              .found = "no such program",
-              .expected = "skerry-fill, which is built beside skerry when Netgen's library is there",
-              .hint = "apt-get install libnglib-dev, then configure and build again"}
+    Complaint{
+        .file = fill_program().string(),
+        .object = "mesh repair",
+        .field = {},
+        .found = "no executable program at this path",
+        .expected = "the program skerry-fill in the folder of skerry, which is built if Netgen's library is installed",
+        .hint = "install Netgen's library (apt-get install libnglib-dev), then configure and build Skerry again"}
         .raise();
 }
 

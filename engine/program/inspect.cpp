@@ -29,13 +29,16 @@ constexpr std::size_t longest_list = 300;  // maximum length of a list of names 
 
 Problems problems_of(const MeshReport& r) {
     Problems problems;
-    if (r.tetrahedra == 0) problems.push_back("no tetrahedron");
-    if (r.inverted > 0) problems.push_back(grouped(r.inverted) + " inverted tetrahedra: a world refuses them");
-    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra: a world refuses them");
-    if (r.components > 1) problems.push_back(grouped(r.components) + " parts that are not connected");
+    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
+    if (r.inverted > 0)
+        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
+    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
+    if (r.components > 1)
+        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
     if (r.tetrahedra > 0 && r.min_quality < poor_quality)
-        problems.push_back("a sliver of quality " + short_number(r.min_quality) + ", which makes steps short");
-    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold");
+        problems.push_back("the worst tetrahedron is a sliver of quality " + short_number(r.min_quality) +
+                           " (1: regular tetrahedron), which shortens the stable step");
+    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
     return problems;
 }
 
@@ -80,35 +83,36 @@ Json bound_json(const StepBound& bound) {
 /// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
 /// the neighbouring tetrahedra.
 std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter";
-    if (ratio < 1) return "hardly shorter";
-    return ratio < hardly_longer ? "hardly longer" : short_number(ratio) + " times as long";
+    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter, because neighbours lose mass";
+    if (ratio < 1) return "slightly shorter";
+    return ratio < hardly_longer ? "slightly longer" : short_number(ratio) + " times as long";
 }
 
 /// Prints the tetrahedra that limit the stable step, and the stable step of the mesh without its worst tetrahedra.
 void print_bound(const StepBound& bound, const char* indent) {
     for (const CostlyTetrahedron& t : bound.worst)
         std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
-                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows "
-                  << with_unit(t.step, "s") << ": altitude " << with_unit(t.altitude, "m") << ", mean edge "
+                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows a step of "
+                  << with_unit(t.step, "s") << ": smallest altitude " << with_unit(t.altitude, "m") << ", mean edge "
                   << with_unit(t.mean_edge, "m") << "\n";
     for (const StepWithout& w : bound.without)
         std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
-                  << short_number(100 * w.share) << " %): " << with_unit(w.step, "s") << ", "
-                  << compared(w.step / bound.step) << "\n";
+                  << short_number(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
+                  << ", " << compared(w.step / bound.step) << "\n";
 }
 
-/// Returns the number of tetrahedra per label, for example "1: 300, 2: 20 tetrahedra". Only the first 20 labels are
-/// listed.
+/// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
+/// first 20 labels are listed.
 std::string labels_text(const MeshReport& report) {
     constexpr std::size_t most = 20;
     std::string text;
     std::size_t listed = 0;
     for (const auto& [label, tetrahedra] : report.labels) {
         if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
-        text += (listed++ > 0 ? ", " : "") + std::to_string(label) + ": " + grouped(tetrahedra);
+        text +=
+            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
     }
-    return text + " tetrahedra";
+    return text;
 }
 
 int inspect_mesh(const InspectOptions& options) {
@@ -116,9 +120,9 @@ int inspect_mesh(const InspectOptions& options) {
         Complaint{.file = options.file.string(),
                   .object = "--body",
                   .field = {},
-                  .found = "a mesh",
-                  .expected = "a scene, which has bodies",
-                  .hint = {}}
+                  .found = "a mesh file, which has no bodies or settings",
+                  .expected = "a scene file (.json)",
+                  .hint = "omit the option, or give the scene"}
             .raise();
     const Mesh mesh = mesh::read(options.file.string());
     if (!options.repair.empty())
@@ -151,12 +155,13 @@ int inspect_mesh(const InspectOptions& options) {
               << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
               << with_unit(report.min_altitude, "m") << "\n"
               << "  quality       mean " << short_number(report.mean_quality) << ", worst "
-              << short_number(report.min_quality) << " (1 is regular)\n"
+              << short_number(report.min_quality) << " (1: regular tetrahedron)\n"
               << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
               << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
     if (is_body) {
         std::cout << "  step          " << with_unit(bound.step, "s")
-                  << " of the default material, 1e5 Pa and 1000 kg/m^3 (" << name_of(bound.element) << ")\n";
+                  << " is stable with the default material, 1e5 Pa and 1000 kg/m^3 (elements: "
+                  << name_of(bound.element) << ")\n";
         print_bound(bound, "                ");
     }
     if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
@@ -277,13 +282,13 @@ SceneStart start_of(const ScenePlan& plan) {
     SceneStart start{build_scene(as_written), {}, {}};
     start.as_written = start.scene.world.report();
     if (start.as_written.start_overlaps.empty()) return start;
-    start.outcome = "a run begins with what overlaps as it is (settings.start_overlaps)";
+    start.outcome = "a run starts with these overlaps, because settings.start_overlaps is \"ignore\"";
     if (plan.settings.start_overlaps == StartOverlaps::ignore) return start;
     try {
         start.scene = build_scene(plan);
-        start.outcome = "a run takes that apart: " + moves_text(start.scene.world.report());
+        start.outcome = "a run moves overlapping bodies apart at the start: " + moves_text(start.scene.world.report());
     } catch (const SceneError& error) {
-        start.outcome = std::string("a run refuses that: ") + error.what();
+        start.outcome = std::string("a run refuses to start with these overlaps: ") + error.what();
     }
     return start;
 }
@@ -328,22 +333,24 @@ Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart&
     if (by_step.size() > 1 && by_step[1].bound.step > expensive_step_ratio * by_step[0].bound.step)
         problems.push_back("body \"" + by_step[0].first_name + "\" makes all steps " +
                            short_number(by_step[1].bound.step / by_step[0].bound.step) +
-                           " times shorter than the others need");
+                           " times shorter than the other bodies require");
     constexpr std::size_t most_named = 20;
     const std::vector<StartOverlap>& overlaps = start.as_written.start_overlaps;
     for (std::size_t i = 0; i < overlaps.size() && i < most_named; ++i)
         problems.push_back(overlaps[i].message() + " at the start");
     if (overlaps.size() > most_named)
-        problems.push_back(grouped(overlaps.size() - most_named) + " more overlaps at the start");
+        problems.push_back(grouped(overlaps.size() - most_named) +
+                           " more overlaps at the start; --json lists all overlaps");
     if (!overlaps.empty())
         problems.push_back(start.outcome);
     else if (cost.overlap > 0)
-        problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") + " in the first step");
+        problems.push_back("surfaces overlap by " + with_unit(cost.overlap, "m") +
+                           " in the first step: move the bodies apart");
     Real shortest_edge = infinity;
     for (const BodyKindReport& kind : kinds) shortest_edge = std::min(shortest_edge, kind.mesh.mean_edge);
     if (!cost.turning.empty()) problems.push_back(cost.turning);
     if (cost.into_shell > visible_share * shortest_edge) problems.push_back(into_shell_text(cost.into_shell));
-    if (!cost.failure.empty()) problems.push_back("the first steps fail: " + cost.failure);
+    if (!cost.failure.empty()) problems.push_back("the first steps of a run fail: " + cost.failure);
     return problems;
 }
 
@@ -353,7 +360,7 @@ const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& option
     const auto refuse = [&](const std::string& object, const std::string& found, const std::string& expected) {
         Complaint{options.file.string(), object, {}, found, expected, {}}.raise();
     };
-    if (plan.bodies.empty()) refuse("bodies", "none", "a body whose mesh is to be mended");
+    if (plan.bodies.empty()) refuse("bodies", "no bodies", "at least one body, whose mesh --repair can improve");
     if (options.body.empty()) {
         const std::vector<BodyKindReport> kinds = body_kinds(plan, false);
         const auto least = std::min_element(kinds.begin(), kinds.end(),
@@ -452,17 +459,19 @@ int inspect_scene(const InspectOptions& options) {
               << (plan.joints.empty() ? "" : ", " + grouped(plan.joints.size()) + " joints") << "\n"
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
-              << (report.stable_step_body.empty() ? "no body sets one" : report.stable_step_body) << "), "
-              << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
+              << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)
+              << "), " << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
               << "  cost          about " << duration_text(cost.seconds_per_second)
-              << " a simulated second, as it starts; " << duration_text(cost.seconds_per_second * scene.seconds)
-              << " for all of it\n"
+              << " of wall time per simulated second, estimated from the first steps; "
+              << duration_text(cost.seconds_per_second * scene.seconds) << " for the whole run\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
     for (const BodyKindReport& kind : kinds) {
         std::cout << "  body          " << kind.first_name
-                  << (kind.count > 1 ? " and " + grouped(kind.count - 1) + " alike" : "") << ": "
-                  << shape_text(plan.bodies[kind.body], kind)
+                  << (kind.count > 1
+                          ? " and " + grouped(kind.count - 1) + " more with the same mesh, material and dynamics"
+                          : "")
+                  << ": " << shape_text(plan.bodies[kind.body], kind)
                   << (kind.sets_step() ? ", stable step " + with_unit(kind.bound.step, "s") : "") << "; "
                   << materials_text(kind) << "\n";
         if (kind.sets_step()) print_bound(kind.bound, "                ");
@@ -480,9 +489,9 @@ int inspect(const InspectOptions& options) {
         Complaint{.file = options.file.string(),
                   .object = "--set",
                   .field = {},
-                  .found = "a mesh",
-                  .expected = "a scene (.json) whose values are changed",
-                  .hint = {}}
+                  .found = "a mesh file, which has no bodies or settings",
+                  .expected = "a scene file (.json)",
+                  .hint = "omit the option, or give the scene"}
             .raise();
     return inspect_mesh(options);
 }

@@ -79,23 +79,25 @@ void print_table(const RepairedMesh& repaired, const RepairTask& task) {
     print_row("surface [m^2]", short_number(a.surface_area, 6), short_number(b.surface_area, 6),
               change(a.surface_area, b.surface_area));
     real_row("worst altitude", a.mesh.min_altitude, b.mesh.min_altitude, "m");
-    print_row("worst quality", short_number(a.mesh.min_quality), short_number(b.mesh.min_quality), "1 is regular");
+    print_row("worst quality", short_number(a.mesh.min_quality), short_number(b.mesh.min_quality),
+              "1: regular tetrahedron");
     print_row("mean quality", short_number(a.mesh.mean_quality), short_number(b.mesh.mean_quality));
     real_row("stable step", a.step, b.step, "s");
-    std::printf("  steps are those of %s; %s edges of the surface collapsed, %s flipped\n", task.step_of.c_str(),
-                grouped(repaired.collapsed).c_str(), grouped(repaired.flipped).c_str());
+    std::printf("  stable steps with %s; %s edges of the surface were collapsed, %s were flipped\n",
+                task.step_of.c_str(), grouped(repaired.collapsed).c_str(), grouped(repaired.flipped).c_str());
     if (repaired.parted > 0)
-        std::printf("  %s parted, which joined tetrahedra that share no face there\n",
+        std::printf("  %s split, because tetrahedra were connected there without a common face\n",
                     (grouped(repaired.parted) + (repaired.parted == 1 ? " node" : " nodes")).c_str());
-    if (!repaired.kept.empty()) std::printf("  the tetrahedra are the same: %s\n", repaired.kept.c_str());
+    if (!repaired.kept.empty()) std::printf("  the tetrahedra are unchanged: %s\n", repaired.kept.c_str());
     if (repaired.collapsed + repaired.flipped == 0) {
-        std::printf("  the surface is the same\n");
+        std::printf("  the surface is unchanged\n");
         return;
     }
-    std::printf("  the surface moved by %s at most (new from old %s, old from new %s; tolerance %s)\n",
-                with_unit(repaired.distance.greatest(), "m").c_str(),
-                with_unit(repaired.distance.from_second, "m").c_str(),
-                with_unit(repaired.distance.from_first, "m").c_str(), with_unit(repaired.tolerance, "m").c_str());
+    std::printf(
+        "  the surface moved by at most %s (distance of the new surface from the old one: %s, of the old from the new: "
+        "%s; tolerance %s)\n",
+        with_unit(repaired.distance.greatest(), "m").c_str(), with_unit(repaired.distance.from_second, "m").c_str(),
+        with_unit(repaired.distance.from_first, "m").c_str(), with_unit(repaired.tolerance, "m").c_str());
 }
 
 void print_json(const RepairedMesh& repaired, const RepairTask& task, const InspectOptions& options) {
@@ -131,11 +133,13 @@ void check_repair(const InspectOptions& options) {
     };
     if (options.repair.extension() != ".msh")
         refuse("file name",
-               options.repair.has_extension() ? options.repair.extension().string() : std::string("no ending"), ".msh");
+               options.repair.has_extension() ? "the extension " + options.repair.extension().string()
+                                              : std::string("no extension"),
+               "the extension .msh");
     require_writable_file(options.repair);
     std::error_code none;
     if (!options.overwrite && std::filesystem::equivalent(options.repair, options.file, none))
-        refuse("file name", "the file that is read", "another file, or --overwrite");
+        refuse("file name", "the input file", "a different file, or the option --overwrite");
     require_fill();
 }
 
@@ -155,7 +159,7 @@ int inspect_repair(const RepairTask& task, const InspectOptions& options) {
     if (options.json) return exit_ok;
     print_table(repaired, task);
     std::cout << "  written       " << options.repair.string()
-              << (task.scaled ? ", in metres as the scene has it: without its `scale`" : "") << std::endl;
+              << (task.scaled ? ", in metres; delete `scale` from the scene when you use this file" : "") << std::endl;
     return exit_ok;
 }
 

@@ -24,77 +24,80 @@ using namespace skerry;
 
 const char* const general_examples = R"(Examples:
   skerry run scenes/skittles.json                          simulate, and print a summary
-  skerry run scenes/skittles.json --page skittles.html     and write a page that plays it in a browser
-  skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, figures for scripts
+  skerry run scenes/skittles.json --page skittles.html     also write a page that plays the run in a browser
+  skerry run scenes/bucket.json --out frames --stats s.json   frames for ParaView, statistics for scripts
   skerry inspect scenes/table.json                         sizes, step length, cost and problems of a scene
   skerry inspect bunny.msh                                 sizes, quality and problems of a mesh
   skerry solve problem.hdf5 --tolerance 1e-6               solve a frictional contact problem of FCLIB
-  skerry sweep examples/incline_sweep.json                 a scene with many values, one case per core
+  skerry sweep examples/incline_sweep.json                 simulate a scene with many values, one case per core
 
-Exit codes: 0 ok, 1 the simulation failed, a problem did not converge, or a --strict run has warnings, 2 bad input, 3 an
-output of a run could not be written, 128 + n stopped by signal n.
+Exit codes: 0 success, 1 the simulation failed, the solver did not converge, or a run with --strict has warnings,
+2 invalid input, 3 an output of a run could not be written, 128 + n stopped by signal n.
 `skerry COMMAND --help` describes the options of a command.)";
 
 const char* const run_examples = R"(Examples:
   skerry run scenes/skittles.json --seconds 2 --threads 2
   skerry run scenes/table.json --page table.html --frames-per-second 30
-  skerry run scenes/table.json --profile                                         with the times of all stages
+  skerry run scenes/table.json --profile                                         also print the times of all stages
   skerry run scenes/bucket.json --contact-regions global --stats global.json     one contact region instead of many
   skerry run scenes/bucket.json --export-problems problems --export-every 100    then: skerry solve problems/FILE
-  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      only the figures
-  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           if it is killed, continue with:
+  skerry run scenes/drop/drop_27.json --threads 1 --quiet --stats drop.json      no summary, only the file of statistics
+  skerry run scenes/bucket.json --checkpoint bucket.skerry --every 0.5           if the run is killed, continue with:
   skerry run --restart bucket.skerry --checkpoint bucket.skerry --every 0.5
 
-At the end the run prints a short summary: what was simulated, how long it took, the most telling figures, warnings (the
-reasons not to rely on the result, each with its remedy) and the written files. --profile adds step limits, solver
-figures, energies, the times of all stages and the hash of the final state. --stats has all of these as JSON.
+At the end the run prints a short summary: the scene, the computing time, the main results, warnings (reasons not to
+rely on the result, each with a remedy) and the written files. --profile adds step limits, solver statistics, energies,
+the times of all stages and the hash of the final state. --stats writes all of these as JSON.
 
---restart takes the scene, its settings, the length and the frames from the checkpoint. Give SCENE only if its file has
-moved. --seconds may be larger and --threads may differ. --stats then covers the whole run, except for the times of the
-stages. Probes and the frames of --out continue; use the same files and folder. --page and --trace begin at the
-checkpoint.)";
+--restart reads the scene file, the settings, the simulated time of the run and the times of the frames from the
+checkpoint. Give SCENE only if the scene file has moved. --seconds may be larger and --threads may differ. --stats then
+covers the whole run, but the times of the stages begin at the checkpoint. --probes and --out continue the earlier
+files; use the same file and folder. --page and --trace begin at the checkpoint.)";
 
 const char* const inspect_examples = R"(Examples:
-  skerry inspect bunny.msh                                 sizes, quality, faults, and which tetrahedra bound the step
-  skerry inspect bunny.msh --repair better.msh             the same body with a longer step, if there is one
-  skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside, the surface as it is
-  skerry inspect scene.json --repair arm.msh --body arm    the mesh of one body, judged with its own material
+  skerry inspect bunny.msh                                 sizes, quality, problems, tetrahedra that limit the step
+  skerry inspect bunny.msh --repair better.msh             write a mesh of the same body with a longer step
+  skerry inspect bunny.msh --repair better.msh --tolerance 0      new tetrahedra inside the unchanged surface
+  skerry inspect scene.json --repair arm.msh --body arm    the mesh of the body "arm", with the step of its material
   skerry inspect scenes/skittles.json --json
   skerry inspect scenes/skittles.json --set materials.skittle.young_modulus=6e5
 
---repair fills the surface anew (Netgen), once as it is and once without its needles and caps, and writes what has the
-longer step. It ends with 1, and writes nothing, when no step is 5 % longer or the surface moves by more than the
-tolerance.)";
+--repair uses Netgen to fill two surfaces with new tetrahedra: the unchanged surface, and the surface without very flat
+triangles. The mesh with the longer stable step is written. If no new stable step is at least 5 % longer, or if the
+surface moves by more than the tolerance, no file is written and the exit code is 1.)";
 
-const char* const sweep_examples = R"(CASES is JSON: a scene, and the values that it has in turn:
+const char* const sweep_examples =
+    R"(CASES is a JSON file. It names a scene and the values with which to simulate the scene:
 
   {"scene": "incline.json",
    "set": {"seconds": 1},
    "grid": [{"name": "mu", "set": ["materials.block.friction", "colliders[0].friction"], "values": [0.2, 0.3, 0.4]},
             {"set": "materials.block.E", "from": 1e4, "to": 1e6, "count": 5, "spacing": "log"}]}
 
-All combinations of a "grid"; or a "list" of cases, each with values by place; or "random" ones:
+A "grid" gives all combinations of the values. Instead of a "grid", give a "list" of cases, each an object
+{PLACE: VALUE, ...}, or "random" cases:
 
    "random": {"seed": 1, "count": 100, "parameters": [
        {"set": "materials.block.E", "distribution": "log_uniform", "from": 1e4, "to": 1e6},
        {"set": "bodies[0].position[2]", "distribution": "normal", "mean": 0.05, "deviation": 0.01}]}
 
-Places are those of `skerry run --set`. docs/sweep.md says more, `skerry schema --sweep` all.
+PLACE is a place in the scene, as for `skerry run --set`. docs/sweep.md describes sweeps in detail, and
+`skerry schema --sweep` prints all keys.
 
 Examples:
-  skerry sweep cases.json --dry-run                        which cases there are, and which of them are done
-  skerry sweep cases.json --out results                    as many at a time as there are cores
-  skerry sweep cases.json --out results                    again, after Ctrl-C: goes on with those that are left
-  mpirun -n 64 skerry sweep cases.json --out results       process I of N runs cases I, I + N, ...; so do
-  srun -n 64 skerry sweep cases.json --out results         tasks and arrays (sbatch --array=0-63) of SLURM, and
-  skerry sweep cases.json --out results --rank 0 --of 2    processes that were started by hand
-  skerry sweep cases.json --out results --table            the table of what is there
+  skerry sweep cases.json --dry-run                        list the cases, and which of them have a result
+  skerry sweep cases.json --out results                    run the cases, one per core at a time
+  skerry sweep cases.json --out results                    after Ctrl-C: run the cases that have no result yet
+  mpirun -n 64 skerry sweep cases.json --out results       64 processes; process I runs cases I, I + 64, ...
+  srun -n 64 skerry sweep cases.json --out results         the same with SLURM (also with sbatch --array=0-63)
+  skerry sweep cases.json --out results --rank 0 --of 2    the first of two processes that you start yourself
+  skerry sweep cases.json --out results --table            write the table of the existing results
 
-Results: case_000000.json and so on, one for each case, which appear when they are whole; with the last of all cases
-sweep.csv, a table for spreadsheets, and sweep.html, a page with the same table and a plot. A case that is refused or
-fails is a result, too; one that was killed is none, and is run again.
-Exit codes: 0 all cases of this process have a result, 1 one of them has none (--strict: or one failed, was refused or
-has warnings), 2 bad input, 3 a file could not be written, 128 + n stopped by signal n.)";
+Results: one file per case (case_000000.json, ...), written at the end of the case. When all cases have a result, two
+more files are written: sweep.csv, a table for spreadsheets, and sweep.html, a page with the same table and a plot. A
+case that fails, or whose scene is refused, also has a result. A case that was killed has no result and is run again.
+Exit codes: 0 all cases of this process have a result, 1 a case has no result (with --strict also: a case failed, was
+refused or has warnings), 2 invalid input, 3 a file could not be written, 128 + n stopped by signal n.)";
 
 /// Validator that accepts finite numbers above 0.
 const CLI::Validator positive_number(
@@ -111,7 +114,7 @@ const CLI::Validator share(
         double value = 0;
         return CLI::detail::lexical_cast(text, value) && value >= 0 && value < 1
                    ? std::string()
-                   : "found " + text + ", expected a share from 0 to below 1";
+                   : "found " + text + ", expected a number of at least 0 and below 1";
     },
     "0 <= NUMBER < 1");
 
@@ -148,9 +151,9 @@ CLI::Option* add_number(CLI::App& app, const std::string& flag, std::optional<Re
 
 void add_set(CLI::App& command, std::vector<std::string>& assignments) {
     command
-        .add_option(
-            "--set", assignments,
-            "change a value of the scene: bodies[0].position=[0,0,1], materials.rubber.E=2e5; may be given again")
+        .add_option("--set", assignments,
+                    "change a value of the scene, for example bodies[0].position=[0,0,1] or materials.rubber.E=2e5; "
+                    "repeat the option to change several values")
         ->type_name("PLACE=VALUE")
         ->allow_extra_args(false);
 }
@@ -167,13 +170,16 @@ void add_count(CLI::App& app, const std::string& flag, std::optional<int>& targe
 void add_outputs(CLI::App& command, RunOptions& options) {
     for (const OutputFormat& format : output_formats())
         command.add_option(format.option, options.outputs[format.option], format.meaning);
-    add_number(command, "--frames-per-second", options.frames_per_second, "frames of output per simulated second");
+    add_number(command, "--frames-per-second", options.frames_per_second,
+               "number of frames of output per simulated second");
     add_count(command, "--export-every", options.problems_every, 1,
-              "export every N-th step, if it has contacts; by default about 20 steps of the run");
-    add_choice<ProblemsOf>(command, "--export-problems-of", options.problems_of,
-                           "content of each file: a whole step (default), or one contact region of it");
+              "export every N-th step; steps without contacts are not exported; default: N for about 20 exported steps "
+              "in the run");
+    add_choice<ProblemsOf>(
+        command, "--export-problems-of", options.problems_of,
+        "content of each exported file: all contacts of a step (default), or one contact region of a step");
     CLI::Option* quiet =
-        command.add_flag("--quiet", options.quiet, "no progress, no summary; warnings go to standard error");
+        command.add_flag("--quiet", options.quiet, "print no progress and no summary; warnings go to standard error");
     command
         .add_flag("--profile", options.profile,
                   "after the summary print step limits, solver figures, energies, stage times and the state hash")
@@ -184,32 +190,35 @@ void add_outputs(CLI::App& command, RunOptions& options) {
 /// Adds the options that override settings of the scene.
 void add_overrides(CLI::App& command, SceneOverrides& overrides) {
     add_set(command, overrides.assignments);
-    add_choice<Backend>(command, "--backend", overrides.backend, "library that runs the threads");
-    add_number(command, "--step", overrides.step_size, "step size [s]; by default the stable step");
+    add_choice<Backend>(command, "--backend", overrides.backend, "library that manages the threads");
+    add_number(command, "--step", overrides.step_size, "largest step size [s]; default: the stable step");
     add_choice<SolverMethod>(command, "--method", overrides.method, "contact solver");
     add_choice<Friction>(command, "--friction", overrides.friction, "friction law");
-    add_number(command, "--tolerance", overrides.tolerance, "relative error allowed in each contact region");
-    add_count(command, "--max-iterations", overrides.max_iterations, 1, "most sweeps over a contact region in a step");
+    add_number(command, "--tolerance", overrides.tolerance,
+               "relative error at which the solver of a contact region stops");
+    add_count(command, "--max-iterations", overrides.max_iterations, 1,
+              "largest number of sweeps over a contact region in a step");
     add_choice<StartOverlaps>(command, "--start-overlaps", overrides.start_overlaps,
-                              "treatment of bodies that overlap at the start");
+                              "treatment of bodies that overlap at the start: move them apart (resolve), stop with an "
+                              "error (refuse), or start with the overlaps (ignore)");
     add_choice<ElementKind>(command, "--element", overrides.element,
-                            "elements of all bodies; smoothed ones bend correctly on coarse meshes");
+                            "element type of all bodies; smoothed elements bend correctly on coarse meshes");
     add_choice<ContactRegions>(command, "--contact-regions", overrides.contact_regions,
                                "grouping of contacts into regions, each of which is solved on its own");
 }
 
 /// Adds the options for writing checkpoints and for resuming a run. Returns the option --restart.
 CLI::Option* add_checkpoints(CLI::App& command, RunOptions& options) {
-    CLI::Option* checkpoint = command.add_option(
-        "--checkpoint", options.checkpoint,
-        "file for the state of the run, for --restart; replaced several times during the run and at its end");
+    CLI::Option* checkpoint = command.add_option("--checkpoint", options.checkpoint,
+                                                 "file for the state of the run, from which --restart can continue; "
+                                                 "rewritten several times during the run and at the end of the run");
     add_number(command, "--every", options.every,
-               "simulated time between checkpoints [s], by default a tenth of the run; written at the end of a frame "
-               "or of a sample of the probes")
+               "simulated time between checkpoints [s]; default: a tenth of the run. A checkpoint is written at the "
+               "end of a frame or of a sample of the probes")
         ->needs(checkpoint);
-    CLI::Option* restart =
-        command.add_option("--restart", options.restart,
-                           "checkpoint to continue from; the result has the bits of a run that was not stopped");
+    CLI::Option* restart = command.add_option(
+        "--restart", options.restart,
+        "checkpoint from which to continue; the result is bitwise identical to the result of an uninterrupted run");
     for (const char* fixed : {"--set", "--frames-per-second", "--step", "--method", "--friction", "--tolerance",
                               "--element", "--contact-regions"})
         restart->excludes(command.get_option(fixed));
@@ -221,11 +230,11 @@ void add_run(CLI::App& app, RunOptions& options) {
     command.footer(run_examples);
     CLI::Option* scene =
         command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format");
-    add_number(command, "--seconds", options.seconds, "simulated time [s]; by default \"seconds\" of the scene");
+    add_number(command, "--seconds", options.seconds, "simulated time [s]; default: \"seconds\" of the scene");
     command
         .add_option_function<int>(
             "--threads", [&options](const int& count) { options.overrides.threads = count; },
-            "worker threads; 0: one per core")
+            "number of worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_outputs(command, options);
     add_overrides(command, options.overrides);
@@ -236,65 +245,78 @@ void add_run(CLI::App& app, RunOptions& options) {
 }
 
 void add_solve(CLI::App& app, SolveOptions& options) {
-    CLI::App& command = *app.add_subcommand("solve", "Solve a frictional contact problem on its own");
+    CLI::App& command = *app.add_subcommand("solve", "Solve a frictional contact problem from a file");
     command.footer("Example:\n  skerry solve Box_Stacks.hdf5 --tolerance 1e-8 --json --reactions reactions.txt");
-    command.add_option("PROBLEM", options.problem, "a problem in FCLIB's HDF5 form; a global one is condensed first")
+    command
+        .add_option("PROBLEM", options.problem,
+                    "problem in FCLIB's HDF5 format; a global problem is first condensed to the contacts")
         ->required();
     add_choice<SolverMethod>(command, "--method", options.settings.method, "contact solver");
     add_choice<Friction>(command, "--friction", options.settings.friction, "friction law");
     command
-        .add_option("--tolerance", options.settings.tolerance, "on the relative error, as FCLIB and Siconos measure it")
+        .add_option("--tolerance", options.settings.tolerance,
+                    "largest accepted relative error, measured as in FCLIB and Siconos")
         ->check(positive_number)
         ->capture_default_str();
     command
-        .add_option("--relaxation", options.settings.relaxation, "of the sweeps, below 2; above 1 is over-relaxation")
+        .add_option("--relaxation", options.settings.relaxation,
+                    "relaxation factor of the sweeps, below 2; a value above 1 is over-relaxation")
         ->check(positive_number)
         ->capture_default_str();
-    command.add_option("--max-iterations", options.settings.max_iterations, "sweeps of a region")
+    command
+        .add_option("--max-iterations", options.settings.max_iterations,
+                    "largest number of sweeps over a contact region")
         ->check(CLI::Range(1, 2147483647))
         ->capture_default_str();
     command.add_option("--reactions", options.reactions,
-                       "file for the reactions: one contact a line, normal and two tangents, 17 digits");
-    command.add_flag("--json", options.json, "print JSON");
+                       "text file for the reactions: one line per contact with the normal and two tangential "
+                       "components, 17 digits each");
+    command.add_flag("--json", options.json, "print the result as JSON");
 }
 
 void add_inspect(CLI::App& app, InspectOptions& options) {
-    CLI::App& command = *app.add_subcommand("inspect", "Say what is in a mesh or a scene, and what looks wrong");
+    CLI::App& command = *app.add_subcommand("inspect", "Show the content and likely problems of a mesh or scene");
     command.footer(inspect_examples);
-    command.add_option("FILE", options.file, "a mesh (.msh, .vtk, .node, .ele) or a scene (.json)")->required();
+    command.add_option("FILE", options.file, "mesh file (.msh, .vtk, .node, .ele) or scene file (.json)")->required();
     add_set(command, options.assignments);
-    command.add_flag("--json", options.json, "print JSON");
-    CLI::Option* repair =
-        command.add_option("--repair", options.repair, "write a mesh (.msh) of the same body whose step is longer");
+    command.add_flag("--json", options.json, "print the result as JSON");
+    CLI::Option* repair = command.add_option("--repair", options.repair,
+                                             "write a new mesh (.msh) of the same body with a longer stable step");
     command
         .add_option("--tolerance", options.tolerance,
-                    "how far the surface may move, as a share of the bounding box's diagonal; 0: not at all")
+                    "largest movement of the surface, as a fraction of the diagonal of the bounding box; 0: the "
+                    "surface stays unchanged")
         ->check(share)
         ->capture_default_str()
         ->needs(repair);
     command
-        .add_option("--body", options.body,
-                    "of a scene, the body whose mesh is mended; by default the one that bounds the step")
+        .add_option(
+            "--body", options.body,
+            "for a scene: name of the body whose mesh is repaired; default: the body with the smallest stable step")
         ->needs(repair);
-    command.add_flag("--overwrite", options.overwrite, "--repair may replace the file that is read")->needs(repair);
+    command.add_flag("--overwrite", options.overwrite, "allow --repair to replace the input file")->needs(repair);
 }
 
 void add_sweep(CLI::App& app, SweepOptions& options) {
-    CLI::App& command = *app.add_subcommand("sweep", "Simulate a scene with many values, a case a core");
+    CLI::App& command = *app.add_subcommand("sweep", "Simulate a scene with many values, one case per core");
     command.footer(sweep_examples);
-    command.add_option("CASES", options.cases, "a scene and its cases, in JSON")->required();
-    command.add_option("--out", options.out, "folder for the results; by default out/NAME for NAME.json");
-    add_count(command, "--jobs", options.jobs, 1,
-              "cases at a time, each with one thread; by default the cores there are");
+    command.add_option("CASES", options.cases, "JSON file with the scene and the cases")->required();
+    command.add_option("--out", options.out, "folder for the results; default: out/NAME, if CASES is NAME.json");
+    add_count(
+        command, "--jobs", options.jobs, 1,
+        "number of cases that run at the same time, each with one thread; default: the number of available cores");
     add_count(command, "--rank", options.rank, 0,
-              "of several processes that share the cases: which one this is, from 0");
-    add_count(command, "--of", options.of, 1, "how many they are");
-    command.add_flag("--probes", options.probes, "write the series of the scene's probes, a CSV file for each case");
-    command.add_flag("--redo", options.redo, "replace results of other cases, or of the scene as it was before");
-    command.add_flag("--dry-run", options.dry_run, "list the cases of this process, and run none");
-    command.add_flag("--table", options.table, "make the table and the page of what is there, and run none");
+              "number of this process, counted from 0, if several processes share the cases; needs --of");
+    add_count(command, "--of", options.of, 1, "number of processes that share the cases; needs --rank");
+    command.add_flag("--probes", options.probes, "write the time series of the scene's probes, one CSV file per case");
+    command.add_flag(
+        "--redo", options.redo,
+        "run a case again if the result file belongs to another case or to an earlier version of the scene");
+    command.add_flag("--dry-run", options.dry_run, "list the cases of this process without running them");
+    command.add_flag("--table", options.table,
+                     "write the table and the page from the existing results without running cases");
     command.add_flag("--strict", options.strict, "end with exit code 1 if a case failed, was refused or has warnings");
-    command.add_flag("--quiet", options.quiet, "no progress, no table");
+    command.add_flag("--quiet", options.quiet, "print no progress and no table");
 }
 
 /// Throws SceneError that names an unknown command. CLI11 only says that a command is required.
@@ -307,8 +329,8 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
     Complaint{.file = {},
               .object = "command line",
               .field = {},
-              .found = in_quotes(found),
-              .expected = "one of " + listed(names),
+              .found = "the command " + in_quotes(found),
+              .expected = "one of the commands " + listed(names),
               .hint = nearest_hint(found, names)}
         .raise();
 }
@@ -318,11 +340,12 @@ std::string version_text() {
     std::string sets;
     for (const std::string_view set : instruction_sets()) sets += (sets.empty() ? "" : ", ") + std::string(set);
     return std::string("skerry ") + SKERRY_VERSION + "\ninstruction set: " + std::string(instruction_set()) +
-           " (here: " + sets + "; SKERRY_INSTRUCTION_SET chooses)";
+           " (this machine supports: " + sets +
+           "; to use another one, set the environment variable SKERRY_INSTRUCTION_SET)";
 }
 
 int run_command_line(int argc, char** argv) {
-    CLI::App app("Deformable bodies that touch each other with friction", "skerry");
+    CLI::App app("Simulates deformable bodies in frictional contact", "skerry");
     app.footer(general_examples);
     app.set_version_flag("--version", version_text);
     app.require_subcommand(1);
@@ -336,7 +359,7 @@ int run_command_line(int argc, char** argv) {
     add_sweep(app, sweep_options);
     bool schema_of_sweeps = false;
     app.add_subcommand("schema", "Print the JSON schema of scenes")
-        ->add_flag("--sweep", schema_of_sweeps, "that of cases for `skerry sweep` instead");
+        ->add_flag("--sweep", schema_of_sweeps, "print the JSON schema of the input files of `skerry sweep` instead");
     require_known_command(app, argc, argv);
     try {
         app.parse(argc, argv);

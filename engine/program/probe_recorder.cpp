@@ -103,10 +103,16 @@ Json ProbeRecorder::saved() const {
 }
 
 void ProbeRecorder::go_on(const Json& saved) {
-    if (saved.size() != records_.size()) throw std::out_of_range("another number of probes");
+    const std::string restore = ": restore the probes of the scene from which the checkpoint was written";
+    if (saved.size() != records_.size())
+        throw std::out_of_range("the checkpoint has " + std::to_string(saved.size()) +
+                                " contact probes, but the scene has " + std::to_string(records_.size()) + restore);
     for (std::size_t p = 0; p < records_.size(); ++p) {
         const Json& probe = saved.at(p);
-        if (probe.at("name").get<std::string>() != records_[p].name) throw std::out_of_range("other probes");
+        const std::string name = probe.at("name").get<std::string>();
+        if (name != records_[p].name)
+            throw std::out_of_range("the checkpoint has the probe \"" + name + "\" where the scene has \"" +
+                                    records_[p].name + "\"" + restore);
         from_json(probe, records_[p]);
         tracked_[p].last_closed = static_cast<State>(probe.at("last_closed").get<int>());
     }

@@ -122,8 +122,8 @@ std::unique_ptr<Writer> exported_problems(const std::filesystem::path& folder, c
                   .object = {},
                   .field = "name",
                   .found = "\"" + scene.name + "\"",
-                  .expected = "a file name without a folder",
-                  .hint = "exported problems have the name of the scene"}
+                  .expected = "a file name without / and \\",
+                  .hint = "change \"name\" of the scene; the names of exported files begin with the name of the scene"}
             .raise();
     return std::make_unique<ExportedProblems>(folder, scene.name, options);
 }

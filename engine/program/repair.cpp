@@ -94,24 +94,23 @@ public:
         : parted_(mesh::part_fans(mesh)), mesh_(parted_.mesh), of_(of), progress_(progress) {
         const std::string fault = mesh::manifold_fault(boundary_triangles(mesh_.tetrahedra));
         if (!fault.empty())
-            Complaint{
-                what,
-                "boundary",
-                {},
-                fault,
-                "a closed manifold: two triangles at each edge",
-                parted_.parted > 0 || fault.find("triangles") != std::string::npos
-                    ? "tetrahedra that touch in an edge alone, and hang together around both of its ends, have to "
-                      "be parted first: take those on one side away, or give the edge nodes of its own there"
-                    : ""}
+            Complaint{what,
+                      "boundary",
+                      {},
+                      fault,
+                      "a closed manifold: two triangles at each edge",
+                      parted_.parted > 0 || fault.find("triangles") != std::string::npos
+                          ? "separate tetrahedra that share only an edge: delete the tetrahedra on one side of the "
+                            "edge, or give them their own copies of its two nodes"
+                          : ""}
                 .raise();
         if (parted_.parts > 1)
             Complaint{what,
                       "tetrahedra",
                       {},
-                      std::to_string(parted_.parts) + " parts that hang together by nodes or edges alone",
-                      "tetrahedra that hang together by faces",
-                      "mend each part as a mesh of its own"}
+                      std::to_string(parted_.parts) + " parts without common faces",
+                      "one part, in which common faces connect all tetrahedra",
+                      "save each part as a separate mesh and repair the meshes one by one"}
                 .raise();
         surface_ = mesh::boundary(mesh_);
         result_.before = figures_of(mesh, surface_, of);
@@ -122,21 +121,21 @@ public:
                       "tetrahedra",
                       "label",
                       std::to_string(report.labels.size()) + " different labels",
-                      "one: the inside is filled anew, and would lose where one material ends",
-                      "mend a mesh of one material at a time"}
+                      "one label, because all tetrahedra are replaced and the boundary between materials would be lost",
+                      "save the tetrahedra of each label as a separate mesh and repair the meshes one by one"}
                 .raise();
         result_.tolerance = tolerance * (report.upper - report.lower).norm();
     }
 
     RepairedMesh run() {
         Candidate best;
-        try_fill(surface_, "as it is", best);
+        try_fill(surface_, "the unchanged surface", best);
         if (result_.tolerance > 0) {
-            progress_("looking for knots of the surface");
+            progress_("removing very flat triangles from the surface");
             const mesh::ThinnedSurface thinned = thinned_within_tolerance();
             if (thinned.collapsed + thinned.flipped > 0) {
                 Candidate other;
-                try_fill(thinned.surface, "without its knots", other);
+                try_fill(thinned.surface, "the surface without very flat triangles", other);
                 other.collapsed = thinned.collapsed;
                 other.flipped = thinned.flipped;
                 if (other.figures.step > least_gain * best.figures.step) best = std::move(other);
@@ -167,8 +166,8 @@ private:
         const Real volume = volume_inside(surface);
         for (const Real size : largest_edges) {
             if (size < 1 && best.figures.step > 0) return;
-            const Mesh filled = fill_surface(surface, size * result_.before.mesh.mean_edge,
-                                             [&] { progress_("filling the surface " + which); });
+            const Mesh filled =
+                fill_surface(surface, size * result_.before.mesh.mean_edge, [&] { progress_("filling " + which); });
             if (filled.tetrahedra.empty()) continue;
             filled_once_ = true;
             if (static_cast<Real>(filled.tetrahedra.size()) < least_count * static_cast<Real>(mesh_.tetrahedra.size()))
@@ -200,21 +199,24 @@ private:
     /// Sets result_.refusal to a reason if the new mesh is not good enough to be written.
     void judge(const SurfaceMesh& surface) {
         if (result_.mesh.tetrahedra.empty() || !(result_.after.step > 0)) {
-            result_.refusal = filled_once_ ? "no mesh found that is not much coarser, and keeps the volume"
-                                           : "no tetrahedra found inside the surface; does it cut itself?";
+            result_.refusal =
+                filled_once_
+                    ? "every new mesh was too coarse or had a different volume"
+                    : "Netgen could not fill the surface with tetrahedra; check whether the surface intersects itself";
             return;
         }
-        progress_("measuring how far the surface moved");
+        progress_("measuring the movement of the surface");
         result_.distance = mesh::surface_distance(surface_, surface);
         // With a tolerance of 0 the surfaces must agree except for rounding errors.
         const Real rounding = 1e-9 * (result_.before.mesh.upper - result_.before.mesh.lower).norm();
         if (result_.distance.greatest() > std::max(result_.tolerance, rounding))
             result_.refusal = "the surface would move by " + with_unit(result_.distance.greatest(), "m") +
-                              ", more than the tolerance of " + with_unit(result_.tolerance, "m");
+                              ", more than the tolerance of " + with_unit(result_.tolerance, "m") +
+                              "; try a larger --tolerance";
         else if (!(result_.after.step > least_gain * result_.before.step))
             result_.refusal =
-                "no mesh found whose step is at least 5 % longer: " + with_unit(result_.before.step, "s") +
-                " before, " + with_unit(result_.after.step, "s") + " with the best of those tried";
+                "no new mesh has a stable step that is at least 5 % longer: " + with_unit(result_.before.step, "s") +
+                " for the old mesh, " + with_unit(result_.after.step, "s") + " for the best new mesh";
     }
 
     mesh::PartedMesh parted_;

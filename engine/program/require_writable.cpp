@@ -26,16 +26,17 @@ void require_writable_folder(const std::filesystem::path& folder) {
     if (!existing.has_filename()) existing = existing.parent_path();  // removes a trailing slash
     while (!std::filesystem::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
     if (!std::filesystem::is_directory(existing, error))
-        refuse_output(folder, existing.string() + ", which is no folder", "a folder");
+        refuse_output(folder, existing.string() + ", which is not a folder", "a folder");
     if (access(existing.c_str(), W_OK | X_OK) != 0)
-        refuse_output(folder, "\"" + std::generic_category().message(errno) + "\" for " + existing.string(),
-                      "a folder that can be written");
+        refuse_output(
+            folder, "the error \"" + std::generic_category().message(errno) + "\" for the folder " + existing.string(),
+            "a folder with write permission");
 }
 
 void require_writable_file(const std::filesystem::path& file) {
     std::error_code error;
     if (file.filename().empty() || std::filesystem::is_directory(file, error))
-        refuse_output(file, "a folder", "a file to write");
+        refuse_output(file, "a folder", "the name of a file");
     require_replaceable(file);
     require_writable_folder(std::filesystem::absolute(file).parent_path());
 }
@@ -59,8 +60,8 @@ void require_distinct(std::span<const NamedFile> files) {
                       .object = files[i].name,
                       .field = {},
                       .found = "the same file as " + std::string(files[k].name),
-                      .expected = "one of its own",
-                      .hint = {}}
+                      .expected = "a different file",
+                      .hint = "choose another file name"}
                 .raise();
         }
 }

@@ -49,7 +49,7 @@ private:
 };
 
 const char* const advice =
-    "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps";
+    "try a smaller --step; `skerry inspect SCENE` shows the stable step of every body, and overlaps at the start";
 
 /// Simulates the frames of a run, from the progress in `memory` on. An error is stored in result.status. If a run stops
 /// within a call of advance(), no new checkpoint is written. advance() divides its duration into equal steps, so a

@@ -58,9 +58,9 @@ RunOutputs::RunOutputs(const RunOptions& options, Scene& scene, const RunStart& 
                 Complaint{.file = file.file.string(),
                           .object = file.name,
                           .field = {},
-                          .found = std::string("a file that ") + output.option + " writes, too",
-                          .expected = "a file of its own",
-                          .hint = {}}
+                          .found = std::string("a file that ") + output.option + " also writes",
+                          .expected = "a different file",
+                          .hint = "choose another file name"}
                     .raise();
     for (const Output& output : outputs_) output.writer->open(scene.world, start);
     result_.frames = static_cast<int>(start.frames);
@@ -77,7 +77,8 @@ void RunOutputs::for_each(FunctionRef<void(Writer&)> write) {
             result_.outputs_failed.emplace_back(output.option, error.what());
             clear_bar();
             std::cerr << "skerry: " << output.option
-                      << " could not be written, everything else goes on: " << error.what() << std::endl;
+                      << " could not be written, but the run and all other outputs continue: " << error.what()
+                      << std::endl;
         }
         result_.seconds_output += watch.seconds();
     }

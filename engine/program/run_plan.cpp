@@ -50,7 +50,7 @@ void expect_countable(const RunOptions& options, const char* field, double count
 
 void expect_countable_frames(const RunOptions& options, const RunPlan& plan) {
     expect_countable(options, "frames", plan.seconds / plan.frame_step,
-                     "lower seconds (--seconds) or --frames-per-second, or raise frame_step");
+                     "reduce seconds (--seconds) or --frames-per-second, or increase frame_step");
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ RunPlan plan_run(const Scene& scene, const RunOptions& options) {
     expect_countable_frames(options, plan);
     if (scene.probes.empty() && scene.recorded.empty()) return plan;
     const double samples = std::min(plan.frame_step, plan.seconds) / scene.probe_step;
-    expect_countable(options, "samples of the probes per frame", samples, "raise probe_step");
+    expect_countable(options, "samples of the probes per frame", samples, "increase probe_step");
     plan.samples = std::max(1, static_cast<int>(std::lround(samples)));
     return plan;
 }
@@ -72,13 +72,14 @@ RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time
     if (plan.seconds > time + RunPlan::slack * plan.frame_step) return plan;
     char found[64], expected[64];
     std::snprintf(found, sizeof found, "a checkpoint at %g s", time);
-    std::snprintf(expected, sizeof expected, "one before the end of the run at %g s", plan.seconds);
+    std::snprintf(expected, sizeof expected, "a checkpoint from before the end of the run, which is at %g s",
+                  plan.seconds);
     Complaint{.file = options.restart.string(),
               .object = "--restart",
               .field = {},
               .found = found,
               .expected = expected,
-              .hint = "give --seconds a larger value"}
+              .hint = "choose a larger --seconds"}
         .raise();
 }
 

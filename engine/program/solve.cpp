@@ -50,18 +50,18 @@ std::string count(std::int64_t number) {
 
 void print(const SolveOptions& options, const ContactProblem& problem, const ProblemSolution& solution) {
     std::cout << problem.name << ": " << count(problem.contacts()) << " contacts in " << count(solution.regions)
-              << " regions, the largest of " << count(solution.largest_region) << " contacts\n";
+              << " contact regions; the largest region has " << count(solution.largest_region) << " contacts\n";
     if (problem.freedoms > 0)
-        std::cout << "  condensed     from a global problem of " << count(problem.freedoms)
-                  << " freedoms to its contacts\n";
+        std::cout << "  condensed     from a global problem with " << count(problem.freedoms)
+                  << " degrees of freedom to the contacts\n";
     std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction)
               << "\n"
               << "  iterations    " << count(solution.iterations) << " in " << with_unit(solution.seconds, "s") << "\n"
-              << "  error         " << short_number(solution.error) << " of "
+              << "  error         " << short_number(solution.error) << ", tolerance "
               << short_number(options.settings.tolerance) << " (absolute " << short_number(solution.error_absolute)
-              << ", over |q| " << short_number(solution.error_over_q) << ")\n"
+              << ", relative to |q| " << short_number(solution.error_over_q) << ")\n"
               << "  energy gap    " << with_unit(solution.energy_gap, "J") << "\n";
-    if (!solution.converged) std::cout << "  not converged in " << count(solution.unconverged) << " regions\n";
+    if (!solution.converged) std::cout << "  not converged in " << count(solution.unconverged) << " contact regions\n";
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ inline Json overlaps_json(const WorldReport& report) {
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
-    return "surfaces start " + with_unit(depth, "m") +
-           " too deep in each other's contact distance: move the bodies apart, or lower contact_distance";
+    return "surfaces start up to " + with_unit(depth, "m") +
+           " too deep in each other's contact distance: move the bodies apart, or reduce contact_distance";
 }
 
 /// Rotation of a collider per step above which a warning is given [rad]. Contacts assume that the surface moves
@@ -37,9 +37,9 @@ inline constexpr Real visible_turn = 0.25;
 
 inline std::string turning_text(const WorldReport& report) {
     return "collider \"" + report.turning_collider + "\" turns by " + short_number(report.collider_turn) +
-           " rad in a step, but contacts assume that its surface moves straight within a step: shorten the step "
-           "(--step) " +
-           "to " + percent(visible_turn / report.collider_turn) + " of its length";
+           " rad in a step, but contacts assume that surfaces move along straight lines within a step: shorten the "
+           "step (--step) " +
+           "to " + percent(visible_turn / report.collider_turn) + " of the present length";
 }
 
 /// Describes how the overlaps were resolved, for example
@@ -51,7 +51,7 @@ inline std::string moves_text(const WorldReport& report) {
     if (furthest == nullptr) return {};
     const std::size_t overlaps = report.start_overlaps.size(), bodies = report.start_moves.size();
     return grouped(overlaps) + (overlaps == 1 ? " overlap, " : " overlaps, ") + grouped(bodies) +
-           (bodies == 1 ? " body moved: " : " bodies moved apart, the furthest ") + furthest->name + " by " +
+           (bodies == 1 ? " body moved: " : " bodies moved apart, the largest movement ") + furthest->name + " by " +
            with_unit(furthest->translation.norm(), "m");
 }
 

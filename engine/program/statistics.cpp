@@ -46,7 +46,7 @@ public:
     void close(const World&) override {
         write_file(file_, [&](std::ostream& out) { out << statistics_of(result_).dump(1) << "\n"; });
     }
-    std::string written() const override { return file_.string() + " (all figures of the run)"; }
+    std::string written() const override { return file_.string() + " (all statistics of the run)"; }
 
 private:
     std::filesystem::path file_;

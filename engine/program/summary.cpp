@@ -43,23 +43,24 @@ std::string penetration_text(const RunResult& result) {
 
 std::string balance_text(const WorldReport& r) {
     constexpr double rounding = 1e-9;  // relative errors of the momentum below this value are rounding errors
-    return "energy adds up to within " + percent(r.energy_error_share) + ", momentum " +
-           (std::isnan(r.momentum_error)        ? "is not checked: a held body is damped or implicit"
-            : r.momentum_error_share < rounding ? "to within rounding"
-                                                : "to within " + percent(r.momentum_error_share));
+    return "energy error " + percent(r.energy_error_share) + ", momentum error " +
+           (std::isnan(r.momentum_error)        ? "not available, because a pinned body is damped or implicit"
+            : r.momentum_error_share < rounding ? "within rounding"
+                                                : percent(r.momentum_error_share));
 }
 
 std::string probe_lines(const RunResult& result) {
     std::string text;
     for (const ProbeRecord& probe : result.probes)
-        text += summary_line(text.empty() ? "probes" : "",
-                             probe.name + ": sticks " + with_unit(probe.stick_time, "s") + ", slides " +
-                                 with_unit(probe.slide_time, "s") + " (" + with_unit(probe.slide_alone_time, "s") +
-                                 " of it while no other probe slides), no contact " + with_unit(probe.open_time, "s") +
-                                 ", " + count_of(static_cast<std::size_t>(probe.changes), "change", "changes") +
-                                 " between them; slips " + with_unit(probe.slip_distance, "m") + ", at most " +
-                                 with_unit(probe.max_slip, "m/s") + "; largest von Mises stress " +
-                                 with_unit(probe.max_von_mises, "Pa"));
+        text +=
+            summary_line(text.empty() ? "probes" : "",
+                         probe.name + ": sticks " + with_unit(probe.stick_time, "s") + ", slides " +
+                             with_unit(probe.slide_time, "s") + " (" + with_unit(probe.slide_alone_time, "s") +
+                             " of this while no other probe slides), no contact " + with_unit(probe.open_time, "s") +
+                             ", " + count_of(static_cast<std::size_t>(probe.changes), "change", "changes") +
+                             " between sticking and sliding; slip distance " + with_unit(probe.slip_distance, "m") +
+                             ", largest slip speed " + with_unit(probe.max_slip, "m/s") +
+                             "; largest von Mises stress " + with_unit(probe.max_von_mises, "Pa"));
     return text;
 }
 
@@ -68,7 +69,7 @@ std::string warning_lines(const RunResult& result) {
     for (const std::string& warning : warnings_of(result)) text += summary_line("WARNING", warning);
     if (!text.empty()) return text;
     return summary_line("warnings", result.status == "ok" ? "none: all error estimates are within their limits"
-                                                          : "none about the part that was simulated");
+                                                          : "none for the simulated part of the run");
 }
 
 /// Lines with statistics of the steps. Empty if no step was made.
@@ -89,7 +90,7 @@ std::string file_lines(const RunResult& result) {
     for (const std::string& file : result.written) text += summary_line("wrote", file);
     for (const auto& [option, error] : result.outputs_failed)
         text += summary_line("NOT WRITTEN", option + ": " + error);
-    return text.empty() ? summary_line("wrote", "no files; --page FILE.html plays the run in a browser") : text;
+    return text.empty() ? summary_line("wrote", "no files; add --page FILE.html to play the run in a browser") : text;
 }
 
 }  // namespace

@@ -17,10 +17,11 @@ bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) 
     for (const StartOverlap& overlap : r.start_overlaps)
         if (!overlap.resolved && left++ < most_named)
             warnings.push_back(
-                overlap.message() + " at the start: move them apart" +
+                overlap.message() + " at the start: move the objects apart" +
                 (overlap.kind == OverlapKind::crossing ? ", or set settings.start_overlaps to \"resolve\"" : ""));
     if (left > most_named)
-        warnings.push_back(grouped(left - most_named) + " more overlaps at the start: --stats lists them all");
+        warnings.push_back(grouped(left - most_named) +
+                           " more overlaps at the start: see the complete list in the file of --stats");
     const Real into_shell = r.start_gap_violation - r.start_penetration;
     const bool in_shell = into_shell > visible_share * result.mean_edge;
     if (in_shell) warnings.push_back(into_shell_text(into_shell));
@@ -31,7 +32,7 @@ bool warn_of_start(const RunResult& result, std::vector<std::string>& warnings) 
 }
 
 std::string element_text(const std::string& body, Index element) {
-    return "(the worst: element " + std::to_string(element) + " of body \"" + body + "\")";
+    return "(worst: element " + std::to_string(element) + " of body \"" + body + "\")";
 }
 
 void warn_of_elements(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
@@ -40,16 +41,16 @@ void warn_of_elements(const WorldReport& r, const std::string& shorter, std::vec
         warnings.push_back("elements turned inside out: " + grouped(static_cast<std::uint64_t>(r.inverted)) + " " +
                            worst + ": " + shorter + ", or refine the mesh there");
     else if (r.inversions > 0)
-        warnings.push_back("elements were turned inside out for some steps, " + grouped(r.inversions) +
-                           " times: " + shorter);
+        warnings.push_back("elements turned inside out during some steps, " + grouped(r.inversions) +
+                           " times in total: " + shorter);
     else if (r.near_inversion > 0)
-        warnings.push_back("elements pressed to less than a tenth of their volume: " +
+        warnings.push_back("elements compressed to less than a tenth of their rest volume: " +
                            grouped(static_cast<std::uint64_t>(r.near_inversion)) + " " + worst +
                            ": reduce the load, stiffen the material or refine the mesh there");
     if (r.folded > 0)
         warnings.push_back("folded smoothed elements: " + grouped(static_cast<std::uint64_t>(r.folded)) + " " +
                            element_text(r.folded_body, r.folded_element) +
-                           ": set \"element\" of this body to \"linear\", or refine its mesh");
+                           ": set \"element\" of this body to \"linear\", or refine the mesh of the body");
 }
 
 void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
@@ -57,13 +58,12 @@ void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vect
     // 1 %.
     constexpr double small_share = 0.02;
     if (r.energy_error_share > small_share)
-        warnings.push_back("the energy balance has an error of " + percent(r.energy_error_share) + ", more than " +
-                           percent(small_share) + ": " + shorter);
-    // this value is far above relative rounding errors, even those of sums of millions of terms
-    constexpr double rounding = 1e-9;
+        warnings.push_back("the energy balance has an error of " + percent(r.energy_error_share) +
+                           ", more than the limit of " + percent(small_share) + ": " + shorter);
+    constexpr double rounding = 1e-9;  // relative rounding errors of sums of millions of terms are far below this value
     if (r.momentum_error_share > rounding)
         warnings.push_back("the momentum balance has an error of " + percent(r.momentum_error_share) +
-                           ", more than rounding: please report it as a bug, with the scene");
+                           ", which is larger than rounding errors: please report this as a bug and attach the scene");
 }
 
 }  // namespace
@@ -77,14 +77,15 @@ std::vector<std::string> warnings_of(const RunResult& result) {
                            "; contacts may fail there: repair the mesh (`skerry inspect MESH --repair NEW.msh`)");
     const auto steps = static_cast<Real>(std::max<std::uint64_t>(r.steps, 1));
     const Real mean_step = result.seconds_simulated / steps;
-    const std::string shorter = bad_start ? "first correct the start as described above"
-                                          : "shorten the step (--step, or settings.step_size, below the mean step of " +
-                                                with_unit(mean_step, "s") + ")";
+    const std::string shorter = bad_start
+                                    ? "first correct the start as described above"
+                                    : "shorten the step (set --step or settings.step_size below the mean step of " +
+                                          with_unit(mean_step, "s") + ")";
     if (r.unconverged > 0)
         warnings.push_back(grouped(r.unconverged) + " of " + grouped(r.solved) +
-                           " groups of contacts were solved with an error above the tolerance " +
-                           short_number(result.settings.tolerance) + ", at most " + short_number(r.worst_error) +
-                           ": raise settings.max_iterations (--max-iterations), now " +
+                           " contact regions were solved with an error above the tolerance " +
+                           short_number(result.settings.tolerance) + ", the largest error being " +
+                           short_number(r.worst_error) + ": increase settings.max_iterations (--max-iterations), now " +
                            std::to_string(result.settings.max_iterations) + ", or the tolerance (--tolerance)");
     warn_of_balance(r, shorter, warnings);
     if (r.crossed > 0)
@@ -92,8 +93,8 @@ std::vector<std::string> warnings_of(const RunResult& result) {
                            " nodes or edges: " + shorter);
     const bool arose = r.max_penetration > 1.01 * r.start_penetration;
     if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
-        warnings.push_back("surfaces came to overlap by " + percent(r.max_penetration / result.mean_edge) +
-                           " of the mean edge length: " + shorter);
+        warnings.push_back("surfaces overlapped during the run by up to " +
+                           percent(r.max_penetration / result.mean_edge) + " of the mean edge length: " + shorter);
     if (r.collider_turn > visible_turn) warnings.push_back(turning_text(r));
     warn_of_elements(r, shorter, warnings);
     return warnings;

@@ -25,7 +25,7 @@ public:
     }
 
     void carry_out(Json& scene) {
-        if (place_.empty()) refuse("nothing before \"=\"", "a place");
+        if (place_.empty()) refuse("no place before \"=\"", "a place in the scene before \"=\"");
         Json* at = &scene;
         while (!place_.empty()) at = &inner(*at, next_step());
         Json value = Json::parse(value_, nullptr, false);
@@ -39,7 +39,7 @@ private:
                   .field = {},
                   .found = found,
                   .expected = expected,
-                  .hint = "an assignment is PLACE=VALUE, such as bodies[0].position=[0,0,1]"}
+                  .hint = "write PLACE=VALUE, such as bodies[0].position=[0,0,1]"}
             .raise();
     }
 
@@ -58,7 +58,8 @@ private:
         if (place_.front() == '.') place_.remove_prefix(1);
         if (!place_.empty() && place_.front() == '[') return next_in_brackets();
         const std::size_t end = std::min(place_.find_first_of(".["), place_.size());
-        if (end == 0) refuse("a place without a name at \"" + std::string(place_) + "\"", "a key");
+        if (end == 0)
+            refuse(place_.empty() ? "no key after \".\"" : "no key before " + in_quotes(place_), "the name of a key");
         Step step{std::string(place_.substr(0, end))};
         place_.remove_prefix(end);
         return step;
@@ -76,7 +77,7 @@ private:
             const char* const last = place_.data() + end;
             const auto [read, error] = std::from_chars(place_.data(), last, step.item);
             if (error != std::errc() || read != last || end == 0)
-                refuse("the item " + in_quotes(place_.substr(0, end)), "a number from 0");
+                refuse("the index " + in_quotes(place_.substr(0, end)), "a whole number of at least 0");
         }
         place_.remove_prefix(end + (quoted ? 2 : 1));
         return step;
@@ -85,13 +86,15 @@ private:
     Json& inner(Json& of, const Step& step) const {
         if (!step.is_item) {
             if (of.is_null()) of = Json::object();
-            if (!of.is_object()) refuse(described(of) + " where " + in_quotes(step.key) + " is looked up", "an object");
+            if (!of.is_object())
+                refuse(described(of) + " as the parent of the key " + in_quotes(step.key), "an object");
             return of[step.key];
         }
-        if (!of.is_array()) refuse(of.is_null() ? "nothing" : described(of), "a list with items");
+        if (!of.is_array())
+            refuse(of.is_null() ? "no value" : described(of), "a list, because the place continues with an index");
         if (step.item >= of.size())
-            refuse("item " + std::to_string(step.item) + " of " + std::to_string(of.size()),
-                   of.empty() ? "an item of a list that is not empty" : "0 to " + std::to_string(of.size() - 1));
+            refuse("index " + std::to_string(step.item) + " in a list of length " + std::to_string(of.size()),
+                   of.empty() ? "a list that is not empty" : "an index from 0 to " + std::to_string(of.size() - 1));
         return of[step.item];
     }
 

@@ -12,7 +12,7 @@ const Rule<MotorEntry>& rule_of<MotorEntry>() {
             .key("strength", &MotorEntry::strength,
                  {.meaning = "largest torque or force", .unit = "N m or N", .limits = at_least(0), .required = true})
             .key("fastest", &MotorEntry::fastest,
-                 {.meaning = "largest speed on the way to a position; unlimited by default",
+                 {.meaning = "largest speed of the motion to the target position; default: unlimited",
                   .unit = "rad/s or m/s",
                   .limits = above(0)})
             .exactly_one({"speed", "position"});
@@ -24,22 +24,24 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
     using Entry = JointEntry;
     static const auto rule =
         Rule<Entry>("joint",
-                    "A joint between two rigid bodies, or a rigid body and the world, in their poses at the start.")
+                    "A joint between two rigid bodies, or between a rigid body and the world. The joint connects them "
+                    "in their poses at the start.")
             .key("kind", &Entry::kind,
                  {.meaning = "free motion of the joint. ball: all rotations; hinge: rotation about the axis; slider: "
                              "translation along the axis; fixed: none",
                   .required = true})
             .key("first", &Entry::first, {.meaning = "name of a rigid body", .required = true})
-            .key("second", &Entry::second, {.meaning = "name of another rigid body; the world by default"})
-            .key("point", &Entry::point, {.meaning = "position of the joint", .unit = "m"})
-            .key("axis", &Entry::axis, {.meaning = "axis of a hinge or slider, of any nonzero length; z by default"})
+            .key("second", &Entry::second, {.meaning = "name of another rigid body; default: the world"})
+            .key("point", &Entry::point, {.meaning = "position of the joint in the world", .unit = "m"})
+            .key("axis", &Entry::axis,
+                 {.meaning = "axis of a hinge or slider in the world, of any nonzero length; default: z"})
             .key("lower", &Entry::lower,
-                 {.meaning = "lower limit of the rotation or translation; none by default", .unit = "rad or m"})
+                 {.meaning = "lower limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("upper", &Entry::upper,
-                 {.meaning = "upper limit of the rotation or translation; none by default", .unit = "rad or m"})
-            .key("motor", &Entry::motor, {.meaning = "motor on the axis; none by default"})
+                 {.meaning = "upper limit of the rotation or translation; default: none", .unit = "rad or m"})
+            .key("motor", &Entry::motor, {.meaning = "motor on the axis; default: none"})
             .key("bodies_touch", &Entry::bodies_touch,
-                 {.meaning = "whether the two bodies can touch each other; false by default"});
+                 {.meaning = "whether the two bodies can touch each other; default: false"});
     return rule;
 }
 

@@ -43,20 +43,22 @@ public:
 
     bool key(string_t& name) override {
         if (open_.back().value->contains(name))
-            here().refuse("the key " + in_quotes(name) + " twice", "every key once", "delete one of the two");
+            here().refuse("the key " + in_quotes(name) + " twice in the same object", "every key at most once",
+                          "delete one of the two");
         open_.back().key = name;
         return true;
     }
 
     bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
         const std::string what = error.what();
-        if (error.id == out_of_range_id) here().refuse("the number " + token, "a finite number");
+        if (error.id == out_of_range_id)
+            here().refuse("the number " + token, "a number within the range of double precision");
         std::string hint;
         if (token.find('/') != std::string::npos || token.find('#') != std::string::npos)
-            hint = "JSON has no comments; use a \"description\" key";
+            hint = "JSON has no comments; delete the comment or use a \"description\" key";
         else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
                  token.find("I") == token.size() - 1)
-            hint = "JSON has no NaN and no Infinity";
+            hint = "JSON has no NaN and no Infinity; write a finite number";
         throw SceneError(file_.string() + ": " + line_and_column(position) +
                          ": not valid JSON: " + printable(reason(what)) + (hint.empty() ? "" : " (" + hint + ")"));
     }
@@ -97,7 +99,8 @@ private:
         // on a file full of brackets.
         constexpr std::size_t deepest = 100;
         if (open_.size() == deepest)
-            Place(file_).refuse("lists and objects nested more than " + std::to_string(deepest) + " deep", "a scene");
+            Place(file_).refuse("lists and objects nested more than " + std::to_string(deepest) + " deep",
+                                "a file with fewer levels");
         open_.push_back({put(std::move(value)), {}});
         return true;
     }
@@ -141,15 +144,24 @@ Json parse_json(const std::string& text, const std::filesystem::path& file, cons
 
 Json read_json(const std::filesystem::path& file, const std::string& expected) {
     std::error_code error;
-    if (!std::filesystem::exists(file, error)) Complaint{file.string(), {}, {}, "no such file", expected, {}}.raise();
-    if (std::filesystem::is_directory(file, error)) Complaint{file.string(), {}, {}, "a folder", expected, {}}.raise();
+    if (!std::filesystem::exists(file, error))
+        Complaint{file.string(), {}, {}, "no such file", expected, "check the path"}.raise();
+    if (std::filesystem::is_directory(file, error))
+        Complaint{file.string(), {}, {}, "a folder", expected, "give the path of a file"}.raise();
     // Refuses devices such as /dev/zero, which are endless. Pipes are allowed, because they end.
     if (std::filesystem::is_character_file(file, error))
-        Complaint{file.string(), {}, {}, "a device", expected, {}}.raise();
+        Complaint{file.string(), {}, {}, "a device", expected, "give the path of a file"}.raise();
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
-    if (!stream) Complaint{file.string(), {}, {}, "a file that cannot be read", expected, {}}.raise();
+    if (!stream)
+        Complaint{file.string(),
+                  {},
+                  {},
+                  "a file that cannot be opened or read",
+                  expected,
+                  "check the permissions of the file"}
+            .raise();
     return parse_json(text.str(), file, expected);
 }
 

@@ -100,7 +100,7 @@ std::string nearest_hint(std::string_view text, std::span<const std::string> nam
     constexpr std::size_t letters_per_slip = 3;
     const std::size_t most = std::max<std::size_t>(1, std::max(text.size(), nearest.size()) / letters_per_slip);
     return nearest.empty() || edit_distance(text, nearest) > most ? std::string()
-                                                                  : "the nearest known one is " + in_quotes(nearest);
+                                                                  : "did you mean " + in_quotes(nearest) + "?";
 }
 
 }  // namespace skerry

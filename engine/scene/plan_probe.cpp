@@ -5,13 +5,19 @@
 
 namespace skerry {
 
+namespace {
+
+const char* const own_frame = "coordinates are those of the mesh, before rotation and position of the body are applied";
+
+}  // namespace
+
 std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place) {
     std::vector<Index> inside;
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
         if ((mesh.nodes[i].array() >= box.lower.array()).all() && (mesh.nodes[i].array() <= box.upper.array()).all())
             inside.push_back(static_cast<Index>(i));
     if (inside.empty())
-        place.key("box").refuse("a box without any node", "a box around nodes of the mesh, in the mesh's own frame");
+        place.key("box").refuse("a box that contains no node of the mesh", "a box around at least one node", own_frame);
     return inside;
 }
 
@@ -51,8 +57,8 @@ void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& se
     if (body != nowhere) series.by_body = body;
     if (collider != nowhere && !series.collider) {
         if (body != nowhere)
-            place.refuse(in_quotes(*entry.by) + ", the name of a body and of a collider",
-                         "a name that only a body or only a collider has");
+            place.refuse(in_quotes(*entry.by) + ", which is the name of both a body and a collider",
+                         "the name of only one body or collider");
         series.by_collider = collider;
     }
     if (series.by_body || series.by_collider) return;
@@ -76,8 +82,8 @@ MaterialPoint find_point(const ProbeEntry& entry, const Mesh& mesh) {
     if (found) return *found;
     const Vec3& nearest = mesh.nodes[static_cast<std::size_t>(nearest_node(mesh.nodes, *entry.point).first)];
     const auto text = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}.dump(); };
-    entry.place.key("point").refuse(text(*entry.point), "a point inside the body, in the mesh's own frame",
-                                    "the nearest node is at " + text(nearest));
+    entry.place.key("point").refuse(text(*entry.point), "a point inside the body",
+                                    "move the point; the nearest node is at " + text(nearest));
 }
 
 void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
@@ -100,7 +106,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
                     .refuse(body.pins.empty() ? "a body without pins" : "pin " + std::to_string(series.pin),
                             body.pins.empty()
                                 ? "a body with pins"
-                                : "the number of one of its pins, 0 to " + std::to_string(body.pins.size() - 1));
+                                : "the number of a pin of the body, from 0 to " + std::to_string(body.pins.size() - 1));
         }
     }
     plan.series.push_back(std::move(series));
@@ -111,7 +117,8 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan) {
     const auto same = [&](const auto& other) { return other.name == entry.name; };
     if (std::ranges::any_of(plan.probes, same) || std::ranges::any_of(plan.series, same))
-        entry.place.key("name").refuse(in_quotes(entry.name) + " again", "a different name for every probe");
+        entry.place.key("name").refuse(in_quotes(entry.name) + ", which is already the name of a probe",
+                                       "a different name for every probe");
     if (entry.quantity != ProbeQuantity::contacts) return plan_series(entry, plan);
     const std::size_t body = find_body(plan, *entry.body, entry.place.key("body"));
     plan.probes.push_back(

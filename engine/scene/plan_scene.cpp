@@ -72,7 +72,8 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
             place.refuse("node " + std::to_string(entry.nodes[i]),
                          "a node number below " + std::to_string(mesh.nodes.size()));
         if (std::find(pin.nodes.begin(), pin.nodes.end(), entry.nodes[i]) != pin.nodes.end())
-            place.refuse("node " + std::to_string(entry.nodes[i]) + " again", "every node once");
+            place.refuse("node " + std::to_string(entry.nodes[i]) + " for the second time", "every node at most once",
+                         "delete the repeated number");
         pin.nodes.push_back(entry.nodes[i]);
     }
     return pin;
@@ -101,10 +102,10 @@ std::size_t find_material(const ScenePlan& plan, const std::string& wanted, cons
     for (const auto& [name, material] : plan.materials) names.push_back(name);
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
-        place.refuse(
-            in_quotes(wanted),
-            names.empty() ? "one of the materials, but the scene has none" : "one of the materials " + listed(names),
-            nearest_hint(wanted, names));
+        place.refuse(in_quotes(wanted),
+                     names.empty() ? "the name of a material, but the scene defines no materials"
+                                   : "one of the materials " + listed(names),
+                     nearest_hint(wanted, names));
     return static_cast<std::size_t>(found - names.begin());
 }
 
@@ -115,8 +116,11 @@ std::vector<std::pair<int, std::size_t>> find_materials_by_label(const ScenePlan
     for (const auto& [label, name] : entry.materials.items) {
         const Place place = entry.place.key("materials").key(std::to_string(label));
         if (!labels.contains(label))
-            place.refuse("label " + std::to_string(label), mesh::expected_label(mesh),
-                         labels.empty() ? "labels come from mesh files (scenes/README.md)" : "");
+            place.refuse(
+                "label " + std::to_string(label), mesh::expected_label(mesh),
+                labels.empty()
+                    ? "use a mesh file with labels, or delete the key \"materials\" of the body (scenes/README.md)"
+                    : "");
         found.emplace_back(label, find_material(plan, name, place));
     }
     return found;
@@ -175,7 +179,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
         body.pins = pins;
         body.place = entry.place;
         if (!so_far.names.insert(body.settings.name).second)
-            entry.place.key("name").refuse(in_quotes(body.settings.name) + " again", "a different name for every body");
+            entry.place.key("name").refuse(in_quotes(body.settings.name) + ", which is already the name of a body",
+                                           "a different name for every body");
         plan.bodies.push_back(std::move(body));
     }
 }

@@ -33,28 +33,30 @@ KeysOf keys_of(ProbeQuantity quantity) {
 
 void check_keys(const Place& place, const ProbeEntry& probe) {
     const KeysOf keys = keys_of(probe.quantity);
-    const std::string of = "for the quantity " + in_quotes(name_of(probe.quantity));
+    const std::string of = "the quantity " + in_quotes(name_of(probe.quantity));
     const std::vector<std::pair<std::string, bool>> given{
         {"body", probe.body.has_value()}, {"collider", probe.collider.has_value()}, {"by", probe.by.has_value()},
         {"box", probe.box.has_value()},   {"point", probe.point.has_value()},       {"pin", probe.pin.has_value()}};
     for (const auto& [key, is_given] : given) {
         const bool required = std::ranges::find(keys.required, key) != keys.required.end();
-        if (required && !is_given) place.refuse("no key " + in_quotes(key), in_quotes(key) + " " + of);
+        if (required && !is_given)
+            place.refuse("no key " + in_quotes(key), "the key " + in_quotes(key) + ", which " + of + " requires");
         if (!is_given || required || std::ranges::find(keys.optional, key) != keys.optional.end()) continue;
         std::vector<std::string> possible = keys.required;
         possible.insert(possible.end(), keys.optional.begin(), keys.optional.end());
-        place.key(key).refuse("a key without meaning " + of,
-                              possible.empty() ? "only the keys name and quantity" : "one of " + listed(possible));
+        place.key(key).refuse("a key that is not used by " + of, possible.empty()
+                                                                     ? "only the keys \"name\" and \"quantity\""
+                                                                     : "one of the keys " + listed(possible));
     }
     if (probe.quantity == ProbeQuantity::force && probe.body.has_value() == probe.collider.has_value())
         place.refuse(probe.body ? "both \"body\" and \"collider\"" : "neither \"body\" nor \"collider\"",
-                     "one of them: the object on which the force acts");
+                     "exactly one of the two keys, which names the object on which the force acts");
     const bool odd = std::ranges::any_of(
         probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
     if (probe.quantity != ProbeQuantity::contacts && (odd || probe.name == "." || probe.name == "time"))
-        place.key("name").refuse(
-            in_quotes(probe.name),
-            "a text that is not \"time\", without / and control characters, because it heads columns");
+        place.key("name").refuse(in_quotes(probe.name),
+                                 "a name other than \"time\" and \".\", without / and control characters, because "
+                                 "column headings contain the name");
 }
 
 }  // namespace
@@ -64,8 +66,9 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
     using P = ProbeEntry;
     static const auto rule =
         Rule<P>("probe",
-                "A recorded quantity. Contacts of a part of a body are for the report: sticking or sliding, number of "
-                "changes, slip speed. All other quantities are series for --probes (docs/outputs.md).")
+                "A recorded quantity. The quantity \"contacts\" describes the contacts of a part of a body and goes to "
+                "the report: sticking or sliding, number of changes, slip speed. All other quantities are time series, "
+                "which --probes writes (docs/outputs.md).")
             .key("name", &P::name, {.meaning = "name in the report and in column headings", .required = true})
             .key("quantity", &P::quantity,
                  {.meaning = "recorded quantity: contacts (default); motion of a point or of the centre of mass; force "
@@ -73,15 +76,16 @@ const Rule<ProbeEntry>& rule_of<ProbeEntry>() {
                              "stress; smallest ratio of current volume to rest volume"})
             .key("body", &P::body, {.meaning = "name of a body"})
             .key("collider", &P::collider, {.meaning = "for a force: name of the collider on which it acts"})
-            .key("by", &P::by, {.meaning = "for a force: name of the only body or collider whose force counts"})
+            .key("by", &P::by,
+                 {.meaning = "for a force: name of the body or collider that exerts the force; default: all bodies and "
+                             "colliders"})
             .key("box", &P::box,
-                 {.meaning =
-                      "box around the recorded nodes, in the mesh's own frame; for a stress all nodes by default"})
+                 {.meaning = "box around the recorded nodes, in the mesh's own frame; default for a stress: all nodes"})
             .key("point", &P::point,
-                 {.meaning = "for a motion: the point, in the mesh's own frame; the centre of mass by default",
+                 {.meaning = "for a motion: recorded point, in the mesh's own frame; default: the centre of mass",
                   .unit = "m"})
             .key("pin", &P::pin,
-                 {.meaning = "for a reaction: number of the pin of the body, from 0; the first by default",
+                 {.meaning = "for a reaction: number of the pin of the body, counted from 0; default: the first pin",
                   .limits = at_least(0)})
             .check(check_keys);
     return rule;

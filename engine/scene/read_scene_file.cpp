@@ -22,8 +22,9 @@ void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<co
     for (const FilePath& included : own.include.items) {
         const std::filesystem::path next = std::filesystem::weakly_canonical(included.path);
         if (std::find(open.begin(), open.end(), next) != open.end())
-            place.key("include").refuse(in_quotes(included.path.string()) + ", which includes this file",
-                                        "scenes that do not include each other in a circle");
+            place.key("include").refuse(
+                in_quotes(included.path.string()) + ", which includes this file directly or through other files",
+                "a scene file that does not include this file", "delete one of the two includes");
         read_into(scene, included.path, {}, open);
     }
     open.pop_back();
@@ -41,7 +42,8 @@ SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std
     std::vector<std::filesystem::path> open;
     read_into(scene, file, assignments, open);
     if (scene.name.empty()) scene.name = file.stem().string();
-    if (scene.bodies.empty()) Place(file).key("bodies").refuse("no body", "at least one");
+    if (scene.bodies.empty())
+        Place(file).key("bodies").refuse("no bodies", "at least one body", "add a body to \"bodies\"");
     return scene;
 }
 

@@ -14,14 +14,14 @@ void check_group(const KeyGroup& group, const Json& json, const Place& place) {
     switch (group.kind) {
         case KeyGroup::Kind::exactly_one:
             if (present.size() == 1) return;
-            place.refuse(present.empty() ? "none of these keys" : "the keys " + listed(present),
-                         "exactly one of " + all);
+            place.refuse(present.empty() ? "none of the keys" : "the keys " + listed(present),
+                         "exactly one of the keys " + all);
         case KeyGroup::Kind::at_most_one:
             if (present.size() <= 1) return;
-            place.refuse("the keys " + listed(present), "at most one of " + all);
+            place.refuse("the keys " + listed(present), "at most one of the keys " + all);
         case KeyGroup::Kind::together:
             if (present.empty() || present.size() == group.keys.size()) return;
-            place.refuse("only " + listed(present), "all of " + all + ", or none");
+            place.refuse("only " + listed(present), "all of the keys " + all + ", or none of them");
     }
 }
 
@@ -79,11 +79,12 @@ std::vector<std::string> RuleTable::known_names() const {
 
 void RuleTable::refuse_withdrawn(const std::string& key, const Place& place) const {
     for (const Withdrawn& old : withdrawn_)
-        if (old.key == key) place.key(key).refuse("a withdrawn key", "no such key", std::string(old.instead));
+        if (old.key == key)
+            place.key(key).refuse("a key that no longer exists", "a scene without this key", std::string(old.instead));
 }
 
 Place RuleTable::place_of(const Json& json, const Place& outer) const {
-    if (!json.is_object()) outer.refuse(described(json), "an object: " + name_);
+    if (!json.is_object()) outer.refuse(described(json), "an object of the type " + in_quotes(name_));
     if (const auto own = json.find("name"); own != json.end() && own->is_string())
         return outer.of(name_ + " " + in_quotes(own->get_ref<const std::string&>()));
     return outer;
@@ -96,16 +97,17 @@ void RuleTable::read_keys(const Json& json, const Place& place, void* object) co
         const Key* key = find(name);
         if (key == nullptr) {
             const std::vector<std::string> names = known_names();
-            place.key(name).refuse("an unknown key", "one of " + listed(names), nearest_hint(name, names));
+            place.key(name).refuse("an unknown key", "one of the keys " + listed(names), nearest_hint(name, names));
         }
         if (std::find(seen.begin(), seen.end(), key->name) != seen.end())
             place.key(name).refuse("both " + in_quotes(key->name) + " and " + in_quotes(key->doc.alias),
-                                   "one of them: they mean the same");
+                                   "only one of the two keys, because they mean the same");
         seen.push_back(key->name);
     }
     for (const Key& key : keys_)
         if (key.doc.required && std::find(seen.begin(), seen.end(), key.name) == seen.end())
-            place.refuse("no key " + in_quotes(key.name), in_quotes(key.name) + ": " + std::string(key.doc.meaning));
+            place.refuse("no key " + in_quotes(key.name),
+                         "the key " + in_quotes(key.name) + ": " + std::string(key.doc.meaning));
     for (const KeyGroup& group : groups_) check_group(group, json, place);
     // Values are read in table order, not in file order. If a file has several mistakes, the reported one does not
     // depend on the order of keys in the file.
@@ -126,7 +128,7 @@ Json RuleTable::schema(SchemaBook& book) const {
         properties[key.name] = property;
         if (!key.doc.alias.empty()) {
             const std::string alias(key.doc.alias);
-            property["description"] = "The same as " + key.name + ".";
+            property["description"] = "Another name for " + key.name + ".";
             properties[alias] = property;
             all.push_back(group_schema(
                 {key.doc.required ? KeyGroup::Kind::exactly_one : KeyGroup::Kind::at_most_one, {key.name, alias}}));

@@ -9,11 +9,11 @@ namespace skerry {
 namespace {
 
 constexpr Real all_groups = 4294967295;
-const KeyDoc group_doc{.meaning = "collision groups of the object, one bit each; 1 by default",
+const KeyDoc group_doc{.meaning = "bit mask of the collision groups that contain the object; default: 1",
                        .limits = within(0, all_groups)};
 const KeyDoc mask_doc{.meaning =
-                          "groups that the object can touch, one bit each; all by default. Two objects touch if each "
-                          "is in a group of the other's mask",
+                          "bit mask of the collision groups that the object can touch; default: all groups. Two "
+                          "objects can touch if the mask of each object includes a group of the other object",
                       .limits = within(0, all_groups)};
 
 }  // namespace
@@ -23,8 +23,9 @@ const Rule<PinEntry>& rule_of<PinEntry>() {
     static const auto rule =
         Rule<PinEntry>("pin", "Nodes of a body that are fixed or follow a motion.")
             .key("box", &PinEntry::box, {.meaning = "box around the pinned nodes, in the mesh's own frame"})
-            .key("nodes", &PinEntry::nodes, {.meaning = "numbers of the pinned nodes, from 0", .limits = at_least(0)})
-            .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; none by default"})
+            .key("nodes", &PinEntry::nodes,
+                 {.meaning = "numbers of the pinned nodes, counted from 0", .limits = at_least(0)})
+            .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; default: none"})
             .key("pivot", &PinEntry::pivot, {.meaning = "centre of rotation of the motion", .unit = "m"})
             .exactly_one({"box", "nodes"});
     return rule;
@@ -34,23 +35,26 @@ template <>
 const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
     static const auto rule =
         Rule<RepeatEntry>("repeat",
-                          "Copies in a grid that starts at the body's position. Their names are NAME_0, NAME_1, ...; x "
-                          "varies fastest.")
+                          "Copies of a body in a grid that starts at the position of the body. The copies are called "
+                          "NAME_0, NAME_1, ...; the index along x varies fastest.")
             .key("count", &RepeatEntry::count,
-                 {.meaning = "number of copies along x, y and z", .limits = within(1, 1000), .required = true})
+                 {.meaning = "numbers of copies along x, y and z", .limits = within(1, 1000), .required = true})
             .key("spacing", &RepeatEntry::spacing,
-                 {.meaning = "distance between copies along x, y and z", .unit = "m", .required = true})
+                 {.meaning = "distances between neighbouring copies along x, y and z", .unit = "m", .required = true})
             .key("jitter", &RepeatEntry::jitter,
-                 {.meaning = "largest random shift along each axis", .unit = "m", .limits = at_least(0)})
+                 {.meaning = "largest random displacement of a copy along each axis",
+                  .unit = "m",
+                  .limits = at_least(0)})
             .key("seed", &RepeatEntry::seed,
-                 {.meaning = "seed of the random shifts; the same seed gives the same scene", .limits = at_least(0)})
+                 {.meaning = "seed of the random displacements; the same seed gives the same scene",
+                  .limits = at_least(0)})
             .check([](const Place& place, const RepeatEntry& grid) {
                 // A larger number of copies would not fit into memory and is probably a typing mistake.
                 constexpr std::int64_t most_copies = 1000000;
                 const std::int64_t copies = std::int64_t{1} * grid.count[0] * grid.count[1] * grid.count[2];
                 if (copies > most_copies)
                     place.key("count").refuse(std::to_string(copies) + " copies",
-                                              "at most " + std::to_string(most_copies) + " in all");
+                                              "at most " + std::to_string(most_copies) + " copies in total");
             });
     return rule;
 }
@@ -58,33 +62,35 @@ const Rule<RepeatEntry>& rule_of<RepeatEntry>() {
 template <>
 const Rule<BodyEntry>& rule_of<BodyEntry>() {
     static const auto rule =
-        Rule<BodyEntry>("body", "A body. The rotation is applied before the position.")
-            .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; body_NUMBER by default"})
+        Rule<BodyEntry>("body", "A body. The mesh is first rotated about its origin and then moved to the position.")
+            .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; default: body_NUMBER"})
             .key("mesh", &BodyEntry::mesh, {.meaning = "tetrahedral mesh of the body"})
             .key("shape", &BodyEntry::shape,
                  {.meaning = "shape of a rigid body without a mesh; needs \"dynamics\": \"rigid\""})
             .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
             .key("materials", &BodyEntry::materials,
-                 {.meaning = "materials of tetrahedra by their label in the mesh file; all other tetrahedra have "
-                             "\"material\", which also gives friction, restitution and damping of the whole body"})
+                 {.meaning = "names of materials by label of the tetrahedra in the mesh file, {LABEL: NAME}. All "
+                             "tetrahedra with other labels have \"material\", which also sets the friction, "
+                             "restitution and damping of the whole body"})
             .key("position", &BodyEntry::position, {.meaning = "position of the mesh's origin", .unit = "m"})
             .key("rotation", &BodyEntry::rotation, {.meaning = "rotation about the mesh's origin"})
             .key("positions", &BodyEntry::positions,
                  {.meaning = "positions of several copies of the body, called NAME_0, NAME_1, ...", .unit = "m"})
-            .key("repeat", &BodyEntry::repeat, {.meaning = "copies in a grid"})
+            .key("repeat", &BodyEntry::repeat, {.meaning = "copies of the body in a grid"})
             .key("velocity", &BodyEntry::velocity, {.meaning = "initial velocity", .unit = "m/s"})
             .key("angular_velocity", &BodyEntry::angular_velocity,
                  {.meaning = "initial angular velocity about the centre of mass", .unit = "rad/s"})
             .key("contact_distance", &BodyEntry::contact_distance,
-                 {.meaning = "thickness of the contact shell; by default 2 % of the mean surface edge",
+                 {.meaning = "thickness of the contact shell; default: 2 % of the mean length of the surface edges",
                   .unit = "m",
                   .limits = at_least(0)})
             .key("self_contact", &BodyEntry::self_contact,
-                 {.meaning = "whether the body can touch itself; false by default"})
+                 {.meaning = "whether the body can touch itself; default: false"})
             .key("dynamics", &BodyEntry::dynamics,
-                 {.meaning = "method of motion. \"explicit\" (default): any deformation, short steps; \"implicit\": "
-                             "small deformation, any step size, for stiff bodies; \"rigid\": no deformation, with the "
-                             "mass and inertia of the mesh; \"automatic\": explicit or implicit, by predicted cost"})
+                 {.meaning =
+                      "model of the motion. \"explicit\" (default): any deformation, short steps; \"implicit\": small "
+                      "deformation, any step size, for stiff bodies; \"rigid\": no deformation, with the mass and "
+                      "inertia of the mesh; \"automatic\": explicit or implicit, whichever is predicted to cost less"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
@@ -100,14 +106,14 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
     using Entry = ColliderEntry;
     static const auto rule =
         Rule<Entry>("collider", "A rigid shape that is fixed or follows a prescribed motion.")
-            .key("name", &Entry::name, {.meaning = "name in messages and output; collider_NUMBER by default"})
+            .key("name", &Entry::name, {.meaning = "name in messages and output; default: collider_NUMBER"})
             .key("shape", &Entry::shape, {.meaning = "shape of the collider", .required = true})
             .key("position", &Entry::position, {.meaning = "position of the shape's origin", .unit = "m"})
             .key("rotation", &Entry::rotation, {.meaning = "rotation about the shape's origin"})
-            .key("motion", &Entry::motion, {.meaning = "prescribed motion; none by default"})
+            .key("motion", &Entry::motion, {.meaning = "prescribed motion; default: none"})
             .key("friction", &Entry::friction,
-                 {.meaning = "friction coefficient. Default: that of the touching body; otherwise contacts use the "
-                             "geometric mean of both",
+                 {.meaning = "friction coefficient of the collider. A contact uses the geometric mean of this value "
+                             "and the value of the touching body; default: the value of the body",
                   .alias = "mu",
                   .limits = at_least(0)})
             .key("static_friction", &Entry::static_friction,
@@ -115,8 +121,8 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
             .key("dynamic_friction", &Entry::dynamic_friction,
                  {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
             .key("restitution", &Entry::restitution,
-                 {.meaning = "coefficient of restitution. Default: that of the touching body; otherwise contacts use "
-                             "the larger of both",
+                 {.meaning = "coefficient of restitution of the collider. A contact uses the larger of this value and "
+                             "the value of the touching body; default: the value of the body",
                   .limits = within(0, 1)})
             .key("contact_distance", &Entry::contact_distance,
                  {.meaning = "thickness of the contact shell of a mesh collider", .unit = "m", .limits = at_least(0)})
@@ -129,7 +135,7 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
                 if (c.static_friction && *c.dynamic_friction > *c.static_friction)
                     place.key("dynamic_friction")
                         .refuse(Json(*c.dynamic_friction).dump(),
-                                "at most static_friction, " + Json(*c.static_friction).dump());
+                                "at most the value of \"static_friction\", " + Json(*c.static_friction).dump());
             });
     return rule;
 }
@@ -160,8 +166,8 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                   .unit = "1/s",
                   .limits = at_least(0)})
             .key("loss_factor", &M::loss_factor,
-                 {.meaning =
-                      "tangent of the phase angle by which strain lags stress, at every natural frequency of a body",
+                 {.meaning = "tangent of the phase angle between stress and strain, the same at every natural "
+                             "frequency of a body",
                   .limits = within(0, largest_loss_factor)})
             .key("bulk_viscosity", &M::bulk_viscosity,
                  {.meaning = "damping ratio of volume changes at the highest natural frequency of an element",
@@ -174,7 +180,7 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
                 if (m.static_friction && *m.dynamic_friction > *m.static_friction)
                     place.key("dynamic_friction")
                         .refuse(Json(*m.dynamic_friction).dump(),
-                                "at most static_friction, " + Json(*m.static_friction).dump());
+                                "at most the value of \"static_friction\", " + Json(*m.static_friction).dump());
             });
     return rule;
 }
@@ -182,26 +188,27 @@ const Rule<MaterialSettings>& rule_of<MaterialSettings>() {
 template <>
 const Rule<Settings>& rule_of<Settings>() {
     using S = Settings;
-    constexpr std::string_view always_on = "delete the key, which is internal now and always on";
+    constexpr std::string_view always_on = "delete the key; the feature is now always on";
     static const auto rule =
         Rule<S>("settings", "Settings of time steps and contacts. The defaults suit most scenes.")
-            .key("gravity", &S::gravity, {.meaning = "gravity; [0, 0, -9.81] by default", .unit = "m/s^2"})
+            .key("gravity", &S::gravity,
+                 {.meaning = "acceleration of gravity; default: [0, 0, -9.81]", .unit = "m/s^2"})
             .key("step_size", &S::step_size,
-                 {.meaning = "largest step size; default and upper bound: the stable step of the stiffest body",
+                 {.meaning = "largest step size; default and upper bound: the smallest stable step of all bodies",
                   .unit = "s",
                   .limits = above(0)})
             .key("integrator", &S::integrator, {.meaning = "time integration method"})
             .key("clusters", &S::clusters,
-                 {.meaning =
-                      "whether the few elements that would make all steps several times shorter move as clusters"})
-            .withdrawn(
-                "multirate",
-                "delete the key: clusters, which are on by default, keep steps long where few elements are stiff; "
-                "for a stiff body set \"dynamics\" to \"implicit\" or \"automatic\"")
+                 {.meaning = "whether the few elements that would make all steps several times shorter are integrated "
+                             "implicitly, in clusters"})
+            .withdrawn("multirate",
+                       "delete the key; \"clusters\", which is on by default, prevents short steps because of a few "
+                       "stiff elements; for a stiff body set \"dynamics\" to \"implicit\" or \"automatic\"")
             .key("backend", &S::backend, {.meaning = "thread library"})
             .key("threads", &S::threads,
                  {.meaning = "number of threads; 0: all available threads", .limits = within(0, 1024)})
-            .key("contact_regions", &S::contact_regions, {.meaning = "grouping of contacts into regions"})
+            .key("contact_regions", &S::contact_regions,
+                 {.meaning = "grouping of contacts into regions; the solver treats each region separately"})
             .key("method", &S::method, {.meaning = "contact solver"})
             .key("friction", &S::friction, {.meaning = "friction law"})
             .key("tolerance", &S::tolerance,
@@ -219,35 +226,34 @@ const Rule<Settings>& rule_of<Settings>() {
                              "(default): moves them apart if the way out is short, otherwise an error; refuse: always "
                              "an error; ignore: reports them and starts with the overlaps"})
             .key("theta", &S::theta,
-                 {.meaning = "parameter of the implicit steps, from 0.5 to 1. 1 damps vibrations most, 0.55 a tenth as "
-                             "much; values below 1 need symplectic_euler",
+                 {.meaning =
+                      "parameter theta of the implicit time integration, from 0.5 to 1. The value 1 damps vibrations "
+                      "most, 0.55 damps them a tenth as much; values below 1 need the integrator symplectic_euler",
                   .limits = at_least(0.5)})
             .key("implicit_step", &S::implicit_step,
-                 {.meaning =
-                      "largest step of implicit bodies that are not held; they take one such step while other bodies "
-                      "take several. 0 (default): all bodies take the same steps; other values need symplectic_euler",
+                 {.meaning = "largest step of implicit bodies that are not pinned; one such step covers several steps "
+                             "of the other bodies. 0 (default): all bodies take the same steps; other values need the "
+                             "integrator symplectic_euler",
                   .unit = "s",
                   .limits = at_least(0)})
             .key("sleep", &S::sleep,
-                 {.meaning = "whether bodies fall asleep, together with all bodies that they touch, if for sleep_time "
-                             "they hardly move and neither speed up nor drift steadily; a new load wakes them"})
+                 {.meaning = "whether bodies at rest are put to sleep, together with all bodies that they touch. A "
+                             "body is at rest if, for sleep_time, it hardly moves and neither accelerates nor drifts "
+                             "steadily; a new load wakes sleeping bodies"})
             .key("sleep_time", &S::sleep_time,
-                 {.meaning = "time for which a body must be still before it falls asleep",
+                 {.meaning = "time for which a body must be at rest before it is put to sleep",
                   .unit = "s",
                   .limits = at_least(0)})
             .key("continuous_collision", &S::continuous_collision,
-                 {.meaning = "whether a step in which surfaces would pass through each other is repeated with the "
-                             "crossing features as contacts"})
-            .withdrawn("freeze_contacts", "delete the key: every sweep evaluates all contacts")
-            .withdrawn("step_safety", "delete the key, which is internal now; for shorter steps set \"step_size\"")
-            .withdrawn("max_strain_step", "delete the key, which is internal now; for shorter steps set \"step_size\"")
-            .withdrawn("restitution_speed",
-                       "delete the key, which is internal now; set \"restitution\" of the materials")
-            .withdrawn("sleep_speed", "delete the key, which is internal now; use \"sleep\" and \"sleep_time\"")
-            .withdrawn("relaxation",
-                       "delete the key, which is internal now; use another \"method\" or more \"max_iterations\"")
-            .withdrawn("fixed_iterations",
-                       "delete the key, which is internal now; bound the sweeps by \"max_iterations\"")
+                 {.meaning = "whether a step in which surfaces would pass through each other is repeated with "
+                             "additional contacts between the crossing nodes, edges and triangles"})
+            .withdrawn("freeze_contacts", "delete the key; every sweep now evaluates all contacts")
+            .withdrawn("step_safety", "delete the key; for shorter steps set \"step_size\"")
+            .withdrawn("max_strain_step", "delete the key; for shorter steps set \"step_size\"")
+            .withdrawn("restitution_speed", "delete the key; set \"restitution\" of the materials")
+            .withdrawn("sleep_speed", "delete the key; use \"sleep\" and \"sleep_time\"")
+            .withdrawn("relaxation", "delete the key; use another \"method\" or a larger \"max_iterations\"")
+            .withdrawn("fixed_iterations", "delete the key; limit the number of sweeps by \"max_iterations\"")
             .withdrawn("warm_start", always_on)
             .withdrawn("contact_budgets", always_on)
             .withdrawn("certify_warm_start", always_on)
@@ -260,27 +266,31 @@ const Rule<Settings>& rule_of<Settings>() {
 template <>
 const Rule<SceneFile>& rule_of<SceneFile>() {
     static const auto rule =
-        Rule<SceneFile>("scene", "A world of deformable bodies and colliders, and a run. SI units.")
+        Rule<SceneFile>(
+            "scene",
+            "A scene: deformable and rigid bodies, colliders, and the settings of a run. All values are in SI units.")
             .key("$schema", &SceneFile::schema, {.meaning = "path or address of this schema, for editors"})
-            .key("name", &SceneFile::name, {.meaning = "name of the scene; the name of the file by default"})
+            .key("name", &SceneFile::name, {.meaning = "name of the scene; default: the name of the file"})
             .key("description", &SceneFile::description, {.meaning = "description of the scene"})
             .key("include", &SceneFile::include,
-                 {.meaning = "scene files to read first. Their bodies, colliders, joints and materials are added; "
-                             "their single values are replaced by those of this file"})
+                 {.meaning =
+                      "scene files to read before this file. Their bodies, colliders, joints and materials are added "
+                      "to those of this file; where both files set the same single value, this file takes precedence"})
             .key("seconds", &SceneFile::seconds,
-                 {.meaning = "length of a run; 2 by default", .unit = "s", .limits = above(0)})
+                 {.meaning = "simulated time of a run; default: 2", .unit = "s", .limits = above(0)})
             .key("frame_step", &SceneFile::frame_step,
-                 {.meaning = "time between frames of output; 1/60 by default", .unit = "s", .limits = above(0)})
-            .key("settings", &SceneFile::settings, {.meaning = "settings of the step"})
+                 {.meaning = "time between frames of output; default: 1/60", .unit = "s", .limits = above(0)})
+            .key("settings", &SceneFile::settings, {.meaning = "settings of time steps and contacts"})
             .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable and rigid bodies"})
             .key("colliders", &SceneFile::colliders,
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})
             .key("joints", &SceneFile::joints, {.meaning = "joints of rigid bodies"})
             .key("probes", &SceneFile::probes,
-                 {.meaning = "recorded quantities: contacts for the report, series of numbers for --probes"})
+                 {.meaning = "recorded quantities: contacts for the report, and time series for --probes"})
             .key("probe_step", &SceneFile::probe_step,
-                 {.meaning = "time between samples of the probes, the rows of their series; frame_step by default",
+                 {.meaning =
+                      "time between samples of the probes; each sample is one row of a series; default: frame_step",
                   .unit = "s",
                   .limits = above(0)});
     return rule;

@@ -10,7 +10,9 @@ const Limits cell_count = within(1, 1000);
 const Limits positive = above(0);
 
 KeyDoc resolution_doc() {
-    return {.meaning = "elements across the smallest extent", .limits = within(1, 200), .required = true};
+    return {.meaning = "number of elements across the smallest extent of the shape",
+            .limits = within(1, 200),
+            .required = true};
 }
 
 }  // namespace
@@ -18,10 +20,10 @@ KeyDoc resolution_doc() {
 template <>
 const Rule<BoxMesh>& rule_of<BoxMesh>() {
     static const auto rule =
-        Rule<BoxMesh>("box_mesh", "A box, centred.")
+        Rule<BoxMesh>("box_mesh", "A box, centred at the origin.")
             .key("size", &BoxMesh::size, {.meaning = "edge lengths", .unit = "m", .limits = positive, .required = true})
             .key("cells", &BoxMesh::cells,
-                 {.meaning = "cells along x, y and z, of five or six tetrahedra",
+                 {.meaning = "numbers of cells along x, y and z; each cell consists of five or six tetrahedra",
                   .limits = cell_count,
                   .required = true});
     return rule;
@@ -30,7 +32,7 @@ const Rule<BoxMesh>& rule_of<BoxMesh>() {
 template <>
 const Rule<BallMesh>& rule_of<BallMesh>() {
     static const auto rule =
-        Rule<BallMesh>("ball_mesh", "A ball, centred.")
+        Rule<BallMesh>("ball_mesh", "A ball, centred at the origin.")
             .key("radius", &BallMesh::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
             .key("resolution", &BallMesh::resolution, resolution_doc());
     return rule;
@@ -38,7 +40,7 @@ const Rule<BallMesh>& rule_of<BallMesh>() {
 
 template <>
 const Rule<CylinderMesh>& rule_of<CylinderMesh>() {
-    static const auto rule = Rule<CylinderMesh>("cylinder_mesh", "A solid cylinder along z, centred.")
+    static const auto rule = Rule<CylinderMesh>("cylinder_mesh", "A solid cylinder along z, centred at the origin.")
                                  .key("radius", &CylinderMesh::radius,
                                       {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
                                  .key("height", &CylinderMesh::height,
@@ -49,13 +51,13 @@ const Rule<CylinderMesh>& rule_of<CylinderMesh>() {
 
 template <>
 const Rule<LatheMesh>& rule_of<LatheMesh>() {
-    static const auto rule =
-        Rule<LatheMesh>("lathe_mesh", "A body of revolution about z.")
-            .key("profile", &LatheMesh::profile,
-                 {.meaning = "[radius, z] from bottom to top: z ascending, radii positive, linear between",
-                  .unit = "m",
-                  .required = true})
-            .key("resolution", &LatheMesh::resolution, resolution_doc());
+    static const auto rule = Rule<LatheMesh>("lathe_mesh", "A body of revolution about z.")
+                                 .key("profile", &LatheMesh::profile,
+                                      {.meaning = "points [radius, z] of the outline from bottom to top, connected by "
+                                                  "straight lines; z must ascend, and radii must be positive",
+                                       .unit = "m",
+                                       .required = true})
+                                 .key("resolution", &LatheMesh::resolution, resolution_doc());
     return rule;
 }
 
@@ -80,7 +82,8 @@ const Rule<mesh::TableShape>& rule_of<mesh::TableShape>() {
             .key("thickness", &Table::thickness, {.meaning = "thickness of the top", .unit = "m", .limits = positive})
             .key("leg", &Table::leg,
                  {.meaning = "edge length of the cross-section of a leg", .unit = "m", .limits = positive})
-            .key("cells_per_leg", &Table::cells_per_leg, {.meaning = "elements across a leg", .limits = within(1, 50)});
+            .key("cells_per_leg", &Table::cells_per_leg,
+                 {.meaning = "number of elements across a leg", .limits = within(1, 50)});
     return rule;
 }
 
@@ -97,7 +100,8 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("file", &MeshEntry::file,
                  {.meaning = "path of a Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele file, relative to the folder "
                              "of the scene; colliders also take .obj and .stl"})
-            .key("scale", &MeshEntry::scale, {.meaning = "factor on all coordinates; 1 by default", .limits = positive})
+            .key("scale", &MeshEntry::scale,
+                 {.meaning = "factor for all coordinates of the mesh; default: 1", .limits = positive})
             .exactly_one({"box", "ball", "cylinder", "lathe", "skittle", "table", "file"});
     return rule;
 }
@@ -105,12 +109,17 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
 template <>
 const Rule<RestBox>& rule_of<RestBox>() {
     static const auto rule =
-        Rule<RestBox>("rest_box", "A box in the mesh's own frame.")
-            .key("lower", &RestBox::lower, {.meaning = "lower corner", .unit = "m", .required = true})
-            .key("upper", &RestBox::upper, {.meaning = "upper corner", .unit = "m", .required = true})
+        Rule<RestBox>(
+            "rest_box",
+            "A box with edges along the axes of the mesh's own frame, in which the body is not yet rotated or moved.")
+            .key("lower", &RestBox::lower,
+                 {.meaning = "corner with the smallest coordinates", .unit = "m", .required = true})
+            .key("upper", &RestBox::upper,
+                 {.meaning = "corner with the largest coordinates", .unit = "m", .required = true})
             .check([](const Place& place, const RestBox& box) {
                 if (!(box.lower.array() <= box.upper.array()).all())
-                    place.refuse("a lower corner above the upper one", "lower <= upper");
+                    place.refuse("\"lower\" above \"upper\" in at least one coordinate",
+                                 "lower <= upper in all coordinates");
             });
     return rule;
 }
@@ -118,9 +127,9 @@ const Rule<RestBox>& rule_of<RestBox>() {
 template <>
 const Rule<KeyEntry>& rule_of<KeyEntry>() {
     static const auto rule =
-        Rule<KeyEntry>(
-            "motion_key",
-            "A pose at a time; between keys the position is linear and the rotation turns about a fixed axis.")
+        Rule<KeyEntry>("motion_key",
+                       "A pose at a given time. Between two keys the position changes linearly, and the rotation is "
+                       "about a fixed axis.")
             .key("time", &KeyEntry::time, {.meaning = "time", .unit = "s", .limits = at_least(0), .required = true})
             .key("position", &KeyEntry::position, {.meaning = "position", .unit = "m"})
             .key("rotation", &KeyEntry::rotation, {.meaning = "rotation"});
@@ -130,10 +139,10 @@ const Rule<KeyEntry>& rule_of<KeyEntry>() {
 template <>
 const Rule<MotionEntry>& rule_of<MotionEntry>() {
     static const auto rule =
-        Rule<MotionEntry>("motion", "A scripted motion: constant velocities, or keys.")
+        Rule<MotionEntry>("motion", "A scripted motion: constant velocities, or poses at given times.")
             .key("velocity", &MotionEntry::velocity, {.meaning = "velocity", .unit = "m/s"})
             .key("angular_velocity", &MotionEntry::angular_velocity, {.meaning = "angular velocity", .unit = "rad/s"})
-            .key("keys", &MotionEntry::keys, {.meaning = "poses by ascending time"})
+            .key("keys", &MotionEntry::keys, {.meaning = "poses in the order of ascending time"})
             .at_most_one({"velocity", "keys"})
             .at_most_one({"angular_velocity", "keys"})
             .check([](const Place& place, const MotionEntry& motion) {
@@ -141,7 +150,7 @@ const Rule<MotionEntry>& rule_of<MotionEntry>() {
                     if (!(motion.keys[i].time > motion.keys[i - 1].time))
                         place.key("keys").item(i).key("time").refuse(
                             Json(motion.keys[i].time).dump(),
-                            "a time after that of the previous key, " + Json(motion.keys[i - 1].time).dump());
+                            "a time after the time of the previous key, " + Json(motion.keys[i - 1].time).dump());
             });
     return rule;
 }
@@ -150,10 +159,11 @@ template <>
 const Rule<Plane>& rule_of<Plane>() {
     static const auto rule =
         Rule<Plane>("plane", "A half space.")
-            .key("normal", &Plane::normal, {.meaning = "outward normal, of any nonzero length; +z by default"})
-            .key("point", &Plane::point, {.meaning = "a point of the plane; the origin by default", .unit = "m"})
+            .key("normal", &Plane::normal, {.meaning = "outward normal, of any nonzero length; default: +z"})
+            .key("point", &Plane::point, {.meaning = "a point of the plane; default: the origin", .unit = "m"})
             .check([](const Place& place, const Plane& plane) {
-                if (!(plane.normal.norm() > 0)) place.key("normal").refuse("a vector of length 0", "a direction");
+                if (!(plane.normal.norm() > 0))
+                    place.key("normal").refuse("a vector of length 0", "a vector of nonzero length");
             });
     return rule;
 }
@@ -161,7 +171,7 @@ const Rule<Plane>& rule_of<Plane>() {
 template <>
 const Rule<Sphere>& rule_of<Sphere>() {
     static const auto rule =
-        Rule<Sphere>("sphere", "A solid sphere, centred.")
+        Rule<Sphere>("sphere", "A solid sphere, centred at the origin.")
             .key("radius", &Sphere::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
@@ -169,7 +179,7 @@ const Rule<Sphere>& rule_of<Sphere>() {
 template <>
 const Rule<Box>& rule_of<Box>() {
     static const auto rule =
-        Rule<Box>("box", "A solid box, centred.")
+        Rule<Box>("box", "A solid box, centred at the origin.")
             .key("size", &Box::size, {.meaning = "edge lengths", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
@@ -177,17 +187,17 @@ const Rule<Box>& rule_of<Box>() {
 template <>
 const Rule<Capsule>& rule_of<Capsule>() {
     static const auto rule =
-        Rule<Capsule>("capsule", "A cylinder along z with round ends, centred.")
+        Rule<Capsule>("capsule", "A cylinder along z with hemispherical ends, centred at the origin.")
             .key("radius", &Capsule::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
             .key("length", &Capsule::length,
-                 {.meaning = "length of the straight part", .unit = "m", .limits = positive, .required = true});
+                 {.meaning = "length of the cylindrical part", .unit = "m", .limits = positive, .required = true});
     return rule;
 }
 
 template <>
 const Rule<Cylinder>& rule_of<Cylinder>() {
     static const auto rule =
-        Rule<Cylinder>("cylinder", "A solid cylinder along z, centred.")
+        Rule<Cylinder>("cylinder", "A solid cylinder along z, centred at the origin.")
             .key("radius", &Cylinder::radius, {.meaning = "radius", .unit = "m", .limits = positive, .required = true})
             .key("height", &Cylinder::height, {.meaning = "height", .unit = "m", .limits = positive, .required = true});
     return rule;
@@ -195,14 +205,15 @@ const Rule<Cylinder>& rule_of<Cylinder>() {
 
 template <>
 const Rule<Bucket>& rule_of<Bucket>() {
-    static const auto rule =
-        Rule<Bucket>("bucket", "An open cylindrical container; its floor is at z = 0 of its frame.")
-            .key("radius", &Bucket::radius,
-                 {.meaning = "inner radius", .unit = "m", .limits = positive, .required = true})
-            .key("height", &Bucket::height,
-                 {.meaning = "inner height", .unit = "m", .limits = positive, .required = true})
-            .key("thickness", &Bucket::thickness,
-                 {.meaning = "thickness of wall and floor", .unit = "m", .limits = positive});
+    static const auto rule = Rule<Bucket>("bucket",
+                                          "A cylindrical container that is open at the top, along z; the floor is at z "
+                                          "= 0 in the frame of the collider.")
+                                 .key("radius", &Bucket::radius,
+                                      {.meaning = "inner radius", .unit = "m", .limits = positive, .required = true})
+                                 .key("height", &Bucket::height,
+                                      {.meaning = "inner height", .unit = "m", .limits = positive, .required = true})
+                                 .key("thickness", &Bucket::thickness,
+                                      {.meaning = "thickness of wall and floor", .unit = "m", .limits = positive});
     return rule;
 }
 

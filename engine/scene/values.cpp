@@ -55,12 +55,14 @@ template <>
 const Rule<AxisAngle>& rule_of<AxisAngle>() {
     static const Rule<AxisAngle> rule =
         Rule<AxisAngle>("axis_and_angle", "A rotation about an axis.")
-            .key("axis", &AxisAngle::axis, {.meaning = "direction, of any nonzero length", .required = true})
-            .key("degrees", &AxisAngle::degrees, {.meaning = "angle", .unit = "degrees"})
-            .key("radians", &AxisAngle::radians, {.meaning = "angle", .unit = "rad"})
+            .key("axis", &AxisAngle::axis,
+                 {.meaning = "direction of the axis, as a vector of any nonzero length", .required = true})
+            .key("degrees", &AxisAngle::degrees, {.meaning = "angle of the rotation", .unit = "degrees"})
+            .key("radians", &AxisAngle::radians, {.meaning = "angle of the rotation", .unit = "rad"})
             .exactly_one({"degrees", "radians"})
             .check([](const Place& place, const AxisAngle& r) {
-                if (!(r.axis.norm() > 0)) place.key("axis").refuse("a vector of length 0", "a direction");
+                if (!(r.axis.norm() > 0))
+                    place.key("axis").refuse("a vector of length 0", "a vector of nonzero length");
             });
     return rule;
 }
@@ -135,16 +137,17 @@ void read_items(const Json& json, const Place& place, FunctionRef<void(const Jso
 
 void read_named(const Json& json, const Place& place, FunctionRef<bool(const std::string&)> has,
                 FunctionRef<void(const std::string&, const Json&, const Place&)> item) {
-    if (!json.is_object()) place.refuse(described(json), "an object: one key for each name");
+    if (!json.is_object()) place.refuse(described(json), "an object {NAME: VALUE, ...}");
     for (const auto& [name, value] : json.items()) {
         if (has(name))
-            place.key(name).refuse("the name " + in_quotes(name) + " again", "a name that no included scene uses");
+            place.key(name).refuse("the name " + in_quotes(name) + ", which an included scene already uses",
+                                   "a name that no included scene uses");
         item(name, value, place.key(name));
     }
 }
 
 void read_numbered(const Json& json, const Place& place, FunctionRef<void(int, const Json&, const Place&)> item) {
-    if (!json.is_object()) place.refuse(described(json), "an object: one key for each number");
+    if (!json.is_object()) place.refuse(described(json), "an object {\"NUMBER\": VALUE, ...}");
     for (const auto& [key, value] : json.items()) {
         int number = 0;
         const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
@@ -210,10 +213,10 @@ void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& d
     out.path = place.file().parent_path() / text;  // an absolute path remains unchanged
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
-        place.refuse("no file " + in_quotes(out.path.string()),
-                     "the path of a file, relative to the folder of the scene");
+        place.refuse("the path of a missing file, " + in_quotes(out.path.string()),
+                     "the path of an existing file, relative to the folder of this file");
     if (std::filesystem::is_directory(out.path, error))
-        place.refuse("a folder, " + in_quotes(out.path.string()), "the path of a file");
+        place.refuse("the path of a folder, " + in_quotes(out.path.string()), "the path of a file");
 }
 
 void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDoc&, RotationRows& out) {
@@ -227,8 +230,8 @@ void Value<RotationRows>::read(const Json& json, const Place& place, const KeyDo
     }
     const Mat3 defect = matrix * matrix.transpose() - Mat3::Identity();
     if (!(defect.cwiseAbs().maxCoeff() <= rotation_tolerance))
-        place.refuse("rows that are not orthonormal by " + shown(defect.cwiseAbs().maxCoeff()),
-                     "a rotation matrix to 1e-6");
+        place.refuse("rows that are not orthonormal: the largest error is " + shown(defect.cwiseAbs().maxCoeff()),
+                     "a rotation matrix with errors of at most 1e-6");
     if (matrix.determinant() < 0) place.refuse("a reflection (determinant -1)", "a rotation matrix (determinant 1)");
     const Eigen::AngleAxis<Real> turn(Eigen::Quaternion<Real>(matrix).normalized());
     out.value = turn.angle() * turn.axis();
@@ -246,7 +249,8 @@ void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& d
                 described(json), spellings,
                 json.size() == 4
                     ? "write the quaternion cos(a/2), sin(a/2) (x, y, z) as the angle a about the axis (x, y, z)"
-                    : "angles about several axes define a rotation only together with their order");
+                    : "write the rotation as one axis and one angle; several angles are ambiguous, because their order "
+                      "matters");
         RotationRows rows;
         Value<RotationRows>::read(json, place, doc, rows);
         out.value = rows.value;

@@ -46,7 +46,7 @@ def state_of(scene, seconds, settings, wanted):
 
 
 def main():
-    sets = re.search(r"\(here: (.*);", run(["--version"]).stdout).group(1).split(", ")
+    sets = re.search(r"\(this machine supports: (.*);", run(["--version"]).stdout).group(1).split(", ")
     unknown = run(["run", str(ROOT / "scenes/table.json"), "--quiet"], "abacus")
     assert unknown.returncode == 2, unknown
     assert f'found "abacus", expected one of {", ".join(sets)}' in unknown.stderr, unknown.stderr

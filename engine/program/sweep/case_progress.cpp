@@ -33,7 +33,7 @@ void CaseProgress::show(int done, int running) {
     if (!wanted_ || wall < next_) return;
     const double share = static_cast<double>(done) / count_;
     std::string text =
-        std::to_string(done) + " of " + std::to_string(count_) + " cases, " + std::to_string(running) + " under way";
+        std::to_string(done) + " of " + std::to_string(count_) + " cases done, " + std::to_string(running) + " running";
     if (done > 0) text += ", about " + duration_text(wall * (1 - share) / share) + " left";
     if (bar_)
         std::fprintf(stderr, "\r\033[K%s %s", bar_text(share).c_str(), text.c_str());

@@ -45,9 +45,9 @@ private:
 };
 
 std::string how_it_ended(int status) {
-    if (!WIFSIGNALED(status)) return "ended with " + std::to_string(WEXITSTATUS(status));
+    if (!WIFSIGNALED(status)) return "ended with exit code " + std::to_string(WEXITSTATUS(status));
     const int number = WTERMSIG(status);
-    const char* const hint = number == SIGKILL ? ", as the system does when memory is short" : "";
+    const char* const hint = number == SIGKILL ? ", which the system sends if memory runs out" : "";
     return "ended by signal " + std::to_string(number) + " (" + strsignal(number) + hint + ")";
 }
 
@@ -81,7 +81,8 @@ private:
             std::fflush(nullptr);
             const pid_t parent = getpid(), process = fork();
             if (process == 0) in_child(parent);
-            if (process < 0 && running_.empty()) throw std::system_error(errno, std::generic_category(), "no process");
+            if (process < 0 && running_.empty())
+                throw std::system_error(errno, std::generic_category(), "cannot start a process for a case");
             if (process < 0) {
                 // the system allows no more processes than are running now
                 at_once_ = static_cast<int>(running_.size());

@@ -14,7 +14,7 @@ namespace {
     Complaint{.file = {}, .object = who, .field = {}, .found = found, .expected = expected, .hint = hint}.raise();
 }
 
-const char* const by_hand = "--rank I --of N say it by hand";
+const char* const by_hand = "set the share by hand with --rank I --of N, where I is from 0 to N - 1";
 
 class Variables {
 public:
@@ -46,7 +46,7 @@ private:
 };
 
 void require_within(const Share& share, const std::string& who) {
-    if (share.of < 1) refuse_share(who, "0 processes", "at least one", by_hand);
+    if (share.of < 1) refuse_share(who, "0 processes", "at least one process", by_hand);
     if (share.rank >= share.of)
         refuse_share(who, "rank " + std::to_string(share.rank) + " of " + std::to_string(share.of),
                      "a rank from 0 to " + std::to_string(share.of - 1), by_hand);
@@ -82,15 +82,15 @@ Share array_share(const Variables& variables) {
     if (!id) return {};
     const std::optional<int> count = variables.number("SLURM_ARRAY_TASK_COUNT");
     if (!count)
-        refuse_share("SLURM_ARRAY_TASK_ID", "no SLURM_ARRAY_TASK_COUNT beside it", "the number of jobs of the array",
-                     by_hand);
+        refuse_share("SLURM_ARRAY_TASK_ID", "no environment variable SLURM_ARRAY_TASK_COUNT",
+                     "a variable SLURM_ARRAY_TASK_COUNT with the number of jobs of the array", by_hand);
     const int least = variables.number("SLURM_ARRAY_TASK_MIN").value_or(0);
     const int step = variables.number("SLURM_ARRAY_TASK_STEP").value_or(1);
     if (*id < least || step < 1 || (*id - least) % step != 0 || (*id - least) / step >= *count)
         refuse_share("SLURM_ARRAY_TASK_ID",
-                     std::to_string(*id) + " of " + std::to_string(*count) + " jobs from " + std::to_string(least) +
-                         " on, " + std::to_string(step) + " apart",
-                     "an array without gaps, such as --array=0-63", by_hand);
+                     std::to_string(*id) + " of " + std::to_string(*count) + " jobs that are numbered from " +
+                         std::to_string(least) + " with a distance of " + std::to_string(step),
+                     "a job number of an array without gaps, such as --array=0-63", by_hand);
     return {(*id - least) / step, *count, "SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT", {}};
 }
 
@@ -100,7 +100,9 @@ Share share_of(std::optional<int> rank, std::optional<int> of, const Environment
     const Variables variables(environment);
     Share share;
     if (rank || of) {
-        if (!rank || !of) refuse_share("command line", rank ? "--rank alone" : "--of alone", "--rank I --of N", {});
+        if (!rank || !of)
+            refuse_share("command line", rank ? "--rank without --of" : "--of without --rank",
+                         "both options, --rank I --of N", {});
         share = {*rank, *of, "--rank, --of", {}};
         require_within(share, "command line");
         return share;

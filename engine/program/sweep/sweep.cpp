@@ -59,12 +59,13 @@ std::vector<int> cases_left(const SweepPlan& plan, const std::vector<int>& mine,
         Complaint{.file = plan.folder.string(),
                   .object = "output",
                   .field = {},
-                  .found = std::to_string(others) + (others == 1 ? " file that is" : " files that are") +
-                           " not of these cases; " + first,
-                  .expected = "results of " + plan.file.place.file().string() + " as it is now",
-                  .hint = "--redo computes these cases again; --out takes another folder"}
+                  .found = std::to_string(others) + (others == 1 ? " file that does" : " files that do") +
+                           " not belong to these cases; " + first,
+                  .expected = "results of the cases of " + plan.file.place.file().string() + " in its present version",
+                  .hint = "add --redo to compute these cases again, or choose another folder with --out"}
             .raise();
-    std::cerr << "skerry: " << others << " results of other cases are computed again" << std::endl;
+    std::cerr << "skerry: " << others << " cases are computed again, because their files hold other results"
+              << std::endl;
     return left;
 }
 
@@ -75,12 +76,12 @@ void print_cases(const SweepPlan& plan, const std::vector<int>& mine) {
         done += state == CaseFileState::whole ? 1 : 0;
         std::cout << "case " << index << ": " << case_text(plan.cases, index)
                   << (state == CaseFileState::whole   ? "  (done)"
-                      : state == CaseFileState::other ? "  (its file is another's)"
+                      : state == CaseFileState::other ? "  (the file holds the result of another case)"
                                                       : "")
                   << "\n";
     }
     std::cout << mine.size() << " of " << plan.cases.count() << " cases are for this process, " << done
-              << " of them are done; results in " << plan.folder.string() << std::endl;
+              << " of these have a result; folder of the results: " << plan.folder.string() << std::endl;
 }
 
 /// Locks the folder of results against other processes while the object exists, if the file system supports locks.
@@ -149,7 +150,7 @@ SweepRun run_cases(const SweepPlan& plan, const std::vector<int>& left, int jobs
     clear_bar();
     for (const auto& [job, how] : run.end.lost)
         std::cerr << "skerry: case " << index_of(job) << " (" << case_text(plan.cases, index_of(job)) << ") " << how
-                  << ": it has no result" << std::endl;
+                  << ": the case has no result; run the sweep again" << std::endl;
     return run;
 }
 
@@ -185,8 +186,9 @@ void conclude(const SweepPlan& plan, const std::vector<int>& mine, const SweepOp
     const auto there = std::ranges::count_if(mine, [&](int index) { return is_there(plan, index); });
     const bool all = there == static_cast<std::ptrdiff_t>(mine.size());
     std::cout << there << " of " << mine.size() << " cases of this process have a result in " << plan.folder.string()
-              << ". " << (all ? "" : "The same command goes on with the rest. ")
-              << "The table comes with the last of all " << plan.cases.count() << " cases, or by --table." << std::endl;
+              << ". " << (all ? "" : "Run the same command again for the other cases. ")
+              << "The table is written when all " << plan.cases.count() << " cases have a result, or with --table."
+              << std::endl;
 }
 
 int exit_code_of(const SweepPlan& plan, const std::vector<int>& mine, const SweepRun& run,
@@ -209,9 +211,9 @@ void check_folder(const SweepPlan& plan, const SweepOptions& options) {
             Complaint{.file = read.string(),
                       .object = "--out",
                       .field = {},
-                      .found = "a file with the name of a result in the folder of the results",
-                      .expected = "another folder",
-                      .hint = {}}
+                      .found = "an input file that would be overwritten by a result of the same name",
+                      .expected = "another folder for the results",
+                      .hint = "choose another --out, or rename the input file"}
                 .raise();
     }
 }

@@ -23,13 +23,14 @@ std::vector<std::string> keys_of(const Json& json, const char* key) {
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
-        of.refuse("the place " + in_quotes(place), "a place alone, without \"=\" and value");
+        of.refuse("the place " + in_quotes(place), "a place without \"=\" and a value");
     const std::vector<std::string> before = keys_of(json, "materials");
     called_at(of, [&] { assign(place + "=" + value.dump(), scene, json); });
     for (const std::string& name : keys_of(json, "materials"))
         if (std::ranges::find(before, name) == before.end() && !value.is_object())
-            of.refuse("the place " + in_quotes(place) + ", of a material that " + scene.string() + " has not",
-                      before.empty() ? "a scene with materials of its own" : "one of " + listed(before),
+            of.refuse("the place " + in_quotes(place) + " in a material that " + scene.string() + " does not define",
+                      before.empty() ? "a scene file that defines materials"
+                                     : "a place in one of the materials " + listed(before),
                       nearest_hint(name, before));
 }
 
@@ -50,7 +51,7 @@ void require_a_readable_case(const SweepPlan& plan) {
     file.place.key(file.random         ? "random"
                    : file.grid.empty() ? "list"
                                        : "grid")
-        .refuse_inner("no case is a scene that can be read; " + first);
+        .refuse_inner("no case gives a valid scene; the first error is in " + first);
 }
 
 /// Tests the assignments of the sweep on the scene: throws SceneError if a place does not exist in the scene. For a

@@ -118,7 +118,7 @@ class CheckpointTest(ProgramCase):
     def test_a_restart_from_something_else_is_refused(self):
         checkpoint = self.folder / "run.skerry"
         self.run_stats(self.scene, "--checkpoint", checkpoint)
-        self.assert_refused("run", "--restart", checkpoint, said=["a checkpoint at 0.2 s", "--seconds a larger value"])
+        self.assert_refused("run", "--restart", checkpoint, said=["a checkpoint at 0.2 s", "a larger --seconds"])
         self.assert_refused("run", "--restart", self.scene, said=["drop.json", "a file of another kind"])
         self.assert_refused("run", "--restart", self.folder / "none", said=["no such file"])
         self.assert_refused("run", "--restart", checkpoint, "--step", 1e-5, said=["--step"])

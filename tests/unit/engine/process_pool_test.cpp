@@ -54,7 +54,7 @@ TEST_CASE("a job that ends badly, by itself or by a signal, takes no other with 
     CHECK(told.end.done == 4);
     REQUIRE(told.end.lost.size() == 2);
     for (const auto& [index, how] : told.end.lost)
-        CHECK_THAT(how, Catch::Contains(index == 1 ? "signal 9" : "ended with 7"));
+        CHECK_THAT(how, Catch::Contains(index == 1 ? "signal 9" : "ended with exit code 7"));
 }
 
 TEST_CASE("no job begins after one that says so", "[unit][processes]") {

@@ -35,7 +35,7 @@ class ProgramInspectTest(ProgramCase):
         self.assertAlmostEqual(found["stable_dt"], 1 / 120)
         self.assertGreaterEqual(found["steps"], 120 * SCENE["seconds"])
         said = self.skerry("inspect", alone).stdout
-        self.assertIn("8.33 ms (no body sets one)", said)
+        self.assertIn("8.33 ms (no body limits the step)", said)
         self.assertNotIn("inf", said.lower().replace("info", ""))
         self.assertNotIn("stable up to", self.skerry("run", alone).stdout)
 
@@ -111,7 +111,7 @@ class ProgramInspectTest(ProgramCase):
         mesh = self.bad_box("bad.msh")
         self.assert_refused("inspect", mesh, "--repair", self.folder / "out.vtk", said=["out.vtk", ".msh"])
         self.assert_refused("inspect", mesh, "--repair", mesh, said=["--overwrite"])
-        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", said=["no folder"])
+        self.assert_refused("inspect", mesh, "--repair", mesh / "x.msh", said=["not a folder"])
         for arguments in (["--tolerance", 0.1], ["--repair", "x.msh", "--tolerance", -1], ["--overwrite"]):
             self.skerry("inspect", mesh, *arguments, code=2)
         # A copy of the program has no skerry-fill beside it.
@@ -175,9 +175,9 @@ class ProgramInspectTest(ProgramCase):
         if found["kept"]:  # nothing better was found to fill it with
             self.assertEqual(again["nodes"], found["before"]["nodes"] + 1)
             self.assertEqual(again["tetrahedra"], found["before"]["tetrahedra"])
-        self.assertIn("1 node parted", self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0).stdout)
+        self.assertIn("1 node split", self.skerry("inspect", mesh, "--repair", out, "--tolerance", 0).stdout)
         two = self.bad_box("two.msh", flat=1, kept=[(1, 1, 1), (2, 2, 2)])
-        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", said=["2 parts", "mend each part"])
+        self.assert_refused("inspect", two, "--repair", self.folder / "none.msh", said=["2 parts", "save each part"])
 
     def test_what_is_not_better_is_not_written(self):
         self.need_fill()
@@ -204,7 +204,7 @@ class ProgramInspectTest(ProgramCase):
         sunk["bodies"][0]["position"][2] = 0.09
         problems = json.loads(self.skerry("inspect", self.write("sunk.json", sunk), "--json").stdout)["problems"]
         self.assertIn("body 'block' and collider 'floor' overlap by 0.01 m at (0, 0, -0.01) m at the start", problems)
-        self.assertTrue(any("a run takes that apart" in problem for problem in problems), problems)
+        self.assertTrue(any("a run moves overlapping bodies apart" in problem for problem in problems), problems)
 
 
 if __name__ == "__main__":

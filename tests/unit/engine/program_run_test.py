@@ -27,7 +27,7 @@ class ProgramRunTest(ProgramCase):
         trust = json.loads(self.run_with_stats(self.write("tumbling.json", tumbling)))["trust"]
         self.assertGreater(trust["energy"]["share"], 0.02)
         warning = next(warning for warning in trust["warnings"] if "energy balance has an error" in warning)
-        self.assertIn("settings.step_size, below the mean step of 8.33 ms", warning)
+        self.assertIn("settings.step_size below the mean step of 8.33 ms", warning)
         calm = json.loads(self.run_with_stats(self.scene))["trust"]
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["warnings"], [])
@@ -106,7 +106,7 @@ class ProgramRunTest(ProgramCase):
         out = self.folder / "out"
         for name in ("drop.pvd", "drop_bodies_0000.vtu", "drop_colliders_0007.vtp"):
             self.assert_refused("run", self.scene, "--out", out, "--stats", out / name,
-                                said=["--stats", "--out writes"])
+                                said=["--stats", "--out also writes"])
         self.skerry("run", self.scene, "--seconds", 0.02, "--out", out, "--quiet", "--stats", out / "drop_0000.json")
 
     def test_a_material_or_a_mesh_beyond_all_numbers_is_named(self):
@@ -173,7 +173,7 @@ class ProgramRunTest(ProgramCase):
         self.assertAlmostEqual(found["steps"], run["steps"], delta=0.05 * run["steps"])
         self.assertAlmostEqual(found["wall_seconds"], 0.2 * found["wall_seconds_per_second"])
         self.assertRegex(self.skerry("inspect", self.scene).stdout,
-                         r"a simulated second, as it starts; .* for all of it")
+                         r"of wall time per simulated second, estimated from the first steps; .* for the whole run")
 
     def run_with_stats(self, scene, *arguments):
         stats = self.folder / "stats.json"
@@ -188,7 +188,8 @@ class SetTest(ProgramCase):
         self.skerry("run", "--set", "seconds=0.05", self.scene, *change, "--quiet", "--stats", stats)
         self.assertAlmostEqual(json.loads(stats.read_text())["seconds_simulated"], 0.05)
         self.assertEqual(json.loads(stats.read_text())["stable_dt_body"], "brick")
-        self.assert_refused("run", self.scene, "--set", "bodies[7].name=brick", said=["item 7 of ", "drop.json"])
+        self.assert_refused("run", self.scene, "--set", "bodies[7].name=brick",
+                            said=["index 7 in a list of length ", "drop.json"])
         self.assert_refused("run", self.scene, "--set", "settings.gravitee=1", said=["gravitee", "gravity"])
 
 

@@ -22,12 +22,12 @@ class ProgramStartTest(ProgramCase):
         self.assert_refused("run", self.overlapping(0.09), "--start-overlaps", "refuse", said=["overlap by"])
         problems = json.loads(self.skerry("inspect", self.overlapping(0), "--json").stdout)["problems"]
         self.assertTrue(any("'left' and 'right' coincide" in problem for problem in problems), problems)
-        self.assertTrue(any("a run refuses that" in problem for problem in problems), problems)
+        self.assertTrue(any("a run refuses to start with these overlaps" in problem for problem in problems), problems)
 
     def test_bodies_that_overlap_a_bit_are_moved_apart_and_the_run_says_so(self):
         stats = self.folder / "stats.json"
         done = self.skerry("run", self.overlapping(0.095), "--stats", stats, "--profile")
-        self.assertIn("1 overlap, 2 bodies moved apart, the furthest ", done.stdout)
+        self.assertIn("1 overlap, 2 bodies moved apart, the largest movement ", done.stdout)
         self.assertNotIn("WARNING", done.stdout)
         start = json.loads(stats.read_text())["start"]
         self.assertEqual([m["body"] for m in start["moves"]], ["left", "right"])
@@ -44,7 +44,7 @@ class ProgramStartTest(ProgramCase):
 
     def test_a_warning_names_both_bodies_that_overlap_at_the_start_quiet_or_not(self):
         done = self.skerry("run", self.overlapping(0, start_overlaps="ignore"))
-        for part in ("WARNING", "'left' and 'right' coincide at (0, 0, 0) m at the start: move them apart"):
+        for part in ("WARNING", "'left' and 'right' coincide at (0, 0, 0) m at the start: move the objects apart"):
             self.assertIn(part, done.stdout)
         done = self.skerry("run", self.overlapping(0.09, start_overlaps="ignore"))
         self.assertIn("settings.start_overlaps to \"resolve\"", done.stdout)

@@ -112,10 +112,10 @@ class ProgramTest(ProgramCase):
         blocked = self.write("file", "") / "inside"
         endless = self.write("endless.json", {**SCENE, "seconds": 1e6})
         for flag in ("--stats", "--out", "--page", "--trace", "--export-problems"):
-            self.assert_refused("run", endless, flag, blocked, said=["file", "no folder"])
+            self.assert_refused("run", endless, flag, blocked, said=["file", "not a folder"])
         self.assert_refused("run", endless, "--stats", self.folder, said=["a folder"])
         # One bad output among good ones: the good ones do not appear either.
-        self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, said=["no folder"])
+        self.assert_refused("run", endless, "--out", self.folder / "out", "--stats", blocked, said=["not a folder"])
 
     def test_only_files_are_replaced_and_links_stay(self):
         quick = self.write("quick.json", {**SCENE, "seconds": 0.01})

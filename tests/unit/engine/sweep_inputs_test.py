@@ -27,7 +27,8 @@ FILES = [
     ("broken JSON", '{"scene": "drop.json",', ["cases.json", "line 1", "not valid JSON"]),
     ("a list", "[]", ["cases.json", "the list []", "an object"]),
     ("no scene", {"list": [{}]}, ["cases.json", '"scene"']),
-    ("a scene that is not there", {"scene": "dorp.json", "list": [{}]}, ["scene", "dorp.json", "path of a file"]),
+    ("a scene that is not there", {"scene": "dorp.json", "list": [{}]},
+     ["scene", "dorp.json", "path of an existing file"]),
     ("a scene that is none", {"scene": "rubbish.json", "list": [{}]}, ["rubbish.json", "not valid JSON"]),
     ("no cases", {"scene": "drop.json"}, ['"grid", "list", "random"']),
     ("two kinds of cases", {"scene": "drop.json", "list": [{}], "grid": []}, ["grid", "list", "exactly one"]),
@@ -39,29 +40,30 @@ FILES = [
     ("no values", grid({"values": []}), ["grid[0].values", "empty", "at least one"]),
     ("values both ways", grid({"values": [1], "from": 1, "to": 2, "count": 2}), ["grid[0]", "values", "from"]),
     ("no end", grid({"from": 1, "count": 2}), ["grid[0]", '"from"', '"to"']),
-    ("no step", grid({"from": 1, "to": 1, "count": 2}), ["grid[0].to", "where it begins"]),
+    ("no step", grid({"from": 1, "to": 1, "count": 2}), ["grid[0].to", "the same number as"]),
     ("a count of zero", grid({"from": 1, "to": 2, "count": 0}), ["grid[0].count", "0", "at least 1"]),
     ("a logarithm of zero", grid({"from": 0, "to": 2, "count": 3, "spacing": "log"}), ["grid[0].from", "above 0"]),
     ("an unknown spacing", grid({"from": 1, "to": 2, "count": 3, "spacing": "lgo"}), ["spacing", '"lgo"', '"log"']),
     ("too many cases", {"scene": "drop.json", "grid": [
         {"set": MU, "from": 0, "to": 1, "count": 1000}, {"set": "seconds", "from": 0.1, "to": 1, "count": 1001}]},
      ["grid", "1001000 combinations", "1000000"]),
-    ("a place twice", grid({"values": [1]}, {"name": "other", "values": [1]}), ["grid[1].set", MU, "again"]),
+    ("a place twice", grid({"values": [1]}, {"name": "other", "values": [1]}), ["grid[1].set", MU, "already sets"]),
     ("a name twice", grid({"name": "a", "values": [1]}, {"name": "a", "set": "seconds", "values": [1]}),
-     ["grid[1].name", '"a" again']),
-    ("a name that tables have", grid({"name": "status", "values": [1]}), ["grid[0].name", '"status"', "its own"]),
+     ["grid[1].name", '"a", which is already']),
+    ("a name that tables have", grid({"name": "status", "values": [1]}),
+     ["grid[0].name", '"status"', "a different name"]),
     ("an item that is not there", grid({"set": "bodies[3].name", "values": ["a"]}),
-     ["cases.json", "grid[0].set", "drop.json", "item 3 of 1"]),
+     ["cases.json", "grid[0].set", "drop.json", "index 3 in a list of length 1"]),
     ("a place within a number", grid({"set": "seconds.x", "values": [1]}), ["grid[0].set", "seconds.x", "an object"]),
     ("a material that is not there", grid({"set": "materials.ruber.mu", "values": [1]}),
      ["grid[0].set", "materials.ruber.mu", '"rubber"']),
     ("a key that scenes have not", grid({"set": "materials.rubber.frictoin", "values": [1]}),
      ["cases.json", "no case", "drop.json", "frictoin", '"friction"']),
-    ("an assignment as a place", grid({"set": MU + "=1", "values": [1]}), ["grid[0].set", "a place alone"]),
+    ("an assignment as a place", grid({"set": MU + "=1", "values": [1]}), ["grid[0].set", "a place without"]),
     ("a value that no case can have", grid({"values": [-1, -2]}), ["grid", "no case", "mu=-1", "at least 0"]),
     ("a bad place for all cases", {"scene": "drop.json", "set": {"bodies[2].name": "a"}, "list": [{}]},
-     ["cases.json", "set", "item 2 of 1"]),
-    ("a bad place in a list", {"scene": "drop.json", "list": [{}, {"bodies[2].name": "a"}]}, ["list[1]", "item 2"]),
+     ["cases.json", "set", "index 2 in a list of length 1"]),
+    ("a bad place in a list", {"scene": "drop.json", "list": [{}, {"bodies[2].name": "a"}]}, ["list[1]", "index 2"]),
     ("a case that is a number", {"scene": "drop.json", "list": [3]}, ["list[0]", "the number 3", "an object"]),
     ("no seed", {"scene": "drop.json", "random": {"count": 1, "parameters": [{"set": MU}]}}, ["random", '"seed"']),
     ("a seed below zero", {"scene": "drop.json", "random": {"seed": -1, "count": 1, "parameters": []}},
@@ -71,7 +73,7 @@ FILES = [
     ("a draw without an end", drawn(**{"from": 1}), ["random.parameters[0]", '"to"', '"uniform"']),
     ("a draw upside down", drawn(**{"from": 1, "to": 0}), ["random.parameters[0].to", "above"]),
     ("ends of a normal distribution", drawn(distribution="normal", mean=1, deviation=1, to=2),
-     ["random.parameters[0].to", '"normal"', "mean and deviation"]),
+     ["random.parameters[0].to", '"normal"', '"mean" and "deviation"']),
     ("no deviation", drawn(distribution="normal", mean=1, deviation=0), ["deviation", "above 0"]),
     ("half an integer", drawn(distribution="integer", **{"from": 1.5, "to": 3}), ["from", "1.5", "a whole number"]),
     ("an unknown distribution", drawn(distribution="gauss", mean=1, deviation=1), ["distribution", '"gauss"']),
@@ -80,7 +82,7 @@ FILES = [
 # options, environment, words that the message has
 PROCESSES = [
     (["--rank", "2", "--of", "2"], {}, ["rank 2 of 2", "from 0 to 1"]),
-    (["--rank", "0"], {}, ["--rank alone"]),
+    (["--rank", "0"], {}, ["--rank without --of"]),
     (["--jobs", "0"], {}, ["--jobs"]),
     (["--jobs", "many"], {}, ["--jobs"]),
     ([], {"SLURM_PROCID": "x", "SLURM_NTASKS": "2"}, ["SLURM_PROCID", '"x"', "--rank I --of N"]),
@@ -110,11 +112,11 @@ class SweepInputsTest(ProgramCase):
 
     def test_bad_places_for_results(self):
         cases = self.write("cases.json", {"scene": "drop.json", "list": [{}]})
-        self.assert_refused("sweep", cases, "--out", self.scene, said=["drop.json", "no folder"])
+        self.assert_refused("sweep", cases, "--out", self.scene, said=["drop.json", "not a folder"])
         own = self.write("case_000000.json", {"scene": "drop.json", "list": [{}]})
         self.assert_refused("sweep", own, "--out", self.folder, "--redo", said=["case_000000.json", "another folder"])
         (self.out / "sweep.csv").mkdir(parents=True)
-        self.assert_refused("sweep", cases, "--out", self.out, said=["sweep.csv", "a folder", "a file to write"])
+        self.assert_refused("sweep", cases, "--out", self.out, said=["sweep.csv", "a folder", "the name of a file"])
 
     def test_bad_processes(self):
         cases = self.write("cases.json", {"scene": "drop.json", "list": [{}]})

@@ -93,19 +93,20 @@ class SweepTest(ProgramCase):
         before = self.hashes()
         self.write("cases.json", {"scene": "drop.json", "grid": [{**MU, "values": [0.2, 0.5]}, HEIGHT]})
         self.assert_refused("sweep", self.cases, "--out", self.out, said=[
-            str(self.out), "3 files", "not of these cases", "case_000000.json", '"mu":0.1', "--redo", "--out"])
+            str(self.out), "3 files", "not belong to these cases", "case_000000.json", '"mu":0.1', "--redo", "--out"])
         done = self.sweep(self.cases, "--out", self.out, "--redo")
-        self.assertIn("3 results of other cases are computed again", done.stderr)
+        self.assertIn("3 cases are computed again", done.stderr)
         self.assertIn("3 of 6 cases to run", done.stderr)
         self.assertEqual([old == new for old, new in zip(before, self.hashes())], [False] * 3 + [True] * 3)
         # what the scene is, not how it is written
         self.scene.write_text(json.dumps(SCENE, indent=4))
         self.assertIn("0 of 6 cases to run", self.sweep(self.cases, "--out", self.out).stderr)
         self.scene.write_text(json.dumps({**SCENE, "seconds": 0.1}))
-        self.assert_refused("sweep", self.cases, "--out", self.out, said=["6 files", "as it was before"])
+        self.assert_refused("sweep", self.cases, "--out", self.out, said=["6 files", "an earlier version of the scene"])
         self.scene.write_text(json.dumps(SCENE))
         (self.out / "case_000002.json").write_text('{"schema": "skerry.case/2", "case')
-        self.assert_refused("sweep", self.cases, "--out", self.out, said=["case_000002.json", "no result of a case"])
+        self.assert_refused("sweep", self.cases, "--out", self.out,
+                            said=["case_000002.json", "not the result of a case"])
         self.assertIn("1 of 6", self.sweep(self.cases, "--out", self.out, "--redo").stderr)
 
     def slow_cases(self):
@@ -167,7 +168,7 @@ class SweepTest(ProgramCase):
             os.killpg(process.pid, signal.SIGINT)  # as the terminal does
             stdout, stderr = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, stderr)
-        self.assertIn("The same command goes on with the rest", stdout)
+        self.assertIn("Run the same command again for the other cases", stdout)
         done = self.whole_files()
         self.assertIn(f"{done} of 8 cases", stdout)
         self.assertLess(done, 8)
@@ -185,7 +186,7 @@ class SweepTest(ProgramCase):
             os.kill(self.children_of(process.pid)[0], signal.SIGKILL)
             stderr = process.communicate(timeout=60)[1]
         self.assertEqual(process.returncode, 1, stderr)
-        self.assertRegex(stderr, r"case \d .* ended by signal 9 .*it has no result")
+        self.assertRegex(stderr, r"case \d .* ended by signal 9 .*the case has no result")
         self.assertEqual(self.whole_files(), 7)
         self.assertFalse((self.out / "sweep.csv").exists())
         self.assertIn("8 cases: 7 ok, 1 not run", self.sweep(cases, "--out", self.out, "--table").stdout)

@@ -12,22 +12,25 @@ namespace {
 using Row = std::vector<std::optional<Json>>;
 
 void add_parameter(Cases& cases, const std::string& name, const std::vector<std::string>& places, const Place& place) {
-    if (places.empty()) place.key("set").refuse("an empty list", "at least one place");
+    if (places.empty()) place.key("set").refuse("an empty list", "at least one place in the scene");
     const std::string own = name.empty() ? places.front() : name;
     constexpr std::array columns{case_column, status_column, message_column, warnings_column, hash_column};
     if (std::ranges::find(columns, own) != columns.end())
-        place.key("name").refuse(in_quotes(own) + ", which every table has", "a name of its own");
-    std::vector<std::string> seen;
-    for (const Parameter& other : cases.parameters) {
-        if (other.name == own) place.key("name").refuse(in_quotes(own) + " again", "a name of its own");
-        seen.insert(seen.end(), other.places.begin(), other.places.end());
-    }
+        place.key("name").refuse(in_quotes(own) + ", a column that every table has",
+                                 "a different name for every parameter");
+    for (const Parameter& other : cases.parameters)
+        if (other.name == own)
+            place.key("name").refuse(in_quotes(own) + ", which is already the name of a parameter",
+                                     "a different name for every parameter");
+    cases.parameters.push_back({own, {}, place});
     for (const std::string& at : places) {
-        if (std::ranges::find(seen, at) != seen.end())
-            place.key("set").refuse(in_quotes(at) + " again", "a place that no other parameter sets");
-        seen.push_back(at);
+        for (const Parameter& other : cases.parameters)
+            if (std::ranges::find(other.places, at) != other.places.end())
+                place.key("set").refuse(
+                    in_quotes(at) + ", which the parameter " + in_quotes(other.name) + " already sets",
+                    "a place that no parameter sets yet");
+        cases.parameters.back().places.push_back(at);
     }
-    cases.parameters.push_back({own, places, place});
 }
 
 std::vector<Json> values_of(const GridEntry& entry) {
@@ -47,7 +50,7 @@ void expand_grid(const SweepFile& sweep, Cases& cases) {
         const std::vector<Json> values = values_of(entry);
         if (values.size() * cases.values.size() > most_cases)
             sweep.place.key("grid").refuse(std::to_string(values.size() * cases.values.size()) +
-                                               " combinations up to parameter " + std::to_string(p),
+                                               " combinations of the parameters 0 to " + std::to_string(p),
                                            "at most " + std::to_string(most_cases) + " cases");
         std::vector<Row> rows;
         for (const Row& row : cases.values)
@@ -59,7 +62,8 @@ void expand_grid(const SweepFile& sweep, Cases& cases) {
 void expand_list(const SweepFile& sweep, Cases& cases) {
     const Place place = sweep.place.key("list");
     if (sweep.list.size() > most_cases)
-        place.refuse("a list of " + std::to_string(sweep.list.size()), "at most " + std::to_string(most_cases));
+        place.refuse("a list of " + std::to_string(sweep.list.size()) + " cases",
+                     "at most " + std::to_string(most_cases) + " cases");
     for (std::size_t i = 0; i < sweep.list.size(); ++i) {
         Row& row = cases.values.emplace_back(cases.parameters.size());
         for (const auto& [name, value] : sweep.list[i].items) {

@@ -106,14 +106,14 @@ void write_case(const std::filesystem::path& file, const CaseHead& head, const C
 CaseFile read_case(const std::filesystem::path& file, int index, const std::string& case_hash) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return {};
-    CaseFile read{CaseFileState::other, {}, "a file that is no result of a case"};
+    CaseFile read{CaseFileState::other, {}, "a file that is not the result of a case"};
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     try {
         const Json json = Json::parse(text);
         if (json.at("schema") != case_schema) return read;
         const std::string own_hash = json.at("case_hash").get<std::string>();
         if (own_hash != case_hash || json.at("case") != index) {
-            read.found = "the result of another case, or of the scene as it was before: " +
+            read.found = "the result of another case, or of an earlier version of the scene, with the parameters " +
                          json.at("parameters").dump(-1, ' ', false, Json::error_handler_t::replace);
             return read;
         }

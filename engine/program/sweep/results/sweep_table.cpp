@@ -104,7 +104,7 @@ std::string totals_text(const SweepTable& table) {
     add(counts[2], "refused");
     add(missing, "not run");
     add(warned, "with warnings");
-    return text + "; " + duration_text(cpu) + " of CPU in all\n";
+    return text + "; " + duration_text(cpu) + " of CPU time in total\n";
 }
 
 /// Returns a note if all cases ended in exactly equal states, which means that the parameters had no effect. Otherwise
@@ -119,7 +119,7 @@ std::string sameness_text(const SweepTable& table) {
         ++same;
     }
     return same > 1 ? "All " + std::to_string(same) +
-                          " cases that ran ended in the same state: no parameter has changed anything\n"
+                          " cases that ran ended in the same state: the parameters had no effect\n"
                     : "";
 }
 
