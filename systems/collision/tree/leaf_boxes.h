@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
+static_assert(leaf_lanes == element_lanes, "a leaf must fill all lanes of Real8");
 
 /// Eight boxes side by side, so that one box is compared with all of them at once [m]. Empty boxes are far from
 /// everything.
