@@ -172,15 +172,13 @@ void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t
 void Hdf5File::expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items,
                               const std::string& of) const {
     const auto most = static_cast<Index>(items);
-    const auto expect = [&](bool good, std::size_t i, const std::string& expected) {
-        if (!good) complain(path, std::to_string(offset[i]) + " at entry " + std::to_string(i) + of, expected);
-    };
     for (std::size_t i = 0; i < offset.size(); ++i) {
-        if (i == 0) expect(offset[0] == 0, i, "0, the first offset");
-        if (i > 0)
-            expect(offset[i] >= offset[i - 1], i,
-                   "an offset >= " + std::to_string(offset[i - 1]) + ", because offsets ascend");
-        expect(offset[i] <= most, i, "an offset <= " + std::to_string(most) + ", the number of items");
+        const Index least = i == 0 ? 0 : offset[i - 1];
+        if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
+        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i) + of;
+        if (i == 0) complain(path, found, "0, the first offset");
+        if (offset[i] > most) complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
+        complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");
     }
 }
 

@@ -123,7 +123,7 @@ std::string StepReport::message() const {
         case StepStatus::too_far:
             return "the step was not taken: " + who +
                    " is so far from the origin that neighbouring representable positions are " + short_text(value) +
-                   " of its mean edge length apart; move the bodies closer to the origin";
+                   " of its mean edge length apart; use a local frame whose origin is near the bodies";
         case StepStatus::unsolved:
             return "the step was not taken: Newton's method for large strain did not converge for " + who +
                    ", even with a thousandth of the step; check its loads, velocities and shape, or set its dynamics "

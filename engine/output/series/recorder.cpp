@@ -93,7 +93,7 @@ std::string rows_to_keep(const std::filesystem::path& file, const std::string& h
                   .object = "output",
                   .field = "first line",
                   .found = "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
-                  .expected = "the column headings of the probes of this scene",
+                  .expected = "the column headings of the recorded probes",
                   .hint = "a continued run appends its rows to the file; choose another file or delete this one"}
             .raise();
     std::string kept;

@@ -89,7 +89,7 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
                   .object = "output",
                   .field = "name",
                   .found = "\"" + name_ + "\"",
-                  .expected = "a name without / and \\",
+                  .expected = "a file name without / and \\",
                   .hint = {}}
             .raise();
     make_folder(folder_);

@@ -28,8 +28,9 @@
   show_stages(find("stages"), run.report);
   const unpacked = { bodies: [], frames: [] };
   if (typeof DecompressionStream === "undefined") {
-    fail("no DecompressionStream", "This browser cannot show the frames of this page, because it lacks DecompressionStream. "
-      + "Use Chrome or Edge 80, Firefox 113, Safari 16.4, or a later version. The plots work without the frames.");
+    fail("no DecompressionStream", "This browser cannot show the frames of this page, because it lacks "
+      + "DecompressionStream. Use Chrome or Edge 80, Firefox 113, Safari 16.4, or a later version. The plots work "
+      + "without the frames.");
   } else {
     notice("Unpacking \u2026");
     const library = document.createElement("script");
@@ -247,7 +248,7 @@
     [["v"], "initial view, which follows the bodies", () => set_switch("follow", true)],
     [["[", "]"], "turn the view; with Shift: up and down", (shift, key) =>
       move((to) => (/[[\]]/.test(key) ? to.turn(key === "[" ? 20 : -20, 0) : to.turn(0, key === "{" ? 20 : -20)))()],
-    [["+", "-"], "zoom in, zoom out", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
+    [["+", "-"], "zoom in or out", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
     [["h"], "show or hide the panel and the controls", flip("panel")],
     [["l"], "light or dark colours", flip("light")],
     [["p"], "save a picture (PNG)", save_picture],
