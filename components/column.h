@@ -20,7 +20,10 @@ class Column {
 public:
     using value_type = T;
 
-    Column() { static_assert(std::is_trivially_destructible_v<T>, "RowMemory copies rows byte by byte"); }
+    Column() {
+        static_assert(std::is_trivially_destructible_v<T>,
+                      "rows must be trivially destructible, because RowMemory copies them byte by byte");
+    }
     Column(const Column& other) : copies_(other.copies_) { memory_.copy(other.memory_, sizeof(T)); }
     Column(Column&& other) noexcept : copies_(std::move(other.copies_)) { memory_.swap(other.memory_); }
     Column& operator=(const Column& other) {

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-static_assert(XXH_VERSION_NUMBER >= 800, "since then XXH3 keeps its numbers");
+static_assert(XXH_VERSION_NUMBER >= 800, "XXH3 hash values are stable only since version 0.8.0 of the xxHash library");
 
 Hash::Hash() {
     static_assert(sizeof state_ == sizeof(XXH3_state_t) && alignof(Hash) >= alignof(XXH3_state_t));

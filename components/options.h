@@ -137,27 +137,28 @@ struct RemovedNames {
 template <>
 struct RemovedNames<Friction> {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
-        {"cone_convex", "use \"cone\"; cone_convex is for comparison, in profile_solvers"},
+        {"cone_convex", "use \"cone\"; cone_convex is available only in profile_solvers, for comparison"},
     }};
 };
 template <>
 struct RemovedNames<ContactRegions> {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
-        {"paper_algorithm_1", "use \"separate\"; the paper's Algorithm 1 is for comparison, in profile_separation"},
+        {"paper_algorithm_1",
+         "use \"separate\"; Algorithm 1 of the paper is available only in profile_separation, for comparison"},
     }};
 };
 template <>
 struct RemovedNames<Integrator> {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 1> table{{
-        {"forward_euler", "use \"symplectic_euler\", the default, or \"leapfrog\": forward Euler is never stable"},
+        {"forward_euler", "use \"symplectic_euler\" (the default) or \"leapfrog\"; forward Euler is never stable"},
     }};
 };
 template <>
 struct RemovedNames<SolverMethod> {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> table{{
-        {"nncg", "use \"automatic\" or \"ags\"; nncg is for comparison, in profile_solvers"},
-        {"apgd", "use \"automatic\" or \"ags\"; apgd is for comparison, in profile_solvers"},
-        {"mprgp", "use \"automatic\" or \"ags\"; mprgp is for comparison, in profile_solvers"},
+        {"nncg", "use \"automatic\" or \"ags\"; nncg is available only in profile_solvers, for comparison"},
+        {"apgd", "use \"automatic\" or \"ags\"; apgd is available only in profile_solvers, for comparison"},
+        {"mprgp", "use \"automatic\" or \"ags\"; mprgp is available only in profile_solvers, for comparison"},
     }};
 };
 

@@ -36,12 +36,13 @@ std::int64_t number_at(const std::byte* place, NumberType type) {
         case NumberType::real:
             break;
     }
-    throw std::logic_error("a real is no integer");
+    throw std::logic_error("number_at() was called for a column of reals, but reads integers only");
 }
 
 std::span<const Member> MembersOf<MaterialConstants>::list() {
     using S = MaterialConstants;
-    static_assert(sizeof(MaterialConstants) == 6 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(MaterialConstants) == 6 * sizeof(Real),
+                  "every member of this struct must be in the list of saved members");
     static const std::array list{Member{"model", &S::model},
                                  Member{"shear_modulus", &S::shear_modulus},
                                  Member{"lame_lambda", &S::lame_lambda},
@@ -59,7 +60,8 @@ std::span<const Member> MembersOf<ColliderGeometry>::list() {
 
 std::span<const Member> MembersOf<MotionScript>::list() {
     using S = MotionScript;
-    static_assert(sizeof(MotionScript) == 8 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(MotionScript) == 8 * sizeof(Real),
+                  "every member of this struct must be in the list of saved members");
     static const std::array list{Member{"velocity", &S::velocity}, Member{"angular_velocity", &S::angular_velocity},
                                  Member{"key_begin", &S::key_begin}, Member{"key_end", &S::key_end},
                                  Member{"start", &S::start}};

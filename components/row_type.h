@@ -123,7 +123,8 @@ constexpr RowType describe() {
         type.width = NumbersOf<T>::count;
         type.number = NumbersOf<T>::number;
         type.values = value_count<T>;
-        static_assert(sizeof(T) == NumbersOf<T>::count * bytes_of(NumbersOf<T>::number), "a row with gaps");
+        static_assert(sizeof(T) == NumbersOf<T>::count * bytes_of(NumbersOf<T>::number),
+                      "a saved row must not contain padding");
     }
     return type;
 }

@@ -37,7 +37,7 @@ std::unique_ptr<Executor> make_executor(Backend backend, int workers) {
         default:
             break;
     }
-    std::string message = "this build lacks the backend " + std::string(name_of(backend)) + "; it has";
+    std::string message = "this build lacks the backend " + std::string(name_of(backend)) + "; use one of:";
     for (Backend built : built_backends) message += " " + std::string(name_of(built));
     throw std::invalid_argument(message);
 }

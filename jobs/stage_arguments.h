@@ -123,8 +123,9 @@ auto outputs(T&... objects) {
 template <class Predicate, class... Args>
 auto only_if(Predicate predicate, Args... args) {
     static_assert(access_detail::is_stateless<Predicate>,
-                  "only_if: declare what the guard looks at, do not capture it");
-    static_assert(sizeof...(Args) > 0, "only_if: declare what the guard looks at, else it may look too early");
+                  "only_if: pass the data that the predicate reads as arguments, do not capture them");
+    static_assert(sizeof...(Args) > 0,
+                  "only_if: pass the data that the predicate reads as arguments, or it may run too early");
     return access_detail::Guard<Predicate, Args...>{predicate, {args...}};
 }
 

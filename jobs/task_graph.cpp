@@ -43,7 +43,7 @@ public:
         };
         if (std::ranges::any_of(stage_.accesses, declared)) return;
         throw CheckFailed(std::string("the stage ") + stage_.name + (writes ? " writes " : " reads ") +
-                          tracked_.name_of(tracked_.memory, column) + " and has not declared it");
+                          tracked_.name_of(tracked_.memory, column) + " without having declared this access");
     }
 
 private:
@@ -53,7 +53,8 @@ private:
 
 void TaskGraph::add(StageDeclaration stage, Run run) {
     if (std::ranges::all_of(stage.accesses, [](const Access& access) { return access.use == Use::value; }))
-        throw CheckFailed(std::string("the stage ") + stage.name + " declares no access: nothing would wait for it");
+        throw CheckFailed(std::string("the stage ") + stage.name +
+                          " declares no access, so no other stage would wait for it");
     for (const StageDeclaration& other : stages_)
         if (std::string_view(other.name) == stage.name)
             throw CheckFailed(std::string("two stages are named ") + stage.name);
@@ -69,8 +70,8 @@ void TaskGraph::compile() {
     for (const StageDeclaration& writer : stages_)
         for (const StageDeclaration& reader : stages_)
             if (breaks_value(writer.accesses, reader.accesses))
-                throw CheckFailed(std::string("the stage ") + reader.name + " takes as a value what " + writer.name +
-                                  " writes");
+                throw CheckFailed(std::string("the stage ") + reader.name +
+                                  " reads as a constant value the data that the stage " + writer.name + " writes");
     edges_.clear();
     // before[s][p]: stage s waits for stage p, directly or through other stages. For each stage, the nearest
     // predecessors are visited first. A predecessor for which another predecessor already waits needs no edge of its

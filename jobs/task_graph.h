@@ -104,7 +104,7 @@ public:
         using Call = access_detail::CallOf<F, Args...>;
         using Result = access_detail::ResultOf<F, Args...>;
         static_assert(std::is_void_v<Result> || std::is_same_v<Result, bool>,
-                      "a stage with another result needs stage_with_result");
+                      "a stage function must return void or bool; for another result use stage_with_result");
         auto run = [function, args...](Executor& executor) mutable {
             if (!(args.allows() && ...)) return Outcome::guarded;
             if constexpr (std::is_void_v<Result>) {

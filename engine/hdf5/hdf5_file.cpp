@@ -9,16 +9,18 @@ namespace skerry {
 namespace {
 
 hid_t open_file(const std::filesystem::path& path, const std::string& expected) {
-    const auto refuse = [&](const std::string& found) {
-        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = expected, .hint = {}}
+    const auto refuse = [&](const std::string& found, const std::string& hint) {
+        Complaint{.file = path.string(), .object = {}, .field = {}, .found = found, .expected = expected, .hint = hint}
             .raise();
     };
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) refuse("no such file");
-    if (std::filesystem::is_directory(path, ignored)) refuse("a directory");
-    if (H5Fis_hdf5(path.string().c_str()) <= 0) refuse("a file that is not HDF5");
+    if (!std::filesystem::exists(path, ignored)) refuse("no such file", "check the path");
+    if (std::filesystem::is_directory(path, ignored)) refuse("a folder", "give the path of a file");
+    if (H5Fis_hdf5(path.string().c_str()) <= 0) refuse("a file that is not in HDF5 format", "check the path");
     const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (file < 0) refuse("an HDF5 file that cannot be opened");
+    if (file < 0)
+        refuse("an HDF5 file that cannot be opened",
+               "check its permissions; if they allow reading, the file is damaged");
     return file;
 }
 
@@ -42,8 +44,8 @@ hid_t hdf5_type(NumberType type) {
     return H5I_INVALID_HID;
 }
 
-Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected)
-    : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
+Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected, std::string hint)
+    : name_(path.string()), hint_(std::move(hint)), file_(open_file(path, expected), H5Fclose) {}
 
 bool Hdf5File::can_hold(hsize_t bytes) const {
     // Largest compression ratio that the deflate filter can reach. No other filter that is common in such files
@@ -62,7 +64,7 @@ void Hdf5File::complain(const std::string& path, const std::string& found, const
               .field = path.substr(slash + 1),
               .found = found,
               .expected = expected,
-              .hint = hint}
+              .hint = hint.empty() ? hint_ : hint}
         .raise();
 }
 
@@ -77,10 +79,23 @@ bool Hdf5File::has(const std::string& path) const {
 void Hdf5File::expect_group(const std::string& path, const std::string& hint) const {
     if (!has(path)) complain(path, "nothing", "a group", hint);
     const Hdf5Handle group(H5Gopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.ok()) complain(path, "an object that is not a group", "a group", hint);
+    if (!group.ok()) complain(path, "an HDF5 object that is not a group", "a group", hint);
 }
 
 namespace {
+
+const char* name_of(H5T_class_t type) {
+    switch (type) {
+        case H5T_INTEGER:
+            return "integers";
+        case H5T_FLOAT:
+            return "floating-point numbers";
+        case H5T_STRING:
+            return "text";
+        default:
+            return "values that are not numbers";
+    }
+}
 
 /// True if the file stores at least as many bytes as the values of the data set need. libhdf5 would read past the end
 /// of a compact data set that is too short. Chunked data sets may be compressed, so their size is not checked.
@@ -98,29 +113,31 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
                                  const char* expected) const {
     if (!has(path)) complain(path, "nothing", expected);
     const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!data.ok()) complain(path, "something that is not a data set", expected);
+    if (!data.ok()) complain(path, "an HDF5 object that is not a data set", expected);
     const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
     const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
-    if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
+    if (!type.ok() || !space.ok()) complain(path, "a data set whose type or shape cannot be read", expected);
     const H5T_class_t found = H5Tget_class(type.id());
     // integers are accepted where reals are expected
-    if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER))
-        complain(path, "values of another type", expected);
+    if (found != kind && !(kind == H5T_FLOAT && found == H5T_INTEGER)) complain(path, name_of(found), expected);
     // Number types longer than a long double are refused. To convert such numbers, libhdf5 would allocate memory of the
     // size that the file claims.
     constexpr std::size_t longest_number = 16;  // [bytes]
     if (H5Tget_size(type.id()) > longest_number)
-        complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes", expected);
+        complain(path, "values of " + std::to_string(H5Tget_size(type.id())) + " bytes",
+                 std::string(expected) + " of at most " + std::to_string(longest_number) + " bytes");
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 0 || count > std::numeric_limits<Index>::max())
-        complain(path, std::to_string(count) + " values", expected);
+        complain(path, std::to_string(count) + " values", "at most 2147483647 values");
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
-        complain(path, std::to_string(count) + " values", "as many values as the file has room for");
+        complain(path, std::to_string(count) + " values", "a number of values that fits the size of the file",
+                 "the file is damaged");
     if (!all_stored(data, type, count))
-        complain(path, "fewer bytes than " + std::to_string(count) + " values need", expected);
+        complain(path, "fewer bytes than " + std::to_string(count) + " values need", expected, "the file is damaged");
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-        complain(path, "values that cannot be read", expected);
+        complain(path, "values that cannot be read", expected,
+                 "the data set is damaged, or the HDF5 library lacks the filter that compressed it");
     return values;
 }
 
@@ -132,24 +149,38 @@ void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t
                                  std::to_string(bytes) + " bytes";
     if (!has(path)) complain(path, "nothing", expected);
     const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!data.ok()) complain(path, "something that is not a data set", expected);
+    if (!data.ok()) complain(path, "an HDF5 object that is not a data set", expected);
     const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
     const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
-    if (!type.ok() || !space.ok()) complain(path, "a data set that cannot be read", expected);
-    if (H5Tequal(type.id(), memory_type) <= 0) complain(path, "values of another type", expected);
+    if (!type.ok() || !space.ok()) complain(path, "a data set whose type or shape cannot be read", expected);
+    if (H5Tequal(type.id(), memory_type) <= 0) complain(path, "values of another type, size or byte order", expected);
     const int rank = width == 1 ? 1 : 2;
     std::array<hsize_t, 2> size{0, 1};
     if (H5Sget_simple_extent_ndims(space.id()) != rank ||
         H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
         complain(path, "a data set of another shape", expected);
     if (size[0] > static_cast<hsize_t>(std::numeric_limits<Index>::max()))
-        complain(path, std::to_string(size[0]) + " rows", "at most 2147483647");
+        complain(path, std::to_string(size[0]) + " rows", "at most 2147483647 rows");
     const hsize_t count = size[0] * width;
     if (!can_hold(count * bytes) || !all_stored(data, type, static_cast<hssize_t>(count)))
         complain(path, "fewer bytes than " + std::to_string(size[0]) + " rows need", expected);
     void* const values = place(static_cast<std::size_t>(size[0]));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-        complain(path, "values that cannot be read", expected);
+        complain(path, "values that cannot be read", expected,
+                 "the data set is damaged, or the HDF5 library lacks the filter that compressed it");
+}
+
+void Hdf5File::expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items,
+                              const std::string& of) const {
+    const auto most = static_cast<Index>(items);
+    for (std::size_t i = 0; i < offset.size(); ++i) {
+        const Index least = i == 0 ? 0 : offset[i - 1];
+        if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
+        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i) + of;
+        if (i == 0) complain(path, found, "0, the first offset");
+        if (offset[i] > most) complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
+        complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");
+    }
 }
 
 Index Hdf5File::integer(const std::string& path) const {

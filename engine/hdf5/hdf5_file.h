@@ -5,6 +5,7 @@
 #include <hdf5.h>
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,11 +57,16 @@ hid_t hdf5_type(NumberType type);
 /// object is missing or has another type than expected, except text_or_nothing().
 class Hdf5File {
 public:
-    /// Opens the file for reading. `expected` describes the expected file in error messages.
-    Hdf5File(const std::filesystem::path& path, const std::string& expected);
+    /// Opens the file for reading. `expected` describes the expected file in error messages. `hint` ends the error
+    /// messages that have no hint of their own.
+    Hdf5File(const std::filesystem::path& path, const std::string& expected, std::string hint = {});
 
     bool has(const std::string& path) const;
     void expect_group(const std::string& path, const std::string& hint = {}) const;
+    /// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items. `of` ends
+    /// the found value in the message, for example " of body 2".
+    void expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items,
+                        const std::string& of = {}) const;
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all values must be finite
@@ -83,7 +89,7 @@ private:
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;
 
     QuietHdf5 quiet_;
-    std::string name_;
+    std::string name_, hint_;
     Hdf5Handle file_;
 };
 

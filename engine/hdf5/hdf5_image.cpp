@@ -28,7 +28,7 @@ void Hdf5Image::expect(bool good, const std::string& path) const {
                   .field = path,
                   .found = "not enough memory",
                   .expected = "enough memory for the file",
-                  .hint = {}}
+                  .hint = "close other programs, then try again"}
             .raise();
 }
 

@@ -9,7 +9,7 @@ std::map<int, std::size_t> count_labels(const Mesh& mesh) {
 }
 
 std::string expected_label(const Mesh& mesh) {
-    if (mesh.label.empty()) return "a mesh with labels";
+    if (mesh.label.empty()) return "no label, because the mesh has no labels";
     constexpr std::size_t most = 20;
     std::string text = "one of the labels of the mesh: ";
     std::size_t listed = 0;

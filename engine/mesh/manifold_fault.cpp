@@ -47,8 +47,9 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
         std::size_t last = first;
         while (last < sides.size() && sides[last].node == sides[first].node) ++last;
         if (last - first != 2)
-            return "the edge of nodes " + std::to_string(sides[first].node[0]) + " and " +
-                   std::to_string(sides[first].node[1]) + " has " + std::to_string(last - first) + " triangles";
+            return "an edge between nodes " + std::to_string(sides[first].node[0]) + " and " +
+                   std::to_string(sides[first].node[1]) + " with " + std::to_string(last - first) +
+                   " boundary triangles instead of 2";
         for (std::size_t end = 0; end < 2; ++end) rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
         first = last;
     }
@@ -60,7 +61,8 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
     std::ranges::sort(corners);
     for (std::size_t c = 1; c < corners.size(); ++c)
         if (corners[c].first == corners[c - 1].first && corners[c].second != corners[c - 1].second)
-            return "node " + std::to_string(corners[c].first) + " joins parts that share no edge there";
+            return "node " + std::to_string(corners[c].first) +
+                   ", where parts of the boundary meet that share no edge at this node";
     return {};
 }
 

@@ -24,12 +24,13 @@ RawMesh read_raw(const std::string& path, bool surface) {
     const bool known =
         extension == ".msh" || extension == ".vtk" || (surface && (extension == ".obj" || extension == ".stl"));
     if (!known)
-        Complaint{path,
-                  {},
-                  "file name",
-                  extension.empty() ? "no ending" : extension,
-                  surface ? ".msh, .vtk, .node, .ele, .obj or .stl" : ".msh, .vtk, .node or .ele",
-                  {}}
+        Complaint{
+            path,
+            {},
+            "file name",
+            extension.empty() ? "no extension" : "the extension " + extension,
+            surface ? "the extension .msh, .vtk, .node, .ele, .obj or .stl" : "the extension .msh, .vtk, .node or .ele",
+            "export the mesh in one of these formats"}
             .raise();
     FileReader reader(path);
     if (extension == ".msh") return read_gmsh(reader);
@@ -82,9 +83,9 @@ Mesh read(const std::string& path) {
                   {},
                   {},
                   "no tetrahedra",
-                  "at least one",
-                  "it has " + std::to_string(raw.triangles.size()) + " triangles and " + std::to_string(raw.others) +
-                      " other elements"}
+                  "at least one tetrahedron",
+                  "the file has " + std::to_string(raw.triangles.size()) + " triangles and " +
+                      std::to_string(raw.others) + " other elements; export the mesh with its tetrahedra"}
             .raise();
     return take_tetrahedra(raw);
 }
@@ -98,11 +99,16 @@ SurfaceMesh read_surface(const std::string& path) {
                   {},
                   std::to_string(raw.curved_triangles) + " triangles of second or higher order",
                   "linear triangles",
-                  {}}
+                  "export the surface with linear elements"}
             .raise();
     if (raw.triangles.empty())
         Complaint{
-            path, {}, {}, "no triangles", "at least one", "it has " + std::to_string(raw.others) + " other elements"}
+            path,
+            {},
+            {},
+            "no triangles",
+            "at least one triangle",
+            "the file has " + std::to_string(raw.others) + " elements of other types; export the surface as triangles"}
             .raise();
     SurfaceMesh surface;
     surface.nodes = drop_unused(raw.nodes, raw.triangles);

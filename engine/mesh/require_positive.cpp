@@ -8,7 +8,7 @@
 namespace skerry::mesh {
 
 void require_positive(const Mesh& mesh, const std::string& what) {
-    if (mesh.tetrahedra.empty()) Complaint{what, "mesh", {}, "no tetrahedra", "at least one", {}}.raise();
+    if (mesh.tetrahedra.empty()) Complaint{what, "mesh", {}, "no tetrahedra", "at least one tetrahedron", {}}.raise();
     require_valid(mesh, what);
     std::size_t inverted = 0, flat = 0, first = mesh.tetrahedra.size();
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
@@ -23,8 +23,8 @@ void require_positive(const Mesh& mesh, const std::string& what) {
     std::ostringstream object, found, hint;
     object << "tetrahedron " << first << " (nodes " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << ')';
     found << six_volumes(mesh, t) / 6 << " m^3";
-    hint << "of " << mesh.tetrahedra.size() << " tetrahedra " << inverted << " are inverted and " << flat
-         << " flat; counted from 0";
+    hint << "inverted: " << inverted << ", flat: " << flat << " of " << mesh.tetrahedra.size()
+         << " tetrahedra, numbered from 0; repair the mesh with skerry inspect MESH --repair OUT.msh";
     Complaint{what, object.str(), "rest volume", found.str(), "a positive volume", hint.str()}.raise();
 }
 

@@ -60,9 +60,12 @@ Orientation orientation(const Mesh& mesh, const std::array<Index, 4>& tetrahedro
 void require_valid(const Mesh& mesh, const std::string& what) {
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
-            Complaint{
-                what, "node " + std::to_string(n), "position", "a number that is not finite", "finite coordinates (m)",
-                {}}
+            Complaint{what,
+                      "node " + std::to_string(n),
+                      "position",
+                      "a coordinate that is not finite",
+                      "finite coordinates (m)",
+                      {}}
                 .raise();
     const auto node_count = static_cast<Index>(std::min<std::size_t>(mesh.nodes.size(), 0x7fffffff));
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
@@ -70,7 +73,12 @@ void require_valid(const Mesh& mesh, const std::string& what) {
         for (std::size_t a = 0; a < 4; ++a) {
             const std::string object = "tetrahedron " + std::to_string(e);
             if (t[a] < 0 || t[a] >= node_count)
-                Complaint{what, object, "node", std::to_string(t[a]), "0 to " + std::to_string(node_count - 1), {}}
+                Complaint{what,
+                          object,
+                          "node",
+                          std::to_string(t[a]),
+                          "a node index from 0 to " + std::to_string(node_count - 1),
+                          {}}
                     .raise();
             if (std::find(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(a), t[a]) !=
                 t.begin() + static_cast<std::ptrdiff_t>(a))

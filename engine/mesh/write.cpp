@@ -12,7 +12,12 @@ namespace skerry::mesh {
 void write(const std::string& path, const Mesh& mesh) {
     const std::filesystem::path file(path);
     if (file.extension() != ".msh")
-        Complaint{path, {}, "file name", file.has_extension() ? file.extension().string() : "no ending", ".msh", {}}
+        Complaint{path,
+                  {},
+                  "file name",
+                  file.has_extension() ? "the extension " + file.extension().string() : "no extension",
+                  "the extension .msh",
+                  {}}
             .raise();
     require_valid(mesh, path);
     write_file(file, [&](std::ostream& out) {

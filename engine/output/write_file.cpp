@@ -15,9 +15,15 @@ std::string what(int error) {
     return std::generic_category().message(error);
 }
 
-[[noreturn]] void complain(const std::filesystem::path& place, const std::string& found, const std::string& expected) {
-    Complaint{.file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = {}}
+[[noreturn]] void complain(const std::filesystem::path& place, const std::string& found, const std::string& expected,
+                           const std::string& hint) {
+    Complaint{
+        .file = place.string(), .object = "output", .field = {}, .found = found, .expected = expected, .hint = hint}
         .raise();
+}
+
+std::string failure(const std::string& message) {
+    return "the error \"" + message + "\"";
 }
 
 /// Removes the unfinished file at the end of its scope, also if an exception is thrown.
@@ -39,7 +45,7 @@ const char* name_of(std::filesystem::file_type type) {
         case std::filesystem::file_type::socket:
             return "a socket";
         default:
-            return "something that is not a regular file";
+            return "an object that is not a regular file";
     }
 }
 
@@ -56,9 +62,9 @@ Target target_of(const std::filesystem::path& file) {
     const fs::file_status found = fs::status(file, error);
     if (found.type() == fs::file_type::character || found.type() == fs::file_type::fifo) return {file, true};
     if (fs::exists(found) && found.type() != fs::file_type::regular)
-        complain(file, name_of(found.type()), "a file that can be written");
+        complain(file, name_of(found.type()), "a file that can be written", "choose another path");
     if (found.type() == fs::file_type::none)
-        complain(file, "\"" + error.message() + "\"", "a file that can be written");
+        complain(file, failure(error.message()), "a file that can be written", "check the path and its permissions");
     Target target{file};
     constexpr int most_links = 40;
     for (int links = 0; links < most_links && fs::is_symlink(fs::symlink_status(target.path, error)); ++links) {
@@ -69,7 +75,8 @@ Target target_of(const std::filesystem::path& file) {
     // Renaming would also replace a write-protected file. Such a file is refused, because it was protected on purpose.
     constexpr fs::perms any_may_write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
     if ((found.permissions() & any_may_write) == fs::perms::none || access(target.path.c_str(), W_OK) != 0)
-        complain(file, "a write-protected file", "a file that can be replaced");
+        complain(file, "a write-protected file", "a file that can be replaced",
+                 "choose another path or change the permissions of the file");
     target.permissions = found.permissions();
     return target;
 }
@@ -84,8 +91,8 @@ void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (std::filesystem::is_directory(folder)) return;
-    complain(folder, error ? "\"" + error.message() + "\"" : "something that is no folder",
-             "a folder that exists or can be made");
+    complain(folder, error ? failure(error.message()) : "a file that is not a folder",
+             "a folder that exists or can be created", "choose another path or check the permissions");
 }
 
 void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream&)> write) {
@@ -94,17 +101,21 @@ void write_file(const std::filesystem::path& file, FunctionRef<void(std::ostream
     const std::filesystem::path part = std::filesystem::path(target.path) += ".part";
     errno = 0;
     std::ofstream out(target.takes_bytes ? target.path : part, std::ios::binary | std::ios::trunc);
-    if (!out) complain(file, "\"" + what(errno) + "\"", "a file that can be written");
+    if (!out) complain(file, failure(what(errno)), "a file that can be written", "check the path and its permissions");
     const Temporary temporary{target.takes_bytes ? std::filesystem::path() : part};
     write(out);
     out.close();
-    if (!out) complain(file, "\"" + what(errno) + "\" while writing", "enough space for the whole file");
+    if (!out)
+        complain(file, failure(what(errno)) + " while writing", "enough space for the whole file",
+                 "free disk space or choose another path");
     if (target.takes_bytes) return;
     std::error_code error;
     if (target.permissions != std::filesystem::perms::unknown)
         std::filesystem::permissions(temporary.path, target.permissions, error);
     if (!error) std::filesystem::rename(temporary.path, target.path, error);
-    if (error) complain(file, "\"" + error.message() + "\"", "a file that can be replaced");
+    if (error)
+        complain(file, failure(error.message()), "a file that can be replaced",
+                 "check the permissions of the file and its folder");
 }
 
 }  // namespace skerry

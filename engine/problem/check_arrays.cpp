@@ -1,6 +1,7 @@
 #include "engine/problem/check_arrays.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 
 #include "skerry/error.h"
@@ -20,15 +21,24 @@ void check_arrays(const ContactProblem& problem) {
     };
     const auto values = [](const auto& column) { return std::to_string(column.size()) + " values"; };
     const std::size_t count = problem.q.size(), blocks = problem.block.size();
-    expect(problem.mu.size() == count, "mu", values(problem.mu), std::to_string(count));
-    expect(problem.row_offset.size() == count + 1, "row_offset", values(problem.row_offset), std::to_string(count + 1));
-    expect(problem.row_offset.front() == 0 && std::is_sorted(problem.row_offset.begin(), problem.row_offset.end()),
-           "row_offset", "offsets that do not ascend from 0", "offsets in ascending order");
-    expect(problem.column.size() == blocks && static_cast<std::size_t>(problem.row_offset.back()) == blocks, "column",
-           values(problem.column), std::to_string(blocks) + " (blocks)");
+    expect(problem.mu.size() == count, "mu", values(problem.mu), std::to_string(count) + ", one per contact");
+    expect(problem.row_offset.size() == count + 1, "row_offset", values(problem.row_offset),
+           std::to_string(count + 1) + ", one more than contacts");
+    expect(problem.row_offset.front() == 0, "row_offset", std::to_string(problem.row_offset.front()) + " at entry 0",
+           "0, the first offset");
+    const auto fall = std::adjacent_find(problem.row_offset.begin(), problem.row_offset.end(), std::greater<>());
+    if (fall != problem.row_offset.end())
+        expect(false, "row_offset",
+               std::to_string(fall[1]) + " at entry " + std::to_string(fall - problem.row_offset.begin() + 1),
+               "an offset >= " + std::to_string(fall[0]) + ", because offsets ascend");
+    expect(problem.column.size() == blocks, "column", values(problem.column),
+           std::to_string(blocks) + ", one per block");
+    expect(static_cast<std::size_t>(problem.row_offset.back()) == blocks, "row_offset",
+           std::to_string(problem.row_offset.back()) + " as the last offset",
+           std::to_string(blocks) + ", the number of blocks");
     for (const Index column : problem.column)
         expect(column >= 0 && static_cast<std::size_t>(column) < count, "column", std::to_string(column),
-               "the index of a contact");
+               "the index of a contact, 0 to " + std::to_string(static_cast<Index>(count) - 1));
 }
 
 }  // namespace skerry

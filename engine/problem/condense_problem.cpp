@@ -66,8 +66,9 @@ MassFault asymmetry(const MassParts& parts, Index part, const SparseMatrix& mass
     for (Index column = 0; column < difference.outerSize(); ++column)
         for (SparseMatrix::InnerIterator it(difference, column); it; ++it)
             if (it.value() * it.value() > rounding * rounding * std::abs(diagonal[it.row()] * diagonal[column]))
-                return {"a matrix that is not symmetric at " + freedom_text(parts, part, static_cast<Index>(it.row())) +
-                            " and " + freedom_text(parts, part, column),
+                return {"a matrix that is not symmetric in the entries of " +
+                            freedom_text(parts, part, static_cast<Index>(it.row())) + " and " +
+                            freedom_text(parts, part, column),
                         "a symmetric matrix with both triangles stored"};
     return {};
 }
@@ -78,7 +79,8 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     const Eigen::VectorXd diagonal = mass.diagonal();
     for (Index i = 0; i < diagonal.size(); ++i)
         if (!(diagonal[i] > 0))
-            return {std::to_string(diagonal[i]) + " on the diagonal of " + freedom_text(parts, part, i), expected};
+            return {std::to_string(diagonal[i]) + " as the diagonal entry of " + freedom_text(parts, part, i),
+                    expected};
     factors.compute(mass);
     // A pivot of the factorisation that is as small as rounding errors indicates a singular matrix.
     constexpr Real rounding = 1e-14;
@@ -86,7 +88,7 @@ MassFault factorise(const MassParts& parts, Index part, const SparseMatrix& mass
     bool definite = factors.info() == Eigen::Success;
     if (definite) definite = (factors.vectorD().array() > rounding * in_order.array()).all();
     if (definite) return {};
-    return {"a matrix that is not positive definite in the block of " + freedom_text(parts, part, 0), expected};
+    return {"a matrix that is not positive definite in the block with " + freedom_text(parts, part, 0), expected};
 }
 
 /// Adds the contributions of one independent part of the mass matrix M to W and q of the contact problem.

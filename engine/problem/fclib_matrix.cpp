@@ -22,8 +22,7 @@ void read_compressed(const Hdf5File& file, const std::string& group, bool by_row
                 by_rows ? "rows + 1" : "columns + 1");
     expect_size(file, group + "/i", place.size(), static_cast<std::size_t>(nzmax), "nzmax");
     expect_size(file, group + "/x", value.size(), static_cast<std::size_t>(nzmax), "nzmax");
-    if (begin.front() != 0 || begin.back() > nzmax || !std::is_sorted(begin.begin(), begin.end()))
-        file.complain(group + "/p", "offsets that do not ascend from 0 to at most nzmax", "offsets in ascending order");
+    file.expect_offsets(group + "/p", begin, static_cast<std::size_t>(nzmax));
     matrix.entry.reserve(value.size());
     for (Index line = 0; line < lines; ++line)
         for (Index k = begin[line]; k < begin[line + 1]; ++k) {
@@ -72,7 +71,7 @@ MatrixEntries read_matrix(const Hdf5File& file, const std::string& group) {
     const Index nz = file.integer(group + "/nz");
     if (nz < -2)
         file.complain(group + "/nz", std::to_string(nz),
-                      "-1 (compressed columns), -2 (compressed rows) or the number of triplets");
+                      "-1 (compressed columns), -2 (compressed rows) or a number of triplets >= 0");
     MatrixEntries matrix{size.rows, size.columns, {}};
     if (nz >= 0)
         read_triplets(file, group, nz, matrix);

@@ -41,7 +41,7 @@ ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> 
                   .object = "problem " + problem.name,
                   .field = "reaction",
                   .found = std::to_string(reaction.size()) + " values",
-                  .expected = std::to_string(problem.q.size()),
+                  .expected = std::to_string(problem.q.size()) + ", one per contact",
                   .hint = {}}
             .raise();
     return measure_problem(problem, reaction, Friction::cone);

@@ -17,7 +17,8 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
                       .object = "problem " + problem.name,
                       .field = "contacts",
                       .found = std::to_string(contacts[i]),
-                      .expected = "contacts of the problem in ascending order",
+                      .expected =
+                          "contact indices from 0 to " + std::to_string(problem.contacts() - 1) + " in ascending order",
                       .hint = {}}
                 .raise();
         previous = contacts[i];

@@ -54,16 +54,16 @@ void read_local(const Hdf5File& file, ContactProblem& problem) {
     expect_three_dimensions(file, root);
     for (const char* part : {"/V", "/R"})
         if (file.has(root + part))
-            file.complain(root + part, "equality constraints", "contacts only",
-                          "Skerry does not solve problems with equality constraints");
+            file.complain(root + part, "equality constraints", "a problem without equality constraints",
+                          "Skerry solves only contact constraints; remove the equality constraints");
     const auto [rows, columns] = read_matrix_size(file, root + "/W");
     if (rows < 3 || rows % 3 != 0) file.complain(root + "/W/m", std::to_string(rows), "a positive multiple of 3");
     if (columns != rows)
-        file.complain(root + "/W/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
+        file.complain(root + "/W/n", std::to_string(columns), std::to_string(rows) + ", because the matrix is square");
     MatrixEntries w = read_matrix(file, root + "/W");
     file.expect_group(root + "/vectors");
     problem.q = read_vectors3(file, root + "/vectors/q", rows, "rows of W");
-    problem.mu = read_friction(file, root + "/vectors/mu", rows / 3, "a third of the rows of W");
+    problem.mu = read_friction(file, root + "/vectors/mu", rows / 3, "one per contact, a third of the rows of W");
     problem.description = file.text_or_nothing(root + "/info/description");
     gather_blocks(blocks_of(std::move(w.entry)), problem);
 }
@@ -72,13 +72,13 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
     const std::string root = "/fclib_global";
     expect_three_dimensions(file, root);
     if (file.has(root + "/G") && read_matrix_size(file, root + "/G").columns > 0)
-        file.complain(root + "/G", "equality constraints", "contacts only",
-                      "Skerry does not solve problems with equality constraints");
+        file.complain(root + "/G", "equality constraints", "a problem without equality constraints",
+                      "Skerry solves only contact constraints; remove the equality constraints");
     const auto [rows, columns] = read_matrix_size(file, root + "/M");
     const auto [freedoms, relative] = read_matrix_size(file, root + "/H");
     if (rows < 1) file.complain(root + "/M/m", std::to_string(rows), "at least 1 degree of freedom");
     if (columns != rows)
-        file.complain(root + "/M/n", std::to_string(columns), std::to_string(rows) + " (square, as m)");
+        file.complain(root + "/M/n", std::to_string(columns), std::to_string(rows) + ", because the matrix is square");
     if (freedoms != rows) file.complain(root + "/H/m", std::to_string(freedoms), std::to_string(rows) + " (rows of M)");
     if (relative < 3 || relative % 3 != 0)
         file.complain(root + "/H/n", std::to_string(relative), "a positive multiple of 3");
@@ -89,7 +89,8 @@ void read_global(const Hdf5File& file, ContactProblem& problem) {
     global.force = file.reals(root + "/vectors/f");
     expect_size(file, root + "/vectors/f", global.force.size(), static_cast<std::size_t>(rows), "rows of M");
     problem.q = read_vectors3(file, root + "/vectors/w", relative, "columns of H");
-    problem.mu = read_friction(file, root + "/vectors/mu", relative / 3, "a third of the columns of H");
+    problem.mu =
+        read_friction(file, root + "/vectors/mu", relative / 3, "one per contact, a third of the columns of H");
     problem.description = file.text_or_nothing(root + "/info/description");
     if (const MassFault fault = condense_problem(global, problem); !fault.found.empty())
         file.complain(root + "/M", fault.found, fault.expected);
@@ -102,8 +103,8 @@ void expect_finite(const Hdf5File& file, const std::string& root, const ContactP
         return std::all_of(entries.begin(), entries.end(), [](const auto& e) { return e.allFinite(); });
     };
     if (!finite(problem.block) || !finite(problem.q))
-        file.complain(root + "/vectors", "values for which W or q is not finite",
-                      "values for which W and q are finite");
+        file.complain(root + "/vectors", "numbers so large that W or q is not finite",
+                      "numbers for which W and q are finite", "check the units of the numbers");
 }
 
 }  // namespace
@@ -117,7 +118,8 @@ ContactProblem read_problem(const std::filesystem::path& path) {
         read_global(file, problem);
         expect_finite(file, "/fclib_global", problem);
     } else {
-        file.expect_group("/fclib_local", "the file contains no FCLIB contact problem, local or global");
+        file.expect_group("/fclib_local",
+                          "the file contains no FCLIB contact problem: it has neither a local nor a global group");
         read_local(file, problem);
         expect_finite(file, "/fclib_local", problem);
     }

@@ -114,10 +114,11 @@ void check(const ContactProblem& problem, const ProblemSettings& settings) {
                   .hint = {}}
             .raise();
     };
-    if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), ">= 0");
-    if (settings.max_iterations < 1) refuse("max_iterations", std::to_string(settings.max_iterations), ">= 1");
+    if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), "a number >= 0");
+    if (settings.max_iterations < 1)
+        refuse("max_iterations", std::to_string(settings.max_iterations), "an integer >= 1");
     if (!(settings.relaxation > 0 && settings.relaxation < 2))
-        refuse("relaxation", std::to_string(settings.relaxation), "> 0 and < 2");
+        refuse("relaxation", std::to_string(settings.relaxation), "a number > 0 and < 2");
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
         two_coefficients |= step.contacts.static_friction[i] != step.contacts.dynamic_friction[i];
     if (two_coefficients)
         text +=
-            "; static friction differs from dynamic friction, and mu is the dynamic one, so the engine's solution does "
+            "; static friction differs from dynamic friction, and mu is the coefficient of dynamic friction, so the "
+            "engine's solution does "
             "not solve this problem";
     if (settings.friction == Friction::pyramid)
         text += "; the engine's solution is for the friction pyramid, not for the cone";

@@ -85,7 +85,8 @@ void write_problem(const ContactProblem& problem, const std::filesystem::path& f
     };
     if (problem.q.empty()) refuse("q", "no contacts", "at least one contact");
     if (!reaction.empty() && reaction.size() != problem.q.size())
-        refuse("reaction", std::to_string(reaction.size()) + " values", std::to_string(problem.q.size()));
+        refuse("reaction", std::to_string(reaction.size()) + " values",
+               std::to_string(problem.q.size()) + ", one per contact");
     Hdf5Image image(file.string());
     image.put("/fclib_local/spacedim", 3);
     put_matrix(problem, image);

@@ -26,7 +26,8 @@ const Kernels& choose_kernels(std::span<const KernelSet> sets, std::string_view 
         if (set.runs) last = set.kernels;
         if (wanted != set.kernels->instruction_set) continue;
         if (set.runs) return *set.kernels;
-        hint = "this build contains it, but this processor or operating system does not support it";
+        hint =
+            "this build contains this instruction set, but the processor or the operating system does not support it";
     }
     if (wanted.empty()) return *last;
     Complaint{.file = {},

@@ -72,7 +72,8 @@ private:
     void check(std::size_t number, const std::array<Index, 3>& triangle, std::size_t nodes) const {
         for (Index corner : triangle)
             if (corner < 0 || corner >= static_cast<Index>(nodes))
-                refuse(object, "triangles", "node " + std::to_string(corner), "the index of a node of the mesh");
+                refuse(object, "triangles", "node " + std::to_string(corner),
+                       "the index of a node of the mesh, 0 to " + std::to_string(static_cast<Index>(nodes) - 1));
         // A triangle with two equal nodes is refused: inside the engine it stands for the core of a round body.
         const auto [a, b, c] = triangle;
         if (a == b || b == c || c == a)
@@ -129,7 +130,7 @@ void validate(const Settings& settings) {
     if (settings.step_size)
         require(*settings.step_size > 0, "settings", "step_size", *settings.step_size, "a time > 0 (s)");
     require(settings.threads >= 0, "settings", "threads", settings.threads,
-            "a number of threads >= 0 (0: those of the caller's task arena)");
+            "a number of threads >= 0 (0: as many as the caller's task arena has)");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,
             "a number > 0 and < 1");
     require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
@@ -138,11 +139,11 @@ void validate(const Settings& settings) {
     require(settings.theta >= 0.5 && settings.theta <= 1, "settings", "theta", settings.theta,
             "a number from 0.5 to 1");
     require(settings.theta == 1 || settings.integrator == Integrator::symplectic_euler, "settings", "theta",
-            settings.theta, "1 with this integrator; smaller values need symplectic_euler");
+            settings.theta, "1 with this integrator (smaller values require symplectic_euler)");
     require(settings.implicit_step >= 0 && std::isfinite(settings.implicit_step), "settings", "implicit_step",
             settings.implicit_step, "a time >= 0 (s)");
     require(settings.implicit_step == 0 || settings.integrator == Integrator::symplectic_euler, "settings",
-            "implicit_step", settings.implicit_step, "0 with this integrator; other values need symplectic_euler");
+            "implicit_step", settings.implicit_step, "0 with this integrator (other values require symplectic_euler)");
 }
 
 void validate(const Tuning& tuning) {
@@ -170,8 +171,8 @@ void validate(const MaterialSettings& material) {
     const Real wave_speed = std::sqrt(material.young_modulus) / std::sqrt(material.density);
     if (!(wave_speed <= speed_of_light))
         refuse(object, "young_modulus, density",
-               shown(material.young_modulus) + " Pa and " + shown(material.density) + " kg/m^3, with a wave speed of " +
-                   shown(wave_speed) + " m/s",
+               shown(material.young_modulus) + " Pa and " + shown(material.density) +
+                   " kg/m^3, which give a wave speed of " + shown(wave_speed) + " m/s",
                "a wave speed below the speed of light (3e8 m/s)");
     require(material.friction >= 0, object, "friction", material.friction, "a number >= 0");
     const Real dynamic = material.dynamic_friction.value_or(material.friction);
@@ -224,12 +225,13 @@ void require_mesh(const Mesh& mesh, const std::string& object) {
     if (mesh.tetrahedra.empty()) refuse(object, "mesh", "no tetrahedra", "at least one tetrahedron");
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (!mesh.nodes[n].allFinite())
-            refuse(object, "mesh", "node " + std::to_string(n) + " at " + shown(mesh.nodes[n]), "finite coordinates");
+            refuse(object, "mesh", "node " + std::to_string(n) + " at " + shown(mesh.nodes[n]),
+                   "finite coordinates (m)");
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
         for (Index corner : mesh.tetrahedra[e])
             if (corner < 0 || corner >= static_cast<Index>(mesh.nodes.size()))
                 refuse(object, "mesh", "tetrahedron " + std::to_string(e) + " with node " + std::to_string(corner),
-                       "indices of nodes of the mesh");
+                       "node indices from 0 to " + std::to_string(static_cast<Index>(mesh.nodes.size()) - 1));
     mesh::require_positive(mesh, object);
     require_apart(mesh, object);
 }
@@ -284,7 +286,7 @@ void validate(const Motion& motion, const std::string& object) {
     require_finite(object, "motion.velocity", motion.velocity);
     require_finite(object, "motion.angular_velocity", motion.angular_velocity);
     if (!motion.keys.empty() && (!motion.velocity.isZero(0) || !motion.angular_velocity.isZero(0)))
-        refuse(object, "motion", "keys and a velocity", "either keys or a velocity");
+        refuse(object, "motion", "both keys and a velocity", "either keys or a velocity");
     for (std::size_t k = 0; k < motion.keys.size(); ++k) {
         const MotionKey& key = motion.keys[k];
         require_finite(object, "motion.keys.position", key.position);
@@ -303,9 +305,10 @@ void validate_step(const Model& model, Index body, const std::string& name) {
     if (step > 0 && (std::isfinite(step) || model.has_frame(b))) return;
     const auto material = static_cast<std::size_t>(model.bodies.material[b]);
     refuse(titled("body", name), "mesh, material",
-           "edges of " + shown(model.bodies.mean_edge[b]) + " m, " + shown(model.materials.young_modulus[material]) +
-               " Pa and " + shown(model.materials.constants[material].density) + " kg/m^3",
-           "a mesh and a material with a finite stable step > 0; theirs is " + shown(step) + " s");
+           "a mean edge length of " + shown(model.bodies.mean_edge[b]) + " m, a Young's modulus of " +
+               shown(model.materials.young_modulus[material]) + " Pa and a density of " +
+               shown(model.materials.constants[material].density) + " kg/m^3",
+           "values with a finite stable step > 0; these give " + shown(step) + " s");
 }
 
 void validate(const Motion& motion, const Vec3& pivot) {

@@ -67,7 +67,7 @@ void WorldState::require_between_steps(const char* call) const {
               .field = {},
               .found = "a call during advance()",
               .expected = "a call between two calls of advance()",
-              .hint = "a callback run by advance() may read the world but must not add, remove or advance"}
+              .hint = "a callback run by advance() may read the world but must not change or advance it"}
         .raise();
 }
 
@@ -123,7 +123,7 @@ WorldState& World::StateOwner::operator*() const {
                   .field = {},
                   .found = "a moved-from world",
                   .expected = "a valid world",
-                  .hint = "use the world that it was moved to"}
+                  .hint = "use the world to which the content of this world was moved"}
             .raise();
     return *owned_;
 }

@@ -97,8 +97,9 @@ std::string DynamicsChoice::message() const {
     const bool is_implicit = dynamics == BodyDynamics::implicit_elastic;
     std::string text(name_of(dynamics));
     if (e.reason == DynamicsReason::given) return text;
-    if (e.reason == DynamicsReason::self_contact) return text + ", because it can touch itself";
-    if (e.reason == DynamicsReason::strain) text += ", because it may deform by " + short_text(100 * e.strain) + " %";
+    if (e.reason == DynamicsReason::self_contact) return text + ", because the body can touch itself";
+    if (e.reason == DynamicsReason::strain)
+        text += ", because the body may deform by " + short_text(100 * e.strain) + " %";
     text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +
             (is_implicit ? "; explicit: " + way(e.explicit_cost, e.explicit_step) : "; implicit: " + implicit);
     if (is_implicit && e.damped_above > 0)
@@ -114,17 +115,17 @@ std::string StepReport::message() const {
         case StepStatus::ok:
             return {};
         case StepStatus::stopped:
-            return "stopped between two steps on request";
+            return "stopped on request, between two steps";
         case StepStatus::not_finite:
             return "the step was not taken: " + who + where +
                    " would get a velocity that is not finite; check its loads, masses and initial velocities";
         case StepStatus::too_fast:
-            return "the step was not taken: " + who + where + " would deform by " + short_text(value) +
+            return "the step was not taken: " + who + where + " would deform by a strain of " + short_text(value) +
                    " in one step, even in 1/1024 of the stable step; lower its velocities and loads";
         case StepStatus::too_far:
             return "the step was not taken: " + who +
                    " is so far from the origin that neighbouring representable positions are " + short_text(value) +
-                   " of its mean edge length apart; place the origin near the bodies, as in a local frame of the scene";
+                   " of its mean edge length apart; use a local frame whose origin is near the bodies";
         case StepStatus::unsolved:
             return "the step was not taken: Newton's method for large strain did not converge for " + who +
                    ", even with a thousandth of the step; check its loads, velocities and shape, or set its dynamics "

@@ -21,11 +21,11 @@ TEST_CASE("a stage that is slipped into the step and looks at what it has not de
         graph.compile();
         CHECK_THROWS_WITH(graph.run_inline(), Catch::Equals(message));
     };
-    fails_with("the stage test/liar reads nodes.velocity and has not declared it",
+    fails_with("the stage test/liar reads nodes.velocity without having declared this access",
                [](const WorldState& w) { (void)w.model.nodes.velocity.span(); });
-    fails_with("the stage test/liar writes nodes.mass and has not declared it",
+    fails_with("the stage test/liar writes nodes.mass without having declared this access",
                [](WorldState& w) { w.model.nodes.mass.clear(); });
-    fails_with("the stage test/liar reads contacts.gap and has not declared it",
+    fails_with("the stage test/liar reads contacts.gap without having declared this access",
                [](const WorldState& w) { (void)w.scratch.contacts.gap.size(); });
     world.graph.stage(
         "test/late", [&world](std::span<const Real>) { world.model.bodies.still_time.clear(); },

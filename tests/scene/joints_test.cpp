@@ -313,7 +313,7 @@ TEST_CASE("what joints cannot join is refused by name", "[scene][joints]") {
     };
     refused({.first = soft}, "noodle");
     refused({.first = first, .second = soft}, "noodle");
-    refused({.first = first, .second = first}, "the first body again");
+    refused({.first = first, .second = first}, "found the first body of the joint");
     refused({.kind = JointKind::hinge, .first = first, .axis = {0, 0, 0}}, "axis");
     refused({.first = first, .point = {NAN, 0, 0}}, "point");
     refused({.kind = JointKind::hinge, .first = first, .lower = 1.0, .upper = 0.0}, "lower");

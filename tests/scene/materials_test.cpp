@@ -195,10 +195,11 @@ TEST_CASE("materials of tetrahedra that do not fit the mesh are refused", "[scen
     CHECK_THAT(refusal(world, mesh, {.material = rubber, .materials = {{2, steel}}, .name = "beam"}),
                Contains("body 'beam': materials: found label 2, expected one of the labels of the mesh: 0, 1"));
     CHECK_THAT(refusal(world, mesh::ball(1, 2), {.material = rubber, .materials = {{0, steel}}}),
-               Contains("materials: found label 0, expected a mesh with labels"));
+               Contains("materials: found label 0, expected no label, because the mesh has no labels"));
     CHECK_THAT(refusal(world, mesh, {.material = rubber, .materials = {{1, foreign}}}),
-               Contains("add_body: material: found a handle to nothing"));
-    CHECK_THAT(refusal(world, mesh, {.material = rubber, .materials = {{1, {}}}}), Contains("a handle to nothing"));
+               Contains("add_body: material: found a handle without an object"));
+    CHECK_THAT(refusal(world, mesh, {.material = rubber, .materials = {{1, {}}}}),
+               Contains("a handle without an object"));
     Mesh short_of_one = mesh;
     short_of_one.label.pop_back();
     CHECK_THAT(refusal(world, short_of_one, {.material = rubber}),

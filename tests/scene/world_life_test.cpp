@@ -149,7 +149,8 @@ TEST_CASE("a handle of another world names nothing", "[scene]") {
     CHECK(one.world.alive(one.box[1]));
     CHECK_FALSE(one.world.alive(other.box[1]));
     CHECK_FALSE(one.world.alive(other.floor));
-    CHECK_THROWS_WITH(one.world.positions(other.box[1]), Catch::Contains("positions: body: found a handle to nothing"));
+    CHECK_THROWS_WITH(one.world.positions(other.box[1]),
+                      Catch::Contains("positions: body: found a handle without an object"));
     CHECK_THROWS_AS(one.world.remove(other.floor), SceneError);
     CHECK_THROWS_AS(one.world.add_body(mesh::box({1, 1, 1}, {1, 1, 1}), {.material = other.rubber}), SceneError);
     CHECK(one.world.bodies() == one.box);

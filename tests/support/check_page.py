@@ -169,7 +169,7 @@ POINTING = """
 
 KEYS = """
     key("?");
-    check(!find("help").hidden && /record a video/.test(find("help").textContent), "? lists the keys");
+    check(!find("help").hidden && /record the run as a video/.test(find("help").textContent), "? lists the keys");
     key("Escape");
     check(find("help").hidden, "Escape hides them");
     const wide = canvas.clientWidth;

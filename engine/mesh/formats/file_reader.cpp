@@ -12,6 +12,8 @@
 namespace skerry::mesh {
 namespace {
 
+constexpr const char* incomplete = "the file is incomplete; copy or export it again";
+
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
 }
@@ -33,16 +35,18 @@ std::string in_quotes(std::string_view text) {
 
 FileReader::FileReader(const std::string& path) : path_(path) {
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) Complaint{path, {}, {}, "no such file", "a mesh", {}}.raise();
+    if (!std::filesystem::exists(path, error))
+        Complaint{path, {}, {}, "no such file", "a mesh file", "check the path"}.raise();
     if (!std::filesystem::is_regular_file(path, error))
-        Complaint{path, {}, {}, "something that is not a regular file", "a mesh", {}}.raise();
+        Complaint{path, {}, {}, "a folder or device", "a mesh file", "check the path"}.raise();
     std::ifstream file(path, std::ios::binary);
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (file && !error) {
         data_.resize(static_cast<std::size_t>(size));
         file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
     }
-    if (!file || error) Complaint{path, {}, {}, "a file that cannot be read", "a mesh", {}}.raise();
+    if (!file || error)
+        Complaint{path, {}, {}, "a file that cannot be opened or read", "a mesh file", "check its permissions"}.raise();
 }
 
 void FileReader::set_row(const char* kind, std::size_t number, std::size_t count) {
@@ -70,7 +74,7 @@ std::string_view FileReader::filled_line(const char* expected) {
     }
     start_ = data_.size();
     last_was_binary_ = false;
-    complain({}, "the end of the file", expected);
+    complain({}, "the end of the file", expected, incomplete);
 }
 
 const std::vector<std::string_view>& FileReader::words_of(std::string_view text) {
@@ -96,7 +100,7 @@ std::string_view FileReader::word(const char* expected) {
     const std::string_view text = peek_word();
     last_was_binary_ = false;
     start_ = static_cast<std::size_t>(text.data() - data_.data());
-    if (text.empty()) complain({}, "the end of the file", expected);
+    if (text.empty()) complain({}, "the end of the file", expected, incomplete);
     position_ = start_ + text.size();
     return text;
 }
@@ -126,7 +130,7 @@ std::int64_t FileReader::parse_integer(std::string_view text, const char* field)
 void FileReader::begin_binary(std::size_t size, const char* field) {
     last_was_binary_ = true;
     start_ = position_;
-    if (size > remaining()) complain(field, "the end of the file", std::to_string(size) + " more bytes");
+    if (size > remaining()) complain(field, "the end of the file", std::to_string(size) + " more bytes", incomplete);
 }
 
 void FileReader::skip_bytes(std::size_t count, const char* field) {
@@ -145,20 +149,22 @@ bool FileReader::skip_behind(std::string_view mark) {
 }
 
 std::size_t FileReader::checked_count(std::int64_t count, std::size_t bytes, const char* field) const {
-    if (count < 0) complain(field, std::to_string(count), "a count that is not negative");
+    if (count < 0) complain(field, std::to_string(count), "a count >= 0");
     // The last row of the file may lack its line end, so one more row may fit than the number of bytes suggests.
     const std::size_t fits = remaining() / bytes + 1;
     if (static_cast<std::uint64_t>(count) > fits)
         complain(field, std::to_string(count), "at most " + std::to_string(fits),
-                 std::to_string(remaining()) + " bytes are left of the file");
+                 "only " + std::to_string(remaining()) +
+                     " bytes of the file are left; correct this count or export the file again");
     if (count > 0x7fffffff / 4)
-        complain(field, std::to_string(count), "at most " + std::to_string(0x7fffffff / 4), "indices have 32 bits");
+        complain(field, std::to_string(count), "at most " + std::to_string(0x7fffffff / 4),
+                 "indices have 32 bits; use a coarser mesh");
     return static_cast<std::size_t>(count);
 }
 
 Real FileReader::finite(Real value, const char* field) const {
     if (!std::isfinite(value))
-        complain(field, std::isnan(value) ? "nan" : "a number that is not finite", "a finite number");
+        complain(field, std::isnan(value) ? "nan" : "an infinite or too large number", "a finite number");
     return value;
 }
 

@@ -7,12 +7,15 @@ namespace skerry::mesh {
 
 void NodeNumbers::add(std::int64_t number, const FileReader& reader) {
     if (!row_.try_emplace(number, static_cast<Index>(row_.size())).second)
-        reader.complain("number", std::to_string(number) + " a second time", "a different number for each node");
+        reader.complain("number", std::to_string(number) + " a second time", "a number that no earlier node has",
+                        "renumber the nodes");
 }
 
 Index NodeNumbers::row(std::int64_t number, const FileReader& reader) const {
     const auto place = row_.find(number);
-    if (place == row_.end()) reader.complain("node", std::to_string(number), "the number of a node in the file");
+    if (place == row_.end())
+        reader.complain("node", std::to_string(number), "the number of a node that the file defines",
+                        "correct the number or add the missing node");
     return place->second;
 }
 

@@ -44,7 +44,9 @@ template <std::size_t N>
 void require_different(const std::array<Index, N>& nodes, const FileReader& reader) {
     for (std::size_t a = 0; a < N; ++a)
         for (std::size_t b = a + 1; b < N; ++b)
-            if (nodes[a] == nodes[b]) reader.complain("nodes", "the same node twice", "different nodes");
+            if (nodes[a] == nodes[b])
+                reader.complain("nodes", "the same node twice", "an element whose nodes all differ",
+                                "remove this element or correct its nodes");
 }
 
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.

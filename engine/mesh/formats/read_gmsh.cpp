@@ -25,7 +25,8 @@ bool is_curved_triangle(std::int64_t type) {
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
     if (is_curved_tetrahedron(type))
         reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
-                        "linear tetrahedra (type 4)", "in Gmsh: Mesh.ElementOrder = 1");
+                        "type 4, a linear tetrahedron",
+                        "in Gmsh set Mesh.ElementOrder = 1, then create the mesh again");
     if (type == 92 || type == 93) return type == 92 ? 64 : 125;
     const std::size_t count = type > 0 && type < static_cast<std::int64_t>(nodes_of_type.size())
                                   ? nodes_of_type[static_cast<std::size_t>(type)]
@@ -74,9 +75,9 @@ struct Header {
 /// Reads the lines of section $MeshFormat, up to and including $EndMeshFormat.
 Header read_header(FileReader& reader) {
     reader.set_section("$MeshFormat");
-    const std::string_view text = reader.filled_line("version, file type and data size");
+    const std::string_view text = reader.filled_line("three values: version, file type and data size");
     const std::vector<std::string_view>& words = reader.words_of(text);
-    if (words.size() != 3) reader.complain({}, in_quotes(text), "version, file type and data size");
+    if (words.size() != 3) reader.complain({}, in_quotes(text), "three values: version, file type and data size");
     const std::string version(words[0]);
     Header header;
     if (version == "4.1")
@@ -90,11 +91,12 @@ Header read_header(FileReader& reader) {
                        size = reader.parse_integer(words[2], "data size");
     if (type != 0 && type != 1) reader.complain("file type", std::to_string(type), "0 (ASCII) or 1 (binary)");
     header.binary = type == 1;
-    if (header.binary && size != 8) reader.complain("data size", std::to_string(size), "8 bytes");
+    if (header.binary && size != 8) reader.complain("data size", std::to_string(size), "8 (bytes per number)");
     if (header.binary) {
         const auto one = reader.binary<std::uint32_t>("byte order");
         if (one != 1 && one != 0x01000000)
-            reader.complain("byte order", std::to_string(one), "the integer 1 in one of the two byte orders");
+            reader.complain("byte order", std::to_string(one), "the integer 1, big-endian or little-endian",
+                            "the file is damaged; export it again");
         reader.set_foreign_bytes(one != 1);
     }
     if (const std::string_view end = reader.filled_line("$EndMeshFormat"); end != "$EndMeshFormat")
@@ -104,7 +106,8 @@ Header read_header(FileReader& reader) {
 
 void require_end(FileReader& reader, const std::string& mark) {
     if (const std::string_view end = reader.filled_line(mark.c_str()); end != mark)
-        reader.complain({}, in_quotes(end), mark, "the section may have more rows than it announces");
+        reader.complain({}, in_quotes(end), mark,
+                        "if the section has more rows than its header announces, correct the count in the header");
 }
 
 /// Sets the labels of the tetrahedra: the physical groups, which users number. If no tetrahedron is in a physical
@@ -132,7 +135,8 @@ RawMesh read_gmsh(FileReader& reader) {
     bool has_nodes = false, has_elements = false;
     std::string_view name = reader.filled_line("$MeshFormat or $NOD");
     if (name != "$MeshFormat" && name != "$NOD")
-        reader.complain({}, in_quotes(name), "$MeshFormat or $NOD", "is this a Gmsh file?");
+        reader.complain({}, in_quotes(name), "$MeshFormat or $NOD",
+                        "a Gmsh file begins with one of these words; check the format of the file");
     if (name == "$MeshFormat")
         header = read_header(reader);
     else
@@ -149,13 +153,16 @@ RawMesh read_gmsh(FileReader& reader) {
         reader.set_section(section);
         const bool version_1 = header.version == 1;
         if (section == (version_1 ? "$NOD" : "$Nodes")) {
-            if (std::exchange(has_nodes, true)) reader.complain({}, "a second section of nodes", "one");
+            if (std::exchange(has_nodes, true))
+                reader.complain({}, "a second section of nodes", "only one section of nodes");
             header.version == 4 ? read_gmsh4_nodes(reader, header.binary, numbers, mesh)
                                 : read_gmsh2_nodes(reader, header.binary, numbers, mesh);
             require_end(reader, version_1 ? "$ENDNOD" : "$EndNodes");
         } else if (section == (version_1 ? "$ELM" : "$Elements")) {
-            if (!has_nodes) reader.complain({}, "elements before nodes", "the nodes first");
-            if (std::exchange(has_elements, true)) reader.complain({}, "a second section of elements", "one");
+            if (!has_nodes)
+                reader.complain({}, "elements before the nodes", "the section of nodes before the section of elements");
+            if (std::exchange(has_elements, true))
+                reader.complain({}, "a second section of elements", "only one section of elements");
             if (header.version == 4)
                 read_gmsh4_elements(reader, header.binary, numbers, volumes, mesh);
             else if (header.version == 2)
@@ -168,13 +175,16 @@ RawMesh read_gmsh(FileReader& reader) {
             require_end(reader, "$EndEntities");
         } else {
             const std::string end = (version_1 ? "$END" : "$End") + section.substr(1);
-            if (!reader.skip_behind(end)) reader.complain({}, "no " + end, "the end of each section");
+            if (!reader.skip_behind(end))
+                reader.complain({}, "no line " + end, end + " at the end of the section",
+                                "the file is incomplete; export it again");
         }
     }
     reader.set_section({});
-    if (!has_nodes) reader.complain({}, "no nodes", header.version == 1 ? "a section $NOD" : "a section $Nodes");
+    if (!has_nodes)
+        reader.complain({}, "no section of nodes", header.version == 1 ? "a section $NOD" : "a section $Nodes");
     if (!has_elements)
-        reader.complain({}, "no elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
+        reader.complain({}, "no section of elements", header.version == 1 ? "a section $ELM" : "a section $Elements");
     label(mesh);
     return mesh;
 }

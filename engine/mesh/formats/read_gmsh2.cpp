@@ -11,7 +11,9 @@ constexpr std::size_t binary_node = 4 + 3 * 8;
 /// Returns the words of the next line. Throws SceneError if a new section begins there, because then rows are missing.
 const std::vector<std::string_view>& row_words(FileReader& reader, const char* expected) {
     const std::string_view text = reader.filled_line(expected);
-    if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
+    if (text.front() == '$')
+        reader.complain({}, in_quotes(text), expected,
+                        "the section has fewer rows than its header announces; correct the header");
     return reader.words_of(text);
 }
 
@@ -22,8 +24,9 @@ std::vector<std::int64_t> parse_nodes(const FileReader& reader, const std::vecto
     return nodes;
 }
 
-void require_words(const FileReader& reader, std::size_t found, std::size_t expected, const char* what) {
-    if (found != expected) reader.complain({}, std::to_string(found) + " numbers", std::to_string(expected), what);
+void require_words(const FileReader& reader, std::size_t found, std::size_t expected, const char* meaning) {
+    if (found != expected)
+        reader.complain({}, std::to_string(found) + " numbers", std::to_string(expected) + " numbers: " + meaning);
 }
 
 }  // namespace
@@ -40,8 +43,8 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
             numbers.add(reader.binary<std::int32_t>("number"), reader);
             for (Real& value : x) value = reader.finite(reader.binary<double>("position"), "position");
         } else {
-            const std::vector<std::string_view>& words = row_words(reader, "number x y z");
-            require_words(reader, words.size(), 4, "number x y z");
+            const std::vector<std::string_view>& words = row_words(reader, "number, x, y and z of a node");
+            require_words(reader, words.size(), 4, "number, x, y and z of a node");
             numbers.add(reader.parse_integer(words[0], "number"), reader);
             for (std::size_t a = 0; a < 3; ++a)
                 x[static_cast<Eigen::Index>(a)] =
@@ -53,21 +56,22 @@ void read_gmsh2_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
 }
 
 void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh) {
+    constexpr const char* element_row = "number, type, physical group, elementary entity, node count and nodes";
     const std::size_t count = reader.checked_count(integer_line(reader, 1, "count", "the number of elements")[0],
                                                    2 * shortest_row - 4, "count");
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("element", i + 1, count);
-        const std::vector<std::string_view>& words =
-            row_words(reader, "number type physical elementary node-count nodes");
+        const std::vector<std::string_view>& words = row_words(reader, element_row);
         if (words.size() < 5)
-            require_words(reader, words.size(), 6, "number type physical elementary node-count nodes");
+            reader.complain({}, std::to_string(words.size()) + " numbers",
+                            std::string("at least 6 numbers: ") + element_row);
         const std::int64_t type = reader.parse_integer(words[1], "type");
         const std::size_t nodes = gmsh_node_count(type, reader);
         if (const std::int64_t given = reader.parse_integer(words[4], "node count");
             given != static_cast<std::int64_t>(nodes))
             reader.complain("node count", std::to_string(given),
-                            std::to_string(nodes) + " for type " + std::to_string(type));
-        require_words(reader, words.size(), 5 + nodes, "number type physical elementary node-count nodes");
+                            std::to_string(nodes) + ", the node count of elements of type " + std::to_string(type));
+        require_words(reader, words.size(), 5 + nodes, element_row);
         const GmshTags tags{reader.parse_integer(words[2], "physical group"),
                             reader.parse_integer(words[3], "elementary entity")};
         take_gmsh_element(type, parse_nodes(reader, words, 5), tags, numbers, reader, mesh);
@@ -78,14 +82,18 @@ void read_gmsh1_elements(FileReader& reader, const NodeNumbers& numbers, GmshMes
 namespace {
 
 void read_ascii_element(FileReader& reader, const NodeNumbers& numbers, GmshMesh& mesh) {
-    const std::vector<std::string_view>& words = row_words(reader, "number type tag-count tags nodes");
-    if (words.size() < 4) require_words(reader, words.size(), 4, "at least number, type, tag-count and a node");
+    const std::vector<std::string_view>& words =
+        row_words(reader, "number, type, tag count, tags and nodes of an element");
+    if (words.size() < 4)
+        reader.complain({}, std::to_string(words.size()) + " numbers",
+                        "at least 4 numbers: number, type, tag count and a node");
     const std::int64_t type = reader.parse_integer(words[1], "type");
     const std::size_t nodes = gmsh_node_count(type, reader);
     const std::int64_t tags = reader.parse_integer(words[2], "tag count");
     if (tags < 0 || tags > static_cast<std::int64_t>(words.size()))
-        reader.complain("tag count", std::to_string(tags), "a count of tags that fits the line");
-    require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes, "number type tag-count tags nodes");
+        reader.complain("tag count", std::to_string(tags), "a tag count >= 0 that fits the numbers in this line");
+    require_words(reader, words.size(), 3 + static_cast<std::size_t>(tags) + nodes,
+                  "number, type, tag count, tags and nodes of an element");
     GmshTags own;
     if (tags > 0) own.physical = reader.parse_integer(words[3], "physical group");
     if (tags > 1) own.elementary = reader.parse_integer(words[4], "elementary entity");
@@ -103,8 +111,9 @@ std::size_t read_binary_block(FileReader& reader, std::size_t done, std::size_t 
     const std::size_t tag_count = reader.checked_count(tags, 4, "tag count");
     const std::size_t rows = reader.checked_count(announced, 4 * (1 + tag_count + nodes), "elements of a block");
     if (rows == 0 || rows > count - done)
-        reader.complain("elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done),
-                        "the rest of the section");
+        reader.complain(
+            "elements of a block", std::to_string(rows), "1 to " + std::to_string(count - done),
+            "the section has only that many elements left; correct the count of this block or of the section");
     std::vector<std::int64_t> node_numbers(nodes);
     for (std::size_t i = 0; i < rows; ++i) {
         reader.set_row("element", done + i + 1, count);

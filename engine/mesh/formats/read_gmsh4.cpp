@@ -28,8 +28,9 @@ Numbers4 read_four(FileReader& reader, bool binary, const std::array<int, 4>& si
 /// Reads the header of section $Nodes or $Elements: number of blocks, number of nodes (elements), and the smallest and
 /// the largest number of a node (element).
 Numbers4 read_section_header(FileReader& reader, bool binary, std::size_t row_bytes) {
-    const Numbers4 header = read_four(reader, binary, {8, 8, 8, 8}, "header",
-                                      "4 integers: count of blocks, count of rows, smallest and largest number");
+    const Numbers4 header =
+        read_four(reader, binary, {8, 8, 8, 8}, "header",
+                  "4 integers: count of blocks, count of all their rows, smallest and largest row number");
     reader.checked_count(header[0], binary ? 20 : 8, "count of blocks");
     reader.checked_count(header[1], row_bytes, "count of rows");
     return header;
@@ -47,7 +48,9 @@ Numbers4 read_block_header(FileReader& reader, bool binary, const char* meaning)
 /// missing.
 std::string_view row_word(FileReader& reader, const char* expected) {
     const std::string_view text = reader.word(expected);
-    if (text.front() == '$') reader.complain({}, in_quotes(text), expected, "fewer rows than the section announces");
+    if (text.front() == '$')
+        reader.complain({}, in_quotes(text), expected,
+                        "the section has fewer rows than its header announces; correct the header");
     return text;
 }
 
@@ -67,8 +70,9 @@ std::vector<std::int64_t> read_tags(FileReader& reader, bool binary) {
 
 void require_total(const FileReader& reader, std::size_t found, std::int64_t announced) {
     if (found != static_cast<std::size_t>(announced))
-        reader.complain("count of rows", std::to_string(announced) + " in the header", std::to_string(found),
-                        "the sum of the counts of its blocks");
+        reader.complain("count of rows", std::to_string(announced) + " in the header of the section",
+                        std::to_string(found),
+                        "the blocks of this section announce that many rows in total; the header must agree");
 }
 
 /// Reads a block of nodes: first the numbers of all its nodes, then their positions.
@@ -103,8 +107,8 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
                                       std::numeric_limits<std::int64_t>::min()};
     for (std::int64_t b = 0; b < header[0]; ++b) {
         reader.set_row("block", static_cast<std::size_t>(b) + 1, static_cast<std::size_t>(header[0]));
-        const Numbers4 block =
-            read_block_header(reader, binary, "4 integers: dimension, tag, parametric, nodes of the block");
+        const Numbers4 block = read_block_header(
+            reader, binary, "4 integers: dimension, tag, parametric flag (0 or 1), count of nodes in the block");
         const std::size_t rows = reader.checked_count(block[3], row_bytes, "nodes of the block");
         const std::size_t parameters = block[2] != 0 ? static_cast<std::size_t>(block[0]) : 0;
         read_node_block(reader, binary, rows, parameters, static_cast<std::size_t>(header[1]), numbers, range, mesh);
@@ -114,12 +118,12 @@ void read_gmsh4_nodes(FileReader& reader, bool binary, NodeNumbers& numbers, Gms
     if (!mesh.nodes.empty() && (header[2] != range[0] || header[3] != range[1]))
         reader.complain("header", "node numbers " + std::to_string(header[2]) + " to " + std::to_string(header[3]),
                         std::to_string(range[0]) + " to " + std::to_string(range[1]),
-                        "the range of the numbers in its blocks");
+                        "the blocks of this section contain numbers in that range; the header must agree");
 }
 
 GmshVolumes read_gmsh4_entities(FileReader& reader, bool binary) {
-    const Numbers4 count = read_four(reader, binary, {8, 8, 8, 8}, "header",
-                                     "4 integers: count of points, of curves, of surfaces and of volumes");
+    const Numbers4 count =
+        read_four(reader, binary, {8, 8, 8, 8}, "header", "4 integers: counts of points, curves, surfaces and volumes");
     constexpr std::array<const char*, 4> kind{"point", "curve", "surface", "volume"};
     GmshVolumes volumes;
     for (std::size_t dimension = 0; dimension < 4; ++dimension) {
@@ -145,8 +149,8 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
     std::size_t total = 0;
     for (std::int64_t b = 0; b < header[0]; ++b) {
         reader.set_row("block", static_cast<std::size_t>(b) + 1, static_cast<std::size_t>(header[0]));
-        const Numbers4 block =
-            read_block_header(reader, binary, "4 integers: dimension, tag, type, elements of the block");
+        const Numbers4 block = read_block_header(
+            reader, binary, "4 integers: dimension, tag, element type, count of elements in the block");
         const std::size_t nodes = gmsh_node_count(block[2], reader);
         const std::size_t rows =
             reader.checked_count(block[3], (nodes + 1) * (binary ? 8 : 2), "elements of the block");
@@ -160,13 +164,14 @@ void read_gmsh4_elements(FileReader& reader, bool binary, const NodeNumbers& num
                 for (std::int64_t& number : node_numbers)
                     number = static_cast<std::int64_t>(reader.binary<std::uint64_t>("node"));
             } else {
-                const std::string_view text = reader.filled_line("number and nodes of an element");
+                const std::string_view text = reader.filled_line("the number and the nodes of an element");
                 if (text.front() == '$')
-                    reader.complain({}, in_quotes(text), "number and nodes of an element",
-                                    "fewer rows than the section announces");
+                    reader.complain({}, in_quotes(text), "the number and the nodes of an element",
+                                    "the section has fewer rows than its header announces; correct the header");
                 const std::vector<std::string_view>& words = reader.words_of(text);
                 if (words.size() != nodes + 1)
-                    reader.complain({}, in_quotes(text), std::to_string(nodes + 1) + " integers: number and nodes");
+                    reader.complain({}, in_quotes(text),
+                                    std::to_string(nodes + 1) + " integers: the number and the nodes of an element");
                 for (std::size_t a = 0; a < nodes; ++a) node_numbers[a] = reader.parse_integer(words[a + 1], "node");
             }
             take_gmsh_element(block[2], node_numbers, tags, numbers, reader, mesh);

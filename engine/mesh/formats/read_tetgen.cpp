@@ -14,7 +14,7 @@ const std::vector<std::string_view>& node_row_words(FileReader& reader, const ch
         const std::vector<std::string_view>& words = reader.words_of(text.substr(0, text.find('#')));
         if (!words.empty()) return words;
     }
-    reader.complain({}, "the end of the file", expected);
+    reader.complain({}, "the end of the file", expected, "the file is incomplete; create it again with tetgen");
 }
 
 /// Reads the header line, which has one to `most` integers. Missing integers are 0.
@@ -23,7 +23,7 @@ std::array<std::int64_t, 4> read_header(FileReader& reader, std::size_t most, co
     const std::vector<std::string_view>& words = node_row_words(reader, meaning);
     if (words.size() > most) reader.complain({}, std::to_string(words.size()) + " numbers", meaning);
     std::array<std::int64_t, 4> numbers{};
-    for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = reader.parse_integer(words[i], meaning);
+    for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = reader.parse_integer(words[i], "number");
     return numbers;
 }
 
@@ -31,22 +31,24 @@ void require_end(FileReader& reader, const char* rows) {
     while (!reader.at_end()) {
         const std::string_view text = reader.line();
         if (const std::string_view content = text.substr(0, text.find('#')); !reader.words_of(content).empty())
-            reader.complain({}, in_quotes(text), "the end of the file",
-                            std::string("more ") + rows + " than the header announces");
+            reader.complain(
+                {}, in_quotes(text), "the end of the file",
+                std::string("the file has more ") + rows + " than its header announces; correct the header");
     }
 }
 
 void require_words(const FileReader& reader, std::size_t found, std::size_t least, std::size_t most,
                    const char* meaning) {
     if (found < least || found > most)
-        reader.complain({}, std::to_string(found) + " numbers",
-                        least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most),
-                        meaning);
+        reader.complain(
+            {}, std::to_string(found) + " numbers",
+            (least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most)) +
+                " numbers: " + meaning);
 }
 
 void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
-    const auto [announced, dimension, attributes, markers] =
-        read_header(reader, 4, "nodes, dimension, attributes, markers");
+    const auto [announced, dimension, attributes, markers] = read_header(
+        reader, 4, "a header of up to four numbers: count of nodes, dimension, count of attributes, count of markers");
     const std::size_t count = reader.checked_count(announced, 8, "nodes");
     if (dimension != 3 && dimension != 0) reader.complain("dimension", std::to_string(dimension), "3");
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
@@ -57,8 +59,8 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
     mesh.nodes.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("node", i + 1, count);
-        const std::vector<std::string_view>& words = node_row_words(reader, "number x y z");
-        require_words(reader, words.size(), 4, most, "number x y z attributes marker");
+        const std::vector<std::string_view>& words = node_row_words(reader, "number, x, y and z of a node");
+        require_words(reader, words.size(), 4, most, "number, x, y, z, attributes and marker of a node");
         const std::int64_t number = reader.parse_integer(words[0], "number");
         // TetGen numbers nodes consecutively from 0 or from 1. Other numbers are accepted too, if no number occurs
         // twice.
@@ -72,22 +74,23 @@ void read_nodes(FileReader& reader, NodeNumbers& numbers, RawMesh& mesh) {
 }
 
 void read_tetrahedra(FileReader& reader, const NodeNumbers& numbers, RawMesh& mesh) {
-    const auto [announced, corners, attributes, unused] =
-        read_header(reader, 3, "tetrahedra, nodes of each, attributes");
+    const auto [announced, corners, attributes, unused] = read_header(
+        reader, 3, "a header of up to three numbers: count of tetrahedra, nodes per tetrahedron, count of attributes");
     (void)unused;
     const std::size_t count = reader.checked_count(announced, 10, "tetrahedra");
     if (corners == 10)
-        reader.complain("nodes of each", "10, tetrahedra of second order", "4", "run tetgen without -o2");
-    if (corners != 4 && corners != 0) reader.complain("nodes of each", std::to_string(corners), "4");
+        reader.complain("nodes per tetrahedron", "10 (second-order tetrahedra)", "4 (linear tetrahedra)",
+                        "run tetgen without -o2");
+    if (corners != 4 && corners != 0) reader.complain("nodes per tetrahedron", std::to_string(corners), "4");
     if (attributes < 0 || attributes > 1000) reader.complain("attributes", std::to_string(attributes), "0 to 1000");
     reader.set_section("tetrahedra");
     mesh.tetrahedra.reserve(count);
     bool labelled = attributes > 0;
     for (std::size_t i = 0; i < count; ++i) {
         reader.set_row("tetrahedron", i + 1, count);
-        const std::vector<std::string_view>& words = node_row_words(reader, "number and four nodes");
+        const std::vector<std::string_view>& words = node_row_words(reader, "number and four nodes of a tetrahedron");
         require_words(reader, words.size(), 5, 5 + static_cast<std::size_t>(attributes),
-                      "number, four nodes, attributes");
+                      "number, four nodes and attributes of a tetrahedron");
         std::array<Index, 4> nodes;
         for (std::size_t a = 0; a < 4; ++a) nodes[a] = numbers.row(reader.parse_integer(words[a + 1], "node"), reader);
         require_different(nodes, reader);

@@ -28,10 +28,10 @@ public:
         bool more = true;
         while (more && !reader_.at_end()) more = read_section(std::string(reader_.word("a section")));
         reader_.set_section({});
-        if (!has_points_) reader_.complain({}, "no points", "a section POINTS");
+        if (!has_points_) reader_.complain({}, "no section of points", "a section POINTS");
         if (dataset_ == "UNSTRUCTURED_GRID") {
-            if (!has_cells_) reader_.complain({}, "no cells", "a section CELLS");
-            if (!has_types_) reader_.complain({}, "no cell types", "a section CELL_TYPES");
+            if (!has_cells_) reader_.complain({}, "no section of cells", "a section CELLS");
+            if (!has_types_) reader_.complain({}, "no section of cell types", "a section CELL_TYPES");
             take_cells();
         }
         return std::move(mesh_);
@@ -42,7 +42,8 @@ private:
         reader_.set_section("header");
         const std::string_view magic = reader_.filled_line("# vtk DataFile Version");
         if (!magic.starts_with("# vtk DataFile Version"))
-            reader_.complain({}, in_quotes(magic), "# vtk DataFile Version", "only legacy VTK files are read");
+            reader_.complain({}, in_quotes(magic), "a first line that begins with # vtk DataFile Version",
+                             "save the mesh as a legacy VTK file; other VTK formats are not supported");
         reader_.line();  // title
         const std::string_view format = reader_.filled_line("ASCII or BINARY");
         if (format != "ASCII" && format != "BINARY") reader_.complain("format", in_quotes(format), "ASCII or BINARY");
@@ -50,7 +51,7 @@ private:
         reader_.set_foreign_bytes(std::endian::native == std::endian::little);  // binary VTK files are big-endian
         const std::string_view key = reader_.word("DATASET");
         if (key != "DATASET") reader_.complain({}, in_quotes(key), "DATASET");
-        dataset_ = reader_.word("the kind of data set");
+        dataset_ = reader_.word("the type of the data set");
         if (dataset_ != "UNSTRUCTURED_GRID" && dataset_ != "POLYDATA")
             reader_.complain("DATASET", in_quotes(dataset_), "UNSTRUCTURED_GRID or POLYDATA");
     }
@@ -75,7 +76,7 @@ private:
             skip_metadata();
         else
             reader_.complain({}, in_quotes(name),
-                             "POINTS, CELLS, CELL_TYPES, POLYGONS, FIELD, METADATA, CELL_DATA or POINT_DATA");
+                             "a section POINTS, CELLS, CELL_TYPES, POLYGONS, FIELD, METADATA, CELL_DATA or POINT_DATA");
         return true;
     }
 
@@ -159,7 +160,7 @@ private:
     }
 
     void read_points() {
-        if (has_points_) reader_.complain({}, "a second section POINTS", "one");
+        if (has_points_) reader_.complain({}, "a second section POINTS", "only one section POINTS");
         has_points_ = true;
         const std::size_t count = read_count("count", binary_ ? 3 : 6);
         const NumberType type = read_type("type");
@@ -176,16 +177,19 @@ private:
     Index read_node(const NumberType& type) {
         const std::int64_t node = read_integer(type, "node");
         if (node < 0 || node >= static_cast<std::int64_t>(mesh_.nodes.size()))
-            reader_.complain("node", std::to_string(node),
-                             "a point, 0 to " + std::to_string(static_cast<std::int64_t>(mesh_.nodes.size()) - 1));
+            reader_.complain(
+                "node", std::to_string(node),
+                "the index of a point, 0 to " + std::to_string(static_cast<std::int64_t>(mesh_.nodes.size()) - 1));
         return static_cast<Index>(node);
     }
 
     /// Reads the nodes of the cells in section CELLS or POLYGONS. In the old form of the file, each cell has its node
     /// count, followed by its nodes. In the new form, the offsets of all cells come first, then all nodes.
     void read_cells(bool& has_rows) {
-        if (!has_points_) reader_.complain({}, "cells before points", "the points first");
-        if (std::exchange(has_rows, true)) reader_.complain({}, "a second section of the same name", "one");
+        if (!has_points_)
+            reader_.complain({}, "cells before the points", "the section POINTS before the sections of cells");
+        if (std::exchange(has_rows, true))
+            reader_.complain({}, "a second section of this name", "only one section of this name");
         const std::size_t first = read_count("count", 1), second = read_count("size", 1);
         reader_.peek_word() == "OFFSETS" ? read_new_cells(first, second) : read_old_cells(first, second);
     }
@@ -201,14 +205,17 @@ private:
             // Number of integers of the section that follow the counts and nodes read so far.
             const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
-                reader_.complain("node count", std::to_string(nodes), "at most " + std::to_string(left),
-                                 "the rest of the size in the header");
+                reader_.complain(
+                    "node count", std::to_string(nodes), "at most " + std::to_string(left),
+                    "only that many entries remain of the size in the header of this section; correct this size or the "
+                    "node count of the cell");
             for (std::int64_t a = 0; a < nodes; ++a) cell_nodes_.push_back(read_node(type));
             offsets_.push_back(offsets_.back() + static_cast<std::size_t>(nodes));
         }
         if (offsets_.back() + cells != size)
-            reader_.complain("size", std::to_string(size) + " in the header", std::to_string(offsets_.back() + cells),
-                             "the count of cells and their nodes");
+            reader_.complain(
+                "size", std::to_string(size) + " in the header", std::to_string(offsets_.back() + cells),
+                "the cells have that many entries: a node count and the nodes of each; correct the header");
     }
 
     void read_new_cells(std::size_t offsets, std::size_t size) {
@@ -223,7 +230,9 @@ private:
             const std::int64_t least = offsets_.empty() ? 0 : static_cast<std::int64_t>(offsets_.back());
             if (offset < least || offset > static_cast<std::int64_t>(size) || (offsets_.empty() && offset != 0))
                 reader_.complain("offset", std::to_string(offset),
-                                 offsets_.empty() ? "0" : std::to_string(least) + " to " + std::to_string(size));
+                                 offsets_.empty() ? "0"
+                                                  : std::to_string(least) + " to " + std::to_string(size) +
+                                                        ", because offsets ascend to the size of CONNECTIVITY");
             offsets_.push_back(static_cast<std::size_t>(offset));
         }
         if (offsets_.empty()) offsets_.push_back(0);
@@ -242,11 +251,13 @@ private:
     }
 
     void read_types() {
-        if (!has_cells_) reader_.complain({}, "types before cells", "the cells first");
-        if (std::exchange(has_types_, true)) reader_.complain({}, "a second section CELL_TYPES", "one");
+        if (!has_cells_) reader_.complain({}, "cell types before the cells", "the section CELLS before CELL_TYPES");
+        if (std::exchange(has_types_, true))
+            reader_.complain({}, "a second section CELL_TYPES", "only one section CELL_TYPES");
         const std::size_t count = read_count("count", binary_ ? 4 : 2);
         if (count + 1 != offsets_.size())
-            reader_.complain("count", std::to_string(count), std::to_string(offsets_.size() - 1) + ", the cells");
+            reader_.complain("count", std::to_string(count),
+                             std::to_string(offsets_.size() - 1) + ", the number of cells");
         begin_rows();
         for (std::size_t i = 0; i < count; ++i) {
             reader_.set_row("cell", i + 1, count);
@@ -274,7 +285,8 @@ private:
 
     /// Divides a polygon into triangles that share the polygon's first corner.
     void take_polygon(std::size_t begin, std::size_t end) {
-        if (end - begin < 3) reader_.complain("node count", std::to_string(end - begin), "at least 3");
+        if (end - begin < 3)
+            reader_.complain("node count", std::to_string(end - begin), "at least 3 nodes per polygon");
         for (std::size_t a = begin + 1; a + 1 < end; ++a) {
             const std::array<Index, 3> nodes{cell_nodes_[begin], cell_nodes_[a], cell_nodes_[a + 1]};
             require_different(nodes, reader_);
@@ -290,7 +302,7 @@ private:
             const std::int64_t type = types_[c];
             if (type == 24 || type == 71 || type == 78)
                 reader_.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
-                                 "linear tetrahedra (type 10)");
+                                 "type 10, a linear tetrahedron", "export the mesh with linear elements");
             if (type == 10) {
                 if (nodes != 4) reader_.complain("node count", std::to_string(nodes), "4 for a tetrahedron");
                 const std::array<Index, 4> t{cell_nodes_[begin], cell_nodes_[begin + 1], cell_nodes_[begin + 2],
@@ -316,7 +328,7 @@ private:
         if (const std::int64_t count = reader_.parse_integer(reader_.word("count"), "count");
             count != static_cast<std::int64_t>(rows))
             reader_.complain("count", std::to_string(count),
-                             std::to_string(rows) + (of_cells ? ", the cells" : ", the points"));
+                             std::to_string(rows) + (of_cells ? ", the number of cells" : ", the number of points"));
         while (!reader_.at_end()) {
             const std::string_view next = reader_.peek_word();
             if (next == "POINT_DATA" || next == "CELL_DATA") return true;

@@ -17,20 +17,22 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
 void require_size(const char* name, Real value) {
     if (!(std::isfinite(value) && value > 0))
         throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
-                                    ", expected a length above 0 (m)");
+                                    ", expected a length > 0 (m)");
 }
 
 void require_count(const char* name, int value) {
     if (value < 1)
-        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) + ", expected at least 1");
+        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
+                                    ", expected an integer >= 1");
 }
 
 void require_fits(const char* name, double tetrahedra) {
     // The table of triangle corners has four rows per tetrahedron, and row numbers have 32 bits.
     constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
-        throw std::invalid_argument(std::string(name) + ": too fine, about " + std::to_string(tetrahedra) +
-                                    " tetrahedra do not fit a 32-bit index");
+        throw std::invalid_argument(std::string(name) + ": found a mesh of about " + std::to_string(tetrahedra) +
+                                    " elements, expected at most " + std::to_string(most) +
+                                    " (indices have 32 bits; use a coarser mesh)");
 }
 
 }  // namespace skerry::mesh

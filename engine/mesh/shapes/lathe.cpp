@@ -28,8 +28,8 @@ void check_profile(std::span<const ProfilePoint> profile) {
     for (std::size_t i = 0; i < profile.size(); ++i) {
         require_size("lathe radius", profile[i][0]);
         if (!std::isfinite(profile[i][1]) || (i > 0 && !(profile[i][1] > profile[i - 1][1])))
-            throw std::invalid_argument("lathe profile: z of point " + std::to_string(i) +
-                                        " is not above the one before");
+            throw std::invalid_argument("lathe profile: found z = " + std::to_string(profile[i][1]) + " at point " +
+                                        std::to_string(i) + ", expected finite z in ascending order (m)");
     }
 }
 

@@ -25,9 +25,11 @@ Mesh table(const TableShape& shape) {
     require_size("table leg", shape.leg);
     require_count("table cells per leg", shape.cells_per_leg);
     if (!(2 * shape.leg < shape.length && 2 * shape.leg < shape.width))
-        throw std::invalid_argument("table leg: expected less than half the length and the width");
+        throw std::invalid_argument("table leg: found " + std::to_string(shape.leg) +
+                                    ", expected less than half the length and half the width of the table (m)");
     if (!(shape.thickness < shape.height))
-        throw std::invalid_argument("table thickness: expected less than the height");
+        throw std::invalid_argument("table thickness: found " + std::to_string(shape.thickness) +
+                                    ", expected less than the height of the table (m)");
 
     const Real cell = shape.leg / shape.cells_per_leg;
     const std::array<Real, 2> top{shape.length, shape.width};

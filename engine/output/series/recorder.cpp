@@ -50,9 +50,9 @@ void check_names(const std::vector<RecordedProbe>& probes) {
             probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
         if (probe.name.empty() || probe.name == "." || probe.name == "time" || odd)
             refuse(probe.name, "name", "\"" + probe.name + "\"",
-                   "a text that is not \"time\", without / and control characters, because it heads columns");
+                   "a name other than \"time\" and \".\", without / and control characters (the name heads columns)");
         if (!names.insert(probe.name).second)
-            refuse(probe.name, "name", "the name again", "a different name for every probe");
+            refuse(probe.name, "name", "a name that an earlier probe has", "a different name for every probe");
     }
 }
 
@@ -93,8 +93,8 @@ std::string rows_to_keep(const std::filesystem::path& file, const std::string& h
                   .object = "output",
                   .field = "first line",
                   .found = "\"" + text.substr(0, std::min<std::size_t>(text.find('\n'), 60)) + "\"",
-                  .expected = "the headings of the same probes, so that rows can be appended",
-                  .hint = "choose another file or delete this one"}
+                  .expected = "the column headings of the recorded probes",
+                  .hint = "a continued run appends its rows to the file; choose another file or delete this one"}
             .raise();
     std::string kept;
     for (std::size_t begin = head.size(), end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -122,8 +122,8 @@ PointProbe probe_point(const World& world, BodyHandle body, const Vec3& point) {
         const auto [node, distance] = nearest_node(nodes, point);
         nearest << "a point of the body";
         if (node != no_index)
-            nearest << "; node " << node << ", " << distance << " m away, at (" << nodes[node].x() << ", "
-                    << nodes[node].y() << ", " << nodes[node].z() << ") m is the nearest";
+            nearest << "; the nearest node is " << node << ", " << distance << " m away, at (" << nodes[node].x()
+                    << ", " << nodes[node].y() << ", " << nodes[node].z() << ") m";
         Complaint{.file = {},
                   .object = "body '" + world.name(body) + "'",
                   .field = "point",
@@ -163,9 +163,9 @@ struct Recorder::Impl {
         Complaint{.file = stream_file.string(),
                   .object = "output",
                   .field = {},
-                  .found = "\"" + reason + "\" while writing a row",
+                  .found = "the error \"" + reason + "\" while writing a row",
                   .expected = "enough space for the row",
-                  .hint = {}}
+                  .hint = "free disk space, then continue or repeat the run"}
             .raise();
     }
 };

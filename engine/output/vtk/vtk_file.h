@@ -14,7 +14,8 @@
 
 namespace skerry {
 
-static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
+static_assert(std::endian::native == std::endian::little,
+              "VTK files are written as LittleEndian, so the machine must be little-endian");
 
 template <class T>
 inline constexpr std::string_view vtk_type = "";

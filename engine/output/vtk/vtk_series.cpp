@@ -90,7 +90,7 @@ VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
                   .object = "output",
                   .field = "name",
                   .found = "\"" + name_ + "\"",
-                  .expected = "a file name without a folder",
+                  .expected = "a file name without / and \\",
                   .hint = {}}
             .raise();
     make_folder(folder_);
@@ -133,9 +133,9 @@ void VtkSeries::remove_earlier() {
             Complaint{.file = file.string(),
                       .object = "output",
                       .field = {},
-                      .found = "\"" + error.message() + "\" while removing this file of an earlier run",
+                      .found = "the error \"" + error.message() + "\" while removing this file of an earlier run",
                       .expected = "a file that can be replaced",
-                      .hint = {}}
+                      .hint = "check the permissions of the folder or choose another one"}
                 .raise();
     }
     earlier_.clear();

@@ -39,7 +39,7 @@ void validate_motor(const JointMotor& motor) {
     const Real target = motor.speed.value_or(motor.position.value_or(0));
     if (!std::isfinite(target)) refuse_joint("motor", std::to_string(target), "a finite speed or position");
     if (!(std::isfinite(motor.strength) && motor.strength >= 0))
-        refuse_joint("motor.strength", std::to_string(motor.strength), "a largest torque or force >= 0 (N m or N)");
+        refuse_joint("motor.strength", std::to_string(motor.strength), "a maximum torque or force >= 0 (N m or N)");
     if (!(motor.fastest > 0)) refuse_joint("motor.fastest", std::to_string(motor.fastest), "a speed > 0");
 }
 
@@ -47,13 +47,13 @@ void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
     if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or no limit");
     if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or no limit");
     if (lower.value_or(-infinity) > upper.value_or(infinity))
-        refuse_joint("lower", std::to_string(*lower), "at most upper, " + std::to_string(*upper));
+        refuse_joint("lower", std::to_string(*lower), "a number <= upper, which is " + std::to_string(*upper));
 }
 
 void validate_joint(const JointSettings& joint) {
     require_finite("joint", "point", joint.point);
     require_finite("joint", "axis", joint.axis);
-    if (!(joint.axis.norm() > 0)) refuse_joint("axis", "a vector of length 0", "a direction");
+    if (!(joint.axis.norm() > 0)) refuse_joint("axis", "a vector of length 0", "a vector that is not zero");
     if (has_axis(joint.kind)) {
         if (joint.motor) validate_motor(*joint.motor);
         validate_limits(joint.lower, joint.upper);
@@ -126,7 +126,9 @@ JointHandle Joints::add(const JointSettings& joint) {
     validate_joint(joint);
     const Index first = rigid_body_of(model, joint.first, "first");
     const Index second = joint.second ? rigid_body_of(model, *joint.second, "second") : no_index;
-    if (first == second) refuse_joint("second", "the first body again", "another body, or none for the world");
+    if (first == second)
+        refuse_joint("second", "the first body of the joint",
+                     "another body, or no body to join the first body to the world");
     JointTable& table = model.joints;
     const std::size_t row = table.size();
     AnyTable(table).resize(row + 1);

@@ -96,7 +96,7 @@ void require_changeable(const MaterialRow& now, const MaterialRow& next) {
     if (now.constants.model != next.constants.model)
         refuse("material", "model", std::string(name_of(next.constants.model)),
                std::string(name_of(now.constants.model)) +
-                   ", because the law of a material is fixed; for another law, add a new material");
+                   ", because the law of an existing material cannot change; for another law, add a new material");
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ void require_duration(auto&& object, Real duration, Real now) {
               .field = "duration",
               .found = std::to_string(duration),
               .expected = "a time > 0 (s)",
-              .hint = "to move it at once, call set_pose"}
+              .hint = "to move " + object() + " at once, call set_pose"}
         .raise();
 }
 

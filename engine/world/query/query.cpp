@@ -118,7 +118,7 @@ std::optional<SurfaceHit> World::cast_ray(const Vec3& origin, const Vec3& direct
                   .object = "cast_ray",
                   .field = "direction",
                   .found = "a length of " + std::to_string(length),
-                  .expected = "a vector that is not zero",
+                  .expected = "a finite vector that is not zero",
                   .hint = {}}
             .raise();
     const Ray ray{origin, direction / length};

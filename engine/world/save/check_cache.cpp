@@ -11,8 +11,11 @@ namespace skerry {
 namespace {
 
 void expect_ascending(const Hdf5File& file, const std::string& path, const auto& keys) {
-    if (std::ranges::adjacent_find(keys, std::greater_equal<>()) != keys.end())
-        file.complain(path, "unsorted keys", "ascending keys");
+    const auto at = std::ranges::adjacent_find(keys, std::greater_equal<>());
+    if (at != keys.end())
+        file.complain(path,
+                      "a key that does not exceed the previous key, at row " + std::to_string(at - keys.begin() + 1),
+                      "ascending keys");
 }
 
 /// Checks that a step length is positive. Denormal numbers are refused too, since steps treat them as zero.
@@ -39,7 +42,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     if (warm.step.size() > 1)
         file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one row, or none");
     if (!warm.key.empty() && warm.step.empty())
-        file.complain("/warm_start/step", "no row", "the step size of the warm-start impulses");
+        file.complain("/warm_start/step", "no row", "one row, the step size of the warm-start impulses (s)");
     for (const Real step : warm.step) expect_step(file, "/warm_start/step", step);
     expect_ascending(file, "/warm_start/key", warm.key);
 
@@ -50,14 +53,15 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     expect_rows_of(file, "/pairs/first", pairs.first, bodies);
     for (std::size_t p = 0; p < count; ++p) {
         if (model.bodies.kind[pairs.first[p]] != BodyKind::deformable)
-            file.complain("/pairs/first", at_row(pairs.first[p], p), "a body that is not a mesh collider");
+            file.complain("/pairs/first", at_row(pairs.first[p], p), "the index of a body that is not a mesh collider");
         const bool of_collider = pairs.kind[p] == PairKind::collider;
         const Index second = pairs.second[p];
         expect_rows_of(file, "/pairs/second", {&second, 1}, of_collider ? colliders : bodies);
         if (of_collider && model.colliders.geometry[second].shape == ColliderShape::mesh)
-            file.complain("/pairs/second", at_row(second, p), "a collider without a mesh");
+            file.complain("/pairs/second", at_row(second, p), "the index of a collider without a mesh");
         if (pairs.kind[p] == PairKind::self && second != pairs.first[p])
-            file.complain("/pairs/second", at_row(second, p), "the same body as /pairs/first");
+            file.complain("/pairs/second", at_row(second, p),
+                          "the same body as in /pairs/first, because the pair is a self-contact");
     }
 
     // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
@@ -107,9 +111,9 @@ void check_candidates(const Hdf5File& file, const Model& model, const PairTable&
             }
             if (!good)
                 file.complain("/pairs/candidates/first",
-                              std::to_string(candidate.first) + " and " + std::to_string(candidate.second) +
-                                  " of pair " + std::to_string(p),
-                              "features of its two surfaces");
+                              "features " + std::to_string(candidate.first) + " and " +
+                                  std::to_string(candidate.second) + " of pair " + std::to_string(p),
+                              "features of the two surfaces of this pair");
         }
     }
 }

@@ -52,12 +52,13 @@ void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Hand
         ++named;
         if (slot_of_row[static_cast<std::size_t>(row[slot])] != slot)
             file.complain(path + "/row", "row " + std::to_string(row[slot]) + " in slot " + std::to_string(slot),
-                          "the row with this slot");
+                          "the row of /" + name + " with this slot");
     }
     std::size_t with_slot = 0;
     for (const std::uint32_t slot : slot_of_row) with_slot += slot != no_slot;
     if (named != with_slot)
-        file.complain(path + "/row", std::to_string(named) + " rows with a handle", std::to_string(with_slot));
+        file.complain(path + "/row", std::to_string(named) + " rows with a handle",
+                      std::to_string(with_slot) + ", the number of rows of /" + name + " with a slot");
 }
 
 void check_handles(const Hdf5File& file, Model& model) {
@@ -95,32 +96,38 @@ void check_bodies(const Hdf5File& file, const Model& model) {
         };
         const bool deforms = bodies.kind[b] == BodyKind::deformable;
         if (deforms != (bodies.material[b] != no_index))
-            complain("material", std::to_string(bodies.material[b]), "a material for a body, -1 for a mesh collider");
+            complain("material", std::to_string(bodies.material[b]),
+                     "the index of a material for a body, -1 for a mesh collider");
         if (deforms != (bodies.collider[b] == no_index))
-            complain("collider", std::to_string(bodies.collider[b]), "a collider for a mesh collider, -1 for a body");
+            complain("collider", std::to_string(bodies.collider[b]),
+                     "the index of a collider for a mesh collider, -1 for a body");
         if (!deforms && (model.colliders.body[bodies.collider[b]] != static_cast<Index>(b) ||
                          model.colliders.slot[bodies.collider[b]] != bodies.slot[b]))
-            complain("collider", std::to_string(bodies.collider[b]), "the collider with this body");
+            complain("collider", std::to_string(bodies.collider[b]), "the collider whose body is this row");
         if (const Index count = bodies.tetrahedron_count[b];
             count < 0 || (count + element_lanes - 1) / element_lanes != bodies.tetrahedron_blocks[b].size())
-            complain("tetrahedron_count", std::to_string(count), "the number of tetrahedra in the blocks");
+            complain("tetrahedron_count", std::to_string(count),
+                     "a count that fills the " + std::to_string(bodies.tetrahedron_blocks[b].size()) +
+                         " blocks of tetrahedra of the body");
         if (bodies.nodes[b].size() == 0) complain("nodes", "no nodes", "at least one node");
         const Index core = bodies.core_nodes[b];
         if (core > 0 && (bodies.rigid[b].size() != 1 || bodies.implicit[b].size() > 0))
             complain("core_nodes", std::to_string(core), "0 for a body that is not rigid");
         if (core > bodies.nodes[b].size())
-            complain("core_nodes", std::to_string(core), "at most the number of nodes of the body");
+            complain("core_nodes", std::to_string(core),
+                     "at most " + std::to_string(bodies.nodes[b].size()) + ", the number of nodes of the body");
         if ((core > 0) != (bodies.round_radius[b] > 0))
             complain("round_radius", std::to_string(bodies.round_radius[b]), "a length > 0 if core_nodes > 0, else 0");
         if (bodies.rigid[b].size() > (deforms ? 1 : 0))
             complain("rigid", std::to_string(bodies.rigid[b].size()) + " rows",
                      "at most one row for a body, none for a mesh collider");
         if (bodies.rigid[b].size() > 0 && bodies.blocks[b].size() > 0)
-            complain("blocks", std::to_string(bodies.blocks[b].size()), "0 for a rigid body");
+            complain("blocks", std::to_string(bodies.blocks[b].size()) + " blocks of elements",
+                     "none for a rigid body");
         const Index implicit = bodies.implicit[b].size();
         if (implicit > 0 && (bodies.rigid[b].size() == 0 || implicit != bodies.nodes[b].size()))
             complain("implicit", std::to_string(implicit) + " rows",
-                     "one row for each node, and none without a row of rigid_bodies");
+                     "one row per node for a body with a row in /rigid_bodies, none for other bodies");
     }
 }
 
@@ -130,7 +137,7 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     const ElementBlockTable& elements = model.elements;
     const auto expect_body = [&](const char* path, Index found, std::size_t body, Index row) {
         if (found != static_cast<Index>(body))
-            file.complain(path, at_row(found, row), "body " + std::to_string(body) + ", whose range contains this row");
+            file.complain(path, at_row(found, row), std::to_string(body) + ", the body whose range contains this row");
     };
     const auto expect_nodes = [&](const char* path, const NodeLane& lanes, Range nodes, Index row) {
         for (const Index n : lanes.lane)
@@ -149,12 +156,15 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             expect_body("/node_blocks/body", blocks.body[k], b, k);
             if (blocks.begin[k] != next || blocks.end[k] <= next || blocks.end[k] - next > nodes_per_block ||
                 blocks.end[k] > nodes.end)
-                file.complain("/node_blocks/end", at_row(blocks.end[k], k), "consecutive blocks of at most 256 nodes");
+                file.complain("/node_blocks/end", at_row(blocks.end[k], k),
+                              "the end of a block of 1 to 256 nodes that begins where the previous block ends");
             next = blocks.end[k];
         }
         if (next != step_nodes_of(nodes, model.bodies.core_nodes[b]).end)
-            file.complain("/node_blocks/end", std::to_string(next),
-                          "blocks of all nodes of a body (13 of a sphere, 12 of a capsule)");
+            file.complain("/node_blocks/end",
+                          std::to_string(next) + " as the end of the last block of body " + std::to_string(b),
+                          std::to_string(step_nodes_of(nodes, model.bodies.core_nodes[b]).end) +
+                              ", the end of its nodes that a step moves");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
             for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)
@@ -167,14 +177,16 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             if (elements.first[e] != first || elements.count[e] < fewest_nodes ||
                 elements.count[e] > rows.end - elements.first[e])
                 file.complain("/elements/count", at_row(elements.count[e], e),
-                              "four or more consecutive rows of /element_nodes");
+                              "at least 4 rows of /element_nodes, which follow the rows of the previous block");
             first += elements.count[e];
             if (!elements.opens_patch[e] && e == of_body.begin)
                 file.complain("/elements/opens_patch", "0 at row " + std::to_string(e),
-                              "1 in the first block of a body");
+                              "1 in the first block of elements of a body");
         }
         if (first != rows.end)
-            file.complain("/elements/count", std::to_string(first), "blocks of all rows of a body in /element_nodes");
+            file.complain("/elements/count",
+                          std::to_string(first) + " as the end of the last block of body " + std::to_string(b),
+                          std::to_string(rows.end) + ", the end of the rows of the body in /element_nodes");
     }
     expect_rows_of(file, "/elements/material", elements.material, model.materials.slot.size());
 }
@@ -188,7 +200,7 @@ void check_scripts(const Hdf5File& file, const std::string& table, const auto& r
                 "/" + table + "/script/key_end",
                 std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
                     std::to_string(i),
-                "a range of /" + table + "/keyframe, whose number of rows is " + std::to_string(rows.keyframe.size()));
+                "a range of the " + std::to_string(rows.keyframe.size()) + " rows of /" + table + "/keyframe");
         for (Index k = script.key_begin + 1; k < script.key_end; ++k)
             if (!(rows.keyframe[k].time > rows.keyframe[k - 1].time))
                 file.complain("/" + table + "/keyframe",
@@ -202,7 +214,7 @@ void check_moved(const Hdf5File& file, const Model& model) {
     for (std::size_t c = 0; c < model.colliders.slot.size(); ++c) {
         const Index body = model.colliders.body[c];
         if (body != no_index && model.bodies.collider[body] != static_cast<Index>(c))
-            file.complain("/colliders/body", at_row(body, c), "the body with this collider");
+            file.complain("/colliders/body", at_row(body, c), "the body whose collider is this row");
     }
     check_scripts(file, "colliders", model.colliders);
     const AttachmentTable& attachments = model.attachments;
@@ -213,8 +225,9 @@ void check_moved(const Hdf5File& file, const Model& model) {
         for (const Index n : part(attachments.node, attachments.nodes[a])) {
             const Range nodes = model.bodies.nodes[attachments.body[a]];
             if (n < nodes.begin || n >= nodes.end)
-                file.complain("/attachments/node", std::to_string(n) + " of attachment " + std::to_string(a),
-                              "a node of its body");
+                file.complain("/attachments/node", "node " + std::to_string(n) + " of attachment " + std::to_string(a),
+                              "a node of the attached body, " + std::to_string(nodes.begin) + " to " +
+                                  std::to_string(nodes.end - 1));
         }
 }
 
@@ -254,11 +267,7 @@ void check_clusters(const Hdf5File& file, Model& model) {
     expect_size(file, "/clusters/nodes/offset", clusters.nodes.offset.size(), count > 0 ? count + 1 : 0);
     expect_rows_of(file, "/clusters/body", clusters.body, model.bodies.slot.size());
     if (count == 0) return;
-    const Column<Index>& offset = clusters.nodes.offset;
-    if (offset[0] != 0 || !std::ranges::is_sorted(offset) ||
-        offset.back() != static_cast<Index>(clusters.nodes.item.size()))
-        file.complain("/clusters/nodes/offset", "offsets that do not ascend from 0 to the number of items",
-                      "ascending offsets from 0 to the number of items");
+    expect_all_offsets(file, "/clusters/nodes/offset", clusters.nodes.offset, clusters.nodes.item.size());
     clusters.cluster_of.assign(model.nodes.position.size(), no_index);
     clusters.place.assign(model.nodes.position.size(), no_index);
     std::size_t entries = 0;
@@ -272,11 +281,12 @@ void check_clusters(const Hdf5File& file, Model& model) {
             if (n < nodes.begin || n >= nodes.end || (i > 0 && n <= of_cluster[i - 1]) ||
                 clusters.cluster_of[n] != no_index)
                 file.complain("/clusters/nodes/item", "node " + std::to_string(n) + " of cluster " + std::to_string(c),
-                              "nodes of its body, ascending, each in one cluster");
+                              "ascending nodes of the cluster's body, each in only one cluster");
             clusters.cluster_of[n] = static_cast<Index>(c);
             clusters.place[n] = static_cast<Index>(i);
         }
-        if (of_cluster.empty()) file.complain("/clusters/nodes/offset", "an empty cluster", "at least one node");
+        if (of_cluster.empty())
+            file.complain("/clusters/nodes/offset", "no nodes in cluster " + std::to_string(c), "at least one node");
     }
     expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
 }
@@ -302,7 +312,7 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
                 "a position that is not finite", "finite numbers");
         require(table.momentum[r].allFinite() && table.angular_momentum[r].allFinite(), "momentum", r,
                 "a value that is not finite", "finite numbers");
-        require(table.large[r] <= 1, "large", r, "another value", "0 or 1");
+        require(table.large[r] <= 1, "large", r, "a value above 1", "0 or 1");
     }
 }
 
@@ -327,14 +337,16 @@ void check_joints(const Hdf5File& file, const Model& model) {
         const auto is_rigid = [&](Index body) {
             return body == no_index || model.is_rigid(static_cast<std::size_t>(body));
         };
-        require(table.first[j] != no_index && is_rigid(table.first[j]), "first", "the world or a deformable body",
-                "a rigid body");
+        require(table.first[j] != no_index && is_rigid(table.first[j]), "first", "-1 (the world) or a deformable body",
+                "the index of a rigid body");
         require(is_rigid(table.second[j]) && table.second[j] != table.first[j], "second",
-                "a deformable body or the first body again", "another rigid body, or -1 for the world");
+                "a deformable body or the first body of the joint",
+                "the index of another rigid body, or -1 for the world");
         for (const JointFrame& frame : {table.first_frame[j], table.second_frame[j]})
-            require(frame.point.allFinite() && is_rotation(frame.axes), "first_frame, second_frame", "an invalid frame",
-                    "a point and a rotation matrix");
-        require(table.lower[j] <= table.upper[j], "lower", "a number above upper", "a number <= upper");
+            require(frame.point.allFinite() && is_rotation(frame.axes), "first_frame, second_frame",
+                    "a frame that is not finite or not orthonormal", "a finite point and a rotation matrix");
+        require(table.lower[j] <= table.upper[j], "lower", "a lower limit above the upper limit",
+                "a lower limit <= the upper limit");
         require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",

@@ -25,7 +25,7 @@ std::string at_row(Index found, std::size_t row) {
 void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected) {
     if (found != expected)
         file.complain(std::string(path), std::to_string(found) + " rows",
-                      std::to_string(expected) + ", the number of rows of its table");
+                      std::to_string(expected) + ", the size of the table or list to which this data set belongs");
 }
 
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows) {
@@ -44,7 +44,7 @@ void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const
     for (std::size_t i = 0; i < rows.size(); ++i)
         if ((rows[i] < 0 && !(none && rows[i] == no_index)) || rows[i] >= static_cast<Index>(count))
             file.complain(std::string(path), at_row(rows[i], i),
-                          "a row index below " + std::to_string(count) + (none ? ", or -1" : ""));
+                          "a row index below " + std::to_string(count) + (none ? ", or -1 for none" : ""));
 }
 
 void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most) {
@@ -70,7 +70,15 @@ void expect_partition(const Hdf5File& file, std::string_view path, std::span<con
     }
     if (end != static_cast<Index>(count))
         file.complain(std::string(path), "ranges that end at " + std::to_string(end),
-                      std::to_string(count) + ", the number of rows");
+                      "ranges that end at " + std::to_string(count) + ", the number of rows");
+}
+
+void expect_all_offsets(const Hdf5File& file, const std::string& path, std::span<const Index> offset, std::size_t items,
+                        const std::string& of) {
+    file.expect_offsets(path, offset, items, of);
+    if (offset.back() != static_cast<Index>(items))
+        file.complain(path, std::to_string(offset.back()) + " as the last offset" + of,
+                      std::to_string(items) + ", the number of items");
 }
 
 }  // namespace skerry

@@ -36,6 +36,10 @@ void expect_size(const Hdf5File& file, std::string_view path, std::size_t found,
 /// that contain lists may have any size.
 void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
 
+/// Checks that offsets, at least one, ascend from 0 to the number of items. `of` ends the found value in the message.
+void expect_all_offsets(const Hdf5File& file, const std::string& path, std::span<const Index> offset, std::size_t items,
+                        const std::string& of = {});
+
 /// Checks that every entry is a row number of a table with `count` rows. If `none` is true, no_index is accepted too.
 void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none = false);

@@ -14,7 +14,8 @@ void list_table(const std::string& path, AnyTable table, Archive& archive, const
     for (const ColumnInfo& info : table.columns()) {
         if (!is_saved(info.role) || table.column(info).is(left_out)) continue;
         if (!info.type->is_known())
-            throw std::logic_error(path + info.name + " is state, but its rows have no NumbersOf and no MembersOf");
+            throw std::logic_error(path + info.name +
+                                   " must be saved, but its row type has neither NumbersOf nor MembersOf");
         archive.column(path + info.name, table.column(info));
     }
 }

@@ -104,7 +104,9 @@ private:
                 rows = place(count);
                 first = false;
             }
-            if (found != count) file_.complain(of_member, std::to_string(found) + " rows", std::to_string(count));
+            if (found != count)
+                file_.complain(of_member, std::to_string(found) + " rows",
+                               std::to_string(count) + ", as many as the other members have");
             for (std::size_t i = 0; i < count; ++i)
                 std::memcpy(rows + i * type.bytes + member.offset, values.data() + i * bytes, bytes);
         }
@@ -149,7 +151,7 @@ World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader,
         validate(settings);
         validate(tuning);
     } catch (const SceneError& error) {
-        file.complain("/settings", error.what(), "valid settings");
+        file.complain("/settings", std::string("invalid settings (") + error.what() + ")", "valid settings");
     }
     const std::span<const Backend> here = available_backends();
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
@@ -193,14 +195,16 @@ void expect_hash(const Hdf5File& file, WorldState& world, Reader& reader) {
     char text[2][20];
     std::snprintf(text[0], sizeof text[0], "%016" PRIx64, found);
     std::snprintf(text[1], sizeof text[1], "%016" PRIx64, saved);
-    if (found != saved) file.complain("/state_hash", text[1], text[0], "the hash of the contents of the file");
+    if (found != saved)
+        file.complain("/state_hash", text[1], text[0] + std::string(", the hash of the contents of the file"));
 }
 
 }  // namespace
 
 LoadedWorld load_world(const std::filesystem::path& path, const LoadSettings& settings, bool compare_hash) {
     check_head(path);
-    const Hdf5File file(path, "a world that Skerry saved (HDF5)");
+    const Hdf5File file(path, "a world that Skerry saved (HDF5)",
+                        "the file is damaged or was edited; save the world again");
     Reader reader(file);
     SavedRows saved;
     LoadedWorld loaded{world_of(file, settings, reader, saved), {file.text_or_nothing("/note")}};

@@ -32,7 +32,8 @@ struct MembersOf<StepLook> {
                           Member{"known", &S::known},       Member{"deformation", &S::deformation},
                           Member{"in_frame", &S::in_frame}, Member{"element_in_frame", &S::element_in_frame}};
     }
-    static_assert(sizeof(StepLook) == 16 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(StepLook) == 16 * sizeof(Real),
+                  "every member of this struct must be in the list of saved members");
 };
 template <>
 struct MembersOf<Balance> {
@@ -53,7 +54,8 @@ struct MembersOf<Balance> {
                           Member{"momentum_error", &S::momentum_error},
                           Member{"momentum_scale", &S::momentum_scale}};
     }
-    static_assert(sizeof(Balance) == 17 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(Balance) == 17 * sizeof(Real),
+                  "every member of this struct must be in the list of saved members");
 };
 template <>
 struct MembersOf<RunCounters> {
@@ -92,7 +94,8 @@ struct MembersOf<RunCounters> {
                           Member{"start_penetration", &S::start_penetration},
                           Member{"start_gap_violation", &S::start_gap_violation}};
     }
-    static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "a member is not saved");
+    static_assert(sizeof(RunCounters) == 31 * sizeof(Real),
+                  "every member of this struct must be in the list of saved members");
 };
 /// Members of Settings that are saved with this list. The member step_size is saved separately, because it may have no
 /// value.
@@ -118,7 +121,7 @@ struct MembersOf<Settings> {
                           Member{"sleep_time", &S::sleep_time},
                           Member{"continuous_collision", &S::continuous_collision}};
     }
-    static_assert(sizeof(Settings) == 136, "a setting is not saved");
+    static_assert(sizeof(Settings) == 136, "every setting must be in the list of saved settings");
 };
 template <>
 struct MembersOf<Tuning> {
@@ -137,7 +140,7 @@ struct MembersOf<Tuning> {
                           Member{"frictionless_rows", &S::frictionless_rows},
                           Member{"small_regions_in_lanes", &S::small_regions_in_lanes}};
     }
-    static_assert(sizeof(Tuning) == 64, "a setting is not saved");
+    static_assert(sizeof(Tuning) == 64, "every setting must be in the list of saved settings");
 };
 
 }  // namespace skerry

@@ -134,12 +134,11 @@ template <class T>
 void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
                    const char* of) {
     expect_rows(file, path, rows.size(), count, of);
-    const Column<Index>& offset = rows.offset;
-    if (offset.empty() ? !rows.item.empty()
-                       : offset[0] != 0 || !std::ranges::is_sorted(offset) ||
-                             offset.back() != static_cast<Index>(rows.item.size()))
-        file.complain(path + "/offset", "offsets that do not ascend from 0 to the number of items",
-                      "ascending offsets from 0 to the number of items");
+    if (!rows.offset.empty())
+        expect_all_offsets(file, path + "/offset", rows.offset, rows.item.size());
+    else if (!rows.item.empty())
+        file.complain(path + "/offset", "no offsets for " + std::to_string(rows.item.size()) + " items",
+                      "offsets from 0 to the number of items");
 }
 
 /// Checks that a saved mesh is valid, so that it could be added to a world.
@@ -174,10 +173,10 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
 /// Checks the lists of tetrahedra that the elements of a body cover.
 void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const Hdf5File& file) {
     const std::span<const Index> offset = parts.covered_offset;
-    if (offset.size() != places + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
-        offset.back() != static_cast<Index>(parts.covered_item.size()))
-        file.complain("/meshes/covered_offset", "offsets that do not match the elements of " + body,
-                      std::to_string(places + 1) + " ascending offsets from 0 to the number of items");
+    if (offset.size() != places + 1)
+        file.complain("/meshes/covered_offset", std::to_string(offset.size()) + " offsets of " + body,
+                      std::to_string(places + 1) + ", one more than the elements of the body");
+    expect_all_offsets(file, "/meshes/covered_offset", offset, parts.covered_item.size(), " of " + body);
     for (const Index t : parts.covered_item)
         if (t < 0 || t >= static_cast<Index>(parts.tetrahedra.size()))
             file.complain("/meshes/covered_item", "tetrahedron " + std::to_string(t) + " of " + body,
@@ -273,7 +272,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
     expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
     expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
-    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world, which is > 0");
+    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world, an integer > 0");
     model.set_world(saved.world);
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
@@ -289,7 +288,12 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         const bool deforms = model.bodies.kind[b] == BodyKind::deformable;
         if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) || deforms == parts.tetrahedra.empty() ||
             static_cast<Index>(parts.tetrahedra.size()) != model.bodies.tetrahedron_count[b])
-            file.complain("/meshes/of_body", "a mesh of another size for " + body, "a mesh whose size matches /bodies");
+            file.complain("/meshes/of_body",
+                          "a mesh with " + std::to_string(parts.nodes.size()) + " nodes and " +
+                              std::to_string(parts.tetrahedra.size()) + " tetrahedra for " + body,
+                          std::to_string(nodes.size()) + " nodes and " +
+                              std::to_string(model.bodies.tetrahedron_count[b]) +
+                              " tetrahedra, as in /bodies (no tetrahedra only for a mesh collider)");
         check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
         std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
         BodyRecord& record = model.body_records.emplace_back();
@@ -321,8 +325,9 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         const Index body = model.colliders.body[c];
         if ((body == no_index) == (saved.shape_kind[c] == ColliderShape::mesh) ||
             model.colliders.geometry[c].shape != saved.shape_kind[c])
-            file.complain("/records/shape_kind", "another shape of collider " + std::to_string(c),
-                          "the shape in /colliders/geometry/shape");
+            file.complain("/records/shape_kind",
+                          "a shape of collider " + std::to_string(c) + " that contradicts the table of colliders",
+                          "the shape in /colliders/geometry/shape, a mesh only for a collider with a body");
         if (body != no_index) {
             const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(meshes.of_body[body]));
             mesh = {{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}};

@@ -100,17 +100,23 @@ private:
             refuse(found,
                    "a mesh collider is solid inside its surface; to use it as a container, orient its triangles "
                    "counter-clockwise as seen from inside");
-        if (found.overlap.kind != OverlapKind::crossing) refuse(found, "the way out is ambiguous");
+        if (found.overlap.kind != OverlapKind::crossing)
+            refuse(found, "the direction that separates them is ambiguous");
         if (found.overlap.depth > deepest(found.pair))
-            refuse(found, "the depth exceeds half the thickness of the thinner object, so the way out is ambiguous");
+            refuse(
+                found,
+                "the depth exceeds half the thickness of the thinner object, so the direction that separates them is "
+                "ambiguous");
         if (!(mobility(found.pair.first) + mobility_of_second(found.pair) > 0))
-            refuse(found, "neither can be moved: attached bodies and bodies that have made a step keep their position");
+            refuse(found,
+                   "neither can be moved, because colliders, attached bodies and bodies that have made a step keep "
+                   "their positions");
     }
 
     void require_near(const PairOverlap& found) const {
         const auto check = [&](Index body) {
             if (search_.shift(body).norm() > search_.extent(body).maxCoeff())
-                refuse(found, "'" + model_.body_records[static_cast<std::size_t>(body)].name +
+                refuse(found, "body '" + model_.body_records[static_cast<std::size_t>(body)].name +
                                   "' would have to move farther than its own size");
         };
         check(found.pair.first);

@@ -47,8 +47,8 @@ void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::
     const bool second_leaves = overlap.kind == OverlapKind::around;
     const Vec3 direction = second_leaves ? Vec3(-overlap.direction) : overlap.direction;
     const std::string rest = others == 0   ? ""
-                             : others == 1 ? ", and 1 more"
-                                           : ", and " + std::to_string(others) + " more";
+                             : others == 1 ? ", and 1 more overlap"
+                                           : ", and " + std::to_string(others) + " more overlaps";
     Complaint{.file = {},
               .object = "start_overlaps",
               .field = {},
@@ -56,7 +56,7 @@ void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::
               .expected = "bodies that are apart from each other and from colliders",
               .hint = why + "; to remove this overlap, move '" +
                       (second_leaves ? overlap.second_name : overlap.first_name) + "' by " + text(overlap.depth) +
-                      " m along " + text(direction) + ", or set start_overlaps to \"ignore\" to start with it"}
+                      " m along " + text(direction) + ", or set start_overlaps to \"ignore\" to start with the overlap"}
         .raise();
 }
 

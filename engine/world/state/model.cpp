@@ -16,9 +16,9 @@ namespace {
     Complaint{.file = {},
               .object = call,
               .field = kind,
-              .found = "a handle to nothing",
+              .found = "a handle without an object",
               .expected = "a handle to an existing object of this world",
-              .hint = "it was removed, or made in another world"}
+              .hint = "the object was removed, or belongs to another world"}
         .raise();
 }
 

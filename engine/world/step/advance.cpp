@@ -148,7 +148,7 @@ void require_countable(const Model& model, Real dt) {
                                               model.body_records[static_cast<std::size_t>(body)].name + "'"
                                         : std::string()),
               .expected = "at most 2147483647 steps",
-              .hint = of_body ? "check its size and material" : ""}
+              .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
         .raise();
 }
 

@@ -80,7 +80,7 @@ void World::watch_contact_problems(std::function<void(const StepProblem&)> take,
                   .object = "watch_contact_problems",
                   .field = "every",
                   .found = "0",
-                  .expected = "a number of steps",
+                  .expected = "a number of steps >= 1",
                   .hint = {}}
             .raise();
     state_->record.problem_watch = {std::move(take), every};

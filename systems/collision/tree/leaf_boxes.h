@@ -10,7 +10,7 @@
 
 namespace skerry {
 
-static_assert(leaf_lanes == element_lanes, "a leaf fills the lanes of Real8");
+static_assert(leaf_lanes == element_lanes, "a leaf must fill all lanes of Real8");
 
 /// Eight boxes, stored by coordinate, so that one box is compared with all of them at once [m]. An empty box has an
 /// infinite distance from all other boxes.

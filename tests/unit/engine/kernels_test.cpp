@@ -42,8 +42,9 @@ TEST_CASE("an instruction set that is not there is refused with those that are",
     const std::vector<KernelSet> sets{{&base, true}, {&wide, true}, {&widest, false}};
     CHECK(refusal(sets, "avx") == "environment: SKERRY_INSTRUCTION_SET: found \"avx\", expected one of base, wide");
     CHECK(refusal(sets, "widest") ==
-          "environment: SKERRY_INSTRUCTION_SET: found \"widest\", expected one of base, wide (this build contains it, "
-          "but this processor or operating system does not support it)");
+          "environment: SKERRY_INSTRUCTION_SET: found \"widest\", expected one of base, wide (this build contains this "
+          "instruction set, "
+          "but the processor or the operating system does not support it)");
 }
 
 TEST_CASE("the kernels of this process are among those that it lists", "[unit]") {

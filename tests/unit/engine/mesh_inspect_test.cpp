@@ -51,7 +51,7 @@ TEST_CASE("inverted and flat tetrahedra are counted apart", "[unit]") {
     CHECK_THROWS_WITH(
         mesh::require_positive(mesh, "wreck.msh"),
         Contains("wreck.msh: tetrahedron 1 (nodes 0 1 2 4): rest volume: found 0 m^3, expected a positive volume") &&
-            Contains("of 3 tetrahedra 1 are inverted and 1 flat"));
+            Contains("inverted: 1, flat: 1 of 3 tetrahedra"));
 }
 
 TEST_CASE("flat does not depend on the unit of length", "[unit]") {
@@ -82,10 +82,12 @@ TEST_CASE("two tetrahedra that meet in one node are no manifold, and the node is
     mesh.tetrahedra.push_back({0, 5, 4, 6});
     CHECK(inspect(mesh).components == 1);
     CHECK_FALSE(inspect(mesh).closed_manifold);
-    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) == "node 0 joins parts that share no edge there");
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==
+          "node 0, where parts of the boundary meet that share no edge at this node");
     CHECK(mesh::manifold_fault(boundary_triangles(mesh::ball(1, 4).tetrahedra)).empty());
     mesh.tetrahedra.back() = {0, 1, 4, 5};
-    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) == "the edge of nodes 0 and 1 has 4 triangles");
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==
+          "an edge between nodes 0 and 1 with 4 boundary triangles instead of 2");
     CHECK(mesh::manifold_fault({}) == "no boundary triangle");
 }
 
@@ -111,7 +113,7 @@ TEST_CASE("the report of an empty mesh is all zeros", "[unit]") {
 TEST_CASE("rows and nodes that cannot be are refused", "[unit]") {
     Mesh mesh = regular();
     mesh.tetrahedra[0][2] = 4;
-    CHECK_THROWS_WITH(inspect(mesh), Contains("tetrahedron 0: node: found 4, expected 0 to 3"));
+    CHECK_THROWS_WITH(inspect(mesh), Contains("tetrahedron 0: node: found 4, expected a node index from 0 to 3"));
     CHECK_THROWS_WITH(mesh::boundary(mesh), Contains("found 4"));
     mesh.tetrahedra[0][2] = 1;
     CHECK_THROWS_WITH(mesh::require_positive(mesh, "a"), Contains("1 twice"));

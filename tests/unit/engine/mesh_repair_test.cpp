@@ -258,7 +258,7 @@ TEST_CASE("an edge around which tetrahedra have a gap stays where both of its en
     const mesh::PartedMesh same = mesh::part_fans(mesh);
     CHECK(same.parted == 0);
     CHECK(same.mesh.tetrahedra == mesh.tetrahedra);
-    CHECK_THAT(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)), Contains("has 4 triangles"));
+    CHECK_THAT(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)), Contains("with 4 boundary triangles"));
 }
 
 }  // namespace skerry::test::mesh_repair_test

@@ -156,7 +156,7 @@ TEST_CASE("every malformed global file is refused by name of what is wrong", "[u
                }),
                {"G", "equality constraints"});
     check_says(spoil([](auto& f) { f.reals["M/x"][0] = -2; }),
-               {"M", "-2", "diagonal of degree of freedom 0", "positive definite"});
+               {"M", "-2", "diagonal entry of degree of freedom 0", "positive definite"});
     check_says(spoil([](auto& f) { f.reals["M/x"][4] = 2; }),
                {"M", "not symmetric", "degree of freedom 3", "degree of freedom 4"});
     // [4 4; 4 4] and its neighbour: singular, then indefinite

@@ -61,7 +61,7 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
     check_says(spoil([](auto& f) { f.integers["W/i"].pop_back(); }), {"i", "19 values", "20"});
     check_says(spoil([](auto& f) { f.reals["W/x"].pop_back(); }), {"x", "19 values", "20"});
     check_says(spoil([](auto& f) { std::swap(f.integers["W/p"][1], f.integers["W/p"][2]); }), {"p", "ascend"});
-    check_says(spoil([](auto& f) { f.integers["W/p"].back() = 21; }), {"p", "nzmax"});
+    check_says(spoil([](auto& f) { f.integers["W/p"].back() = 21; }), {"p", "21 at entry 6", "<= 20"});
     check_says(spoil([](auto& f) { f.integers["W/i"][3] = 6; }), {"i", "index 6", "0 to 5"});
     check_says(spoil([](auto& f) { f.integers["W/i"][3] = -1; }), {"i", "index -1"});
     check_says(spoil([](auto& f) { f.integers["W/nz"] = {30}; }), {"W", "p", "7 values", "30"});
@@ -69,7 +69,7 @@ TEST_CASE("every malformed file is refused by name of what is wrong", "[unit][pr
                    f.reals["W/p"] = std::vector<double>(7, 0.0);
                    f.integers.erase("W/p");
                }),
-               {"p", "another type", "integers"});
+               {"p", "found floating-point numbers", "expected integers"});
     check_says(spoil([](auto& f) { f.reals["vectors/q"].pop_back(); }), {"vectors", "q", "5 values", "6"});
     check_says(spoil([](auto& f) { f.reals["vectors/mu"].push_back(1); }), {"mu", "3 values", "2"});
     check_says(spoil([](auto& f) { f.reals["vectors/mu"][1] = -0.1; }), {"mu", "-0.1", ">= 0"});
@@ -108,10 +108,11 @@ std::string refusal_of_empty_q(hid_t type, hsize_t size) {
 TEST_CASE("a data set that claims more than its file can hold is refused before memory is asked for",
           "[unit][problem]") {
     CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 2000000000),
-               Catch::Contains("2000000000 values, expected as many values as the file has room for"));
+               Catch::Contains("2000000000 values, expected a number of values that fits the size of the file"));
     const hid_t wide = H5Tcopy(H5T_NATIVE_INT);
     H5Tset_size(wide, 1000000);
-    CHECK_THAT(refusal_of_empty_q(wide, 6), Catch::Contains("values of 1000000 bytes, expected numbers"));
+    CHECK_THAT(refusal_of_empty_q(wide, 6),
+               Catch::Contains("values of 1000000 bytes, expected numbers of at most 16 bytes"));
     H5Tclose(wide);
     CHECK_THAT(refusal_of_empty_q(H5T_NATIVE_DOUBLE, 6), Catch::Contains("fewer bytes than 6 values need"));
 }
@@ -119,8 +120,8 @@ TEST_CASE("a data set that claims more than its file can hold is refused before 
 TEST_CASE("a file that is missing, a folder, or not HDF5 is refused", "[unit][problem]") {
     const TemporaryFolder folder;
     CHECK(refusal_of("/no/such/file.hdf5").find("no such file") != std::string::npos);
-    CHECK(refusal_of(folder.path()).find("directory") != std::string::npos);
-    CHECK(refusal_of(folder.write("text.txt", "not HDF5")).find("not HDF5") != std::string::npos);
+    CHECK(refusal_of(folder.path()).find("found a folder") != std::string::npos);
+    CHECK(refusal_of(folder.write("text.txt", "not HDF5")).find("not in HDF5 format") != std::string::npos);
     const fs::path whole = local_file().write(folder.path());
     fs::resize_file(whole, fs::file_size(whole) / 2);  // an interrupted download
     CHECK(refusal_of(whole) != "read");

@@ -116,7 +116,8 @@ class ProgramRunTest(ProgramCase):
         scene = json.loads(json.dumps(SCENE))
         scene["bodies"][0]["mesh"]["scale"] = 1e-30
         scene["probes"] = []
-        self.assert_refused("run", self.write("dot.json", scene), said=["block", "mesh, material: found edges of"])
+        self.assert_refused("run", self.write("dot.json", scene),
+                            said=["block", "mesh, material: found a mean edge length of"])
 
     def test_a_step_that_gets_shorter_is_not_called_longer(self):
         for scene in (self.scene, ROOT / "scenes/skittles.json"):

@@ -157,7 +157,7 @@ TEST_CASE("a stream goes on with the whole rows of its file up to a time, of the
     CHECK(lines_of(file).size() == 1 + 4);
     CHECK(lines_of(file).back().starts_with("0.03"));
     Recorder other(swing.world, {{"other", EnergyProbe{}}});
-    CHECK_THROWS_WITH(other.stream_csv(file, 1.0), Catch::Contains("headings of the same probes"));
+    CHECK_THROWS_WITH(other.stream_csv(file, 1.0), Catch::Contains("column headings of the recorded probes"));
     CHECK(lines_of(file).size() == 1 + 4);
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("a point inside of a body follows its material, one outside of it is r
     const PointProbe close = probe_point(swing.world, swing.bar, {0.11, 0.05, 0.55});
     CHECK(close.weight == std::array<Real, 4>{1, 0, 0, 0});
     CHECK_THROWS_WITH(probe_point(swing.world, swing.bar, {3, 0, 0}),
-                      Catch::Contains("(3, 0, 0) m") && Catch::Contains("is the nearest"));
+                      Catch::Contains("(3, 0, 0) m") && Catch::Contains("the nearest node is"));
 }
 
 TEST_CASE("bad probes are refused by name, field, what was found and what was expected", "[unit]") {
@@ -186,7 +186,7 @@ TEST_CASE("bad probes are refused by name, field, what was found and what was ex
     refused({"", EnergyProbe{}}, "heads columns");
     refused({"a/b", EnergyProbe{}}, "without /");
     refused({"line\nbreak", EnergyProbe{}}, "control characters");
-    refused({"time", EnergyProbe{}}, "not \"time\"");
+    refused({"time", EnergyProbe{}}, "other than \"time\"");
     refused({"gone", BodyProbe{}}, "a handle to an existing object of this world");
     refused({"gone", VolumeProbe{}}, "a handle to an existing object of this world");
     refused({"gone", StressProbe{}}, "a handle to an existing object of this world");
@@ -198,7 +198,7 @@ TEST_CASE("bad probes are refused by name, field, what was found and what was ex
     refused({"weights", PointProbe{swing.bar, {0, 1, 2, 3}, {1, 1, 0, 0}}}, "sum is 2");
     refused({"weights", PointProbe{swing.bar, {0, 1, 2, 3}, {std::nan(""), 1, 0, 0}}}, "sum is");
     CHECK_THROWS_WITH(Recorder(world, {{"one", EnergyProbe{}}, {"one", EnergyProbe{}}}),
-                      Catch::Contains("the name again"));
+                      Catch::Contains("a name that an earlier probe has"));
     for (const Real every : {-1.0, std::nan(""), std::numeric_limits<Real>::infinity()})
         CHECK_THROWS_WITH(Recorder(world, {}, every), Catch::Contains("every") && Catch::Contains("a time >= 0"));
     // If a probed body is removed, the error names its probe and the rows stay complete.

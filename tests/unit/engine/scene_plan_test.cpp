@@ -107,8 +107,10 @@ TEST_CASE("labels and materials that are not there are named with what is", "[un
     CHECK_THAT(refusal(R"({"1": "stele"})"),
                Catch::Contains("bodies[0].materials.1: found \"stele\"") && Catch::Contains("did you mean \"steel\""));
     const TemporaryFolder folder;
-    CHECK_THROWS_WITH(plan_scene(folder.write("box.json", body_with(R"("materials": {"1": "rubber"})"))),
-                      Catch::Contains("found label 1, expected a mesh with labels (use a mesh file with labels"));
+    CHECK_THROWS_WITH(
+        plan_scene(folder.write("box.json", body_with(R"("materials": {"1": "rubber"})"))),
+        Catch::Contains(
+            "found label 1, expected no label, because the mesh has no labels (use a mesh file with labels"));
 }
 
 TEST_CASE("two bodies of one name are refused", "[unit]") {

@@ -156,7 +156,7 @@ class SeriesTest(ProgramCase):
         series.write_text("time [s],other.kinetic [J]\n0,1\n")
         before = series.read_text()
         self.assert_refused("run", "--restart", checkpoint, "--seconds", 0.1, "--probes", series,
-                            said=["series.csv", "the headings of the same probes"])
+                            said=["series.csv", "the column headings of the recorded probes"])
         self.assertEqual(series.read_text(), before)
 
     def test_frames_have_displacements_strains_names_and_forces(self):

@@ -70,7 +70,7 @@ TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[un
     }
     std::vector<char> longer = saved.bytes;
     longer.push_back(0);
-    CHECK_THAT(saved.refusal(longer), Contains("there are more bytes after the end"));
+    CHECK_THAT(saved.refusal(longer), Contains("the file has extra bytes at its end"));
     CHECK(saved.refusal(saved.bytes).empty());
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a file of another kind, or of another version, is refused by what it 
     const std::string name = "version 22";
     *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 8) = '1';
     CHECK_THAT(saved.refusal(other), Contains("found version 12, expected version 22"));
-    CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("something that is not a regular file"));
+    CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
     // HDF5 with a valid head but with unexpected contents
     ContactProblem problem;

@@ -200,7 +200,8 @@ TEST_CASE("what a stage takes as a value no stage may write", "[unit]") {
     graph.stage("use", nothing, value(h), write(a));
     graph.compile();
     graph.stage("change", nothing, read(a), make(h));
-    REQUIRE_THROWS_WITH(graph.compile(), Catch::Contains("use takes as a value what change writes"));
+    REQUIRE_THROWS_WITH(graph.compile(),
+                        Catch::Contains("use reads as a constant value the data that the stage change writes"));
 }
 
 TEST_CASE("the graph tells what its stages declare, and which have a guard", "[unit]") {

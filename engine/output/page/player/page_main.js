@@ -28,9 +28,9 @@
   show_stages(find("stages"), run.report);
   const unpacked = { bodies: [], frames: [] };
   if (typeof DecompressionStream === "undefined") {
-    fail("no DecompressionStream", "This browser cannot unpack the frames of this page: it lacks DecompressionStream, "
-      + "which Chrome and Edge have from version 80 on, Firefox from 113, Safari from 16.4. The plots work without "
-      + "it.");
+    fail("no DecompressionStream", "This browser cannot show the frames of this page, because it lacks "
+      + "DecompressionStream. Use Chrome or Edge 80, Firefox 113, Safari 16.4, or a later version. The plots work "
+      + "without the frames.");
   } else {
     notice("Unpacking \u2026");
     const library = document.createElement("script");
@@ -55,8 +55,8 @@
 
   let scene = null;
   if (!document.createElement("canvas").getContext("webgl"))
-    fail("no WebGL", "The three-dimensional view needs WebGL, which this browser does not offer, or not now. The plots "
-      + "work without it.");
+    fail("no WebGL", "The three-dimensional view needs WebGL, which is not available in this browser. Enable hardware "
+      + "acceleration or use another browser. The plots work without WebGL.");
   else if (!root.dataset.error)
     scene = make_scene(find, run, shapes, frames, state, legend_top, (follow) => {
       if (state.follow !== follow) set_pressed("follow", follow);
@@ -180,7 +180,8 @@
     }
     if (!scene || last < 1) return;
     if (!video_type()) {
-      notice("This browser cannot record videos: it lacks MediaRecorder, or a format that it writes.");
+      notice("This browser cannot record videos: it lacks MediaRecorder or a supported video format. "
+        + "Use another browser.");
       return;
     }
     const button = find("record"), label = button.textContent, place = state.frame, pictures_a_second = 30;
@@ -231,27 +232,27 @@
   const frame_by = (step) => () => go_to(Math.round(state.frame) + step);
   listen_to_keys(find, [
     [[" "], "play or pause", () => { set_playing(!state.playing); show(); }],
-    [["ArrowLeft"], "a frame back, with Shift ten", (shift) => frame_by(shift ? -10 : -1)()],
-    [["ArrowRight"], "a frame on, with Shift ten", (shift) => frame_by(shift ? 10 : 1)()],
+    [["ArrowLeft"], "one frame back; with Shift: ten frames", (shift) => frame_by(shift ? -10 : -1)()],
+    [["ArrowRight"], "one frame forward; with Shift: ten frames", (shift) => frame_by(shift ? 10 : 1)()],
     [["Home"], "to the start", () => go_to(0)],
     [["End"], "to the end", () => go_to(last)],
     ...modes.color.map((name, i) => [[String(i + 1)], "colour by "
       + (fields[name] ? fields[name].lower : "body"), () => set_mode("color", name)]),
     [["c"], "contacts: off, stick or slide, regions", () =>
       set_mode("contacts", modes.contacts[(modes.contacts.indexOf(state.contacts) + 1) % 3])],
-    [["n"], "names of bodies", flip("labels")],
-    [["x"], "see-through bodies", flip("xray")],
-    [["w"], "edges of surfaces", flip("wire")],
+    [["n"], "show or hide the names of bodies", flip("labels")],
+    [["x"], "transparent bodies", flip("xray")],
+    [["w"], "show or hide the edges of surfaces", flip("wire")],
     [["f"], "flat shading", flip("flat")],
-    [["o"], "colliders", flip("colliders")],
-    [["v"], "the view as at the start, which follows the bodies", () => set_switch("follow", true)],
-    [["[", "]"], "turn the view; with Shift, up and down", (shift, key) =>
+    [["o"], "show or hide colliders", flip("colliders")],
+    [["v"], "initial view, which follows the bodies", () => set_switch("follow", true)],
+    [["[", "]"], "turn the view; with Shift: up and down", (shift, key) =>
       move((to) => (/[[\]]/.test(key) ? to.turn(key === "[" ? 20 : -20, 0) : to.turn(0, key === "{" ? 20 : -20)))()],
-    [["+", "-"], "nearer, farther", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
-    [["h"], "hide the panel and the controls", flip("panel")],
-    [["l"], "light or dark", flip("light")],
+    [["+", "-"], "zoom in or out", (shift, key) => move((to) => to.zoom(key === "+" || key === "=" ? 0.85 : 1.18))()],
+    [["h"], "show or hide the panel and the controls", flip("panel")],
+    [["l"], "light or dark colours", flip("light")],
     [["p"], "save a picture (PNG)", save_picture],
-    [["r"], "record a video of the run at this pace (WebM), with the page kept in sight; again: stop", record_run],
+    [["r"], "record the run as a video at this playback speed (keep the page visible); again: stop", record_run],
   ]);
   for (const name in modes)
     for (const button of find(name).querySelectorAll("button"))

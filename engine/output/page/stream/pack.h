@@ -10,7 +10,8 @@
 
 namespace skerry {
 
-static_assert(std::endian::native == std::endian::little, "the page reads numbers as they are in memory here");
+static_assert(std::endian::native == std::endian::little,
+              "pages store little-endian numbers, so the machine must be little-endian");
 
 template <class T>
 void put(std::string& out, T value) {

@@ -50,6 +50,7 @@ function show_contact_legend(card, mode, run) {
   if (mode === "motion")
     card.append(...["stick", "slide", "open"].map((name) => legend_line(name, colors.motion[name])));
   else
-    card.append(legend_line("one colour by contact region"));
-  card.append(legend_line("arrows: root of the force"), legend_line("strongest " + text.si(run.force.max, "N")));
+    card.append(legend_line("one colour per contact region"));
+  card.append(legend_line("arrow length: square root of the force"),
+    legend_line("largest force " + text.si(run.force.max, "N")));
 }

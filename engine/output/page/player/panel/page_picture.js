@@ -70,7 +70,7 @@ async function record(canvas, count, rate, draw, progress) {
   recorder.addEventListener("dataavailable", (event) => parts.push(event.data));
   const ended = new Promise((resolve, reject) => {
     recorder.addEventListener("stop", resolve);
-    recorder.addEventListener("error", (event) => reject(event.error || new Error("the recorder failed")));
+    recorder.addEventListener("error", (event) => reject(event.error || new Error("the video recorder failed")));
   });
   const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
   recorder.start();

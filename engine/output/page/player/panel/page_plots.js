@@ -146,6 +146,6 @@ function show_stages(host, report) {
   }
   host.append(element("note", report.stages.length
     ? "Mean of " + text.count(report.steps) + " steps, " + text.si(total / steps, "s")
-      + " over all stages; stages may run side by side."
+      + " in total over all stages; stages may run concurrently."
     : "No step was made."));
 }

@@ -13,12 +13,12 @@ function show_summary(find, run) {
     ["Bodies", text.count(r.bodies)], ["Elements", text.count(r.elements)],
     ["Nodes", text.count(r.nodes)], ["Steps", text.count(r.steps)],
     ["Simulated time", text.si(r.time, "s")], ["Mean step", r.steps ? text.si(r.time / r.steps, "s") : "\u2013"],
-    ["Contacts, mean and most", text.average(r.mean_contacts) + ", " + text.count(r.max_contacts)],
-    ["Regions, mean and most", text.average(r.mean_regions) + ", " + text.count(r.max_regions)],
+    ["Contacts, mean and maximum", text.average(r.mean_contacts) + ", " + text.count(r.max_contacts)],
+    ["Regions, mean and maximum", text.average(r.mean_regions) + ", " + text.count(r.max_regions)],
     ["Largest region", count_of(r.largest_region, "contact", "contacts")],
-    ["Sweeps by solved region", text.average(r.mean_iterations)],
+    ["Iterations per solved region", text.average(r.mean_iterations)],
     ["Regions not converged", text.count(r.unconverged) + " of " + text.count(r.solved)],
-    ["Deepest overlap", text.si(r.max_penetration, "m")],
+    ["Largest penetration", text.si(r.max_penetration, "m")],
   ];
   const add = (name, value) => {
     const item = document.createElement("div"), term = document.createElement("dt"),
