@@ -13,7 +13,7 @@
 namespace skerry {
 
 /// Progress of the check of one body: the number of the next piece, and the results so far.
-struct StepLook {
+struct StepEvaluation {
     std::uint64_t piece = 0;   // number of the next piece of the check
     Index broken = no_index;   // first element whose frequency bound is not finite
     Real highest = 0;          // greatest bound of the squared frequency omega^2 of an element so far [1/s^2]
@@ -33,20 +33,20 @@ struct StepLook {
 struct StepWatch {
     /// Value of `step` for a body that is not checked in this round. Such a body is asleep or unstrained, so that its
     /// shape does not change, or it has been checked elsewhere.
-    static constexpr Real not_looked_at = -1;
+    static constexpr Real not_evaluated = -1;
 
     std::uint64_t steps = 0;  // number of steps since the current round began
     // true: the current round is the second round of a pair; the energies are checked after the second round.
     bool second = false;
     Index body = 0;  // row of BodyTable whose check is in progress
     Index kept = 0;  // in this round, the shapes of all bodies in rows below this row have been stored
-    StepLook look;
+    StepEvaluation look;
     std::uint64_t before = 0;  // number of pieces of all bodies in rows below `body`
     std::uint64_t target = 0;  // number of pieces of this round that must be done by the end of the next step
 
     Column<Vec3> position;       // by node: its position in the stored shape that is checked [m]
     Column<Real> stiffness_sum;  // by node: sum of the stiffnesses of its elements (stable_step.h)
-    Column<Real> step;           // by body: the stable step found, or not_looked_at [s]
+    Column<Real> step;           // by body: the stable step found, or not_evaluated [s]
 
     /// Starts a new round. An unfinished round is abandoned.
     void begin_round() {
@@ -57,7 +57,7 @@ struct StepWatch {
     /// Cancels the check of the body in row `row`, because the body has been checked elsewhere or has changed since its
     /// shape was stored.
     void forget(std::size_t row) {
-        if (row < step.size()) step[row] = not_looked_at;
+        if (row < step.size()) step[row] = not_evaluated;
     }
     /// Erases the rows of removed bodies and removed nodes. `bodies`: ranges of rows of BodyTable. `nodes`: ranges of
     /// rows of NodeTable.

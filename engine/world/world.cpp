@@ -406,7 +406,7 @@ void World::set_gravity(const Vec3& gravity) {
 Real World::stable_step() const {
     state_->settle();
     settle_clusters(state_->model, state_->scratch.stiffness_sum);
-    return told_step(state_->model);
+    return reported_step(state_->model);
 }
 
 void World::set_tracing(bool on) {

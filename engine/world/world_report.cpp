@@ -193,7 +193,7 @@ WorldReport World::report() const {
         for (const Real m : world.model.elements.implicit_modulus[block].lane)
             (world.model.elements.part[block] == ElementPart::guard ? report.guards : report.implicit_elements) +=
                 m > 0;
-    report.stable_step = told_step(world.model, &stiffest);
+    report.stable_step = reported_step(world.model, &stiffest);
     if (stiffest != no_index)
         report.stable_step_body = world.model.body_records[static_cast<std::size_t>(stiffest)].name;
     for (std::size_t b = 0; b < world.model.body_records.size(); ++b)

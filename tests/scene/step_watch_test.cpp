@@ -28,7 +28,7 @@ public:
         for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
             if (model.bodies.tetrahedron_count[b] == 0) continue;
             std::deque<Real>& known = found_[model.bodies.slot[b]];
-            known.push_back(look_at_stable_step(model, b, model.nodes.position, scratch_));
+            known.push_back(evaluate_stable_step(model, b, model.nodes.position, scratch_));
             if (known.size() > two_rounds + 1) known.pop_front();
             CAPTURE(model.body_records[b].name, known.size());
             REQUIRE(std::ranges::count(known, model.bodies.stable_step[b]) > 0);

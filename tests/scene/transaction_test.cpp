@@ -54,7 +54,7 @@ std::uint64_t runs_of(const World& world, const std::string& name) {
 TEST_CASE("a try as long as the one before it has the same forces without a pass over the elements", "[scene][long]") {
     World world = shot_at_sheet(), twin = shot_at_sheet();
     WorldState &state = WorldAccess::state_of(world), &forgetful = WorldAccess::state_of(twin);
-    Tries tries, twin_tries;
+    AttemptLimits tries, twin_tries;
     std::uint64_t tried = 0, longer = 0, crossing = 0, shorter = 0;
     for (int step = 0; step < 200; ++tried) {
         const StepPlan plan = plan_step(state.model, 1, tries.at_most());
@@ -137,7 +137,7 @@ TEST_CASE("the outcomes of a try are those of the table", "[scene]") {
     const StepPlan plan{
         .h = state.model.bodies.stable_step[0], .steps = 2, .stable = state.model.bodies.stable_step[0]};
 
-    Tries tries;
+    AttemptLimits tries;
     CHECK(try_step(state, plan, tries) == StepOutcome::committed);
 
     velocity[0].x() = 0.9 * state.model.bodies.min_altitude[0] / plan.h;  // two corners part by most of their altitude

@@ -95,7 +95,7 @@ void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> posi
     }
     if (model.bodies.blocks[body].size() > 0)
         model.bodies.stable_step[body] =
-            look_at_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);
+            evaluate_stable_step(model, body, model.nodes.position, world.scratch.stiffness_sum);
     model.watch.forget(body);
     model.body_records[body].settled = model.settled = false;
     world.query_trees.forget();

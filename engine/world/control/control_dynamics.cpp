@@ -104,7 +104,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
                                    .self_contact = bodies.self_contact[body] != 0,
                                    .dynamics = next,
                                    .filter = bodies.filter[body],
-                                   .element = record.asked,
+                                   .element = record.requested_element,
                                    .material = bodies.material[body],
                                    .tetrahedron_material = record.tetrahedron_material,
                                    .contact_distance = bodies.contact_distance[body],
@@ -173,7 +173,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
         give_nodes_momenta(model, after, whole);
         relax_fully(model, after);
         model.bodies.stable_step[after] =
-            look_at_stable_step(model, after, model.nodes.position, world.scratch.stiffness_sum);
+            evaluate_stable_step(model, after, model.nodes.position, world.scratch.stiffness_sum);
         return;
     }
     const std::span<const Vec3> there = rows_of(model.nodes.position, from),

@@ -85,10 +85,10 @@ template <class Table>
 void move_to(const Scripted<Table>& scripted, const Pose& pose, Real duration, Real now) {
     const RigidPose from = scripted.pose(now);
     const MotionScript& script = scripted.script();
-    const bool stands = scripted.has_keys()
-                            ? !(now < scripted.keys().back().time)
-                            : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
-    if (stands && is_at(from, pose)) return;
+    const bool is_still = scripted.has_keys()
+                              ? !(now < scripted.keys().back().time)
+                              : script.velocity == Vec3::Zero() && script.angular_velocity == Vec3::Zero();
+    if (is_still && is_at(from, pose)) return;
     const Real end = now + duration;
     const bool has_target = script.key_end - script.key_begin == 2;
     if (has_target && scripted.keys().back().time == end && scripted.keys().front().time <= now &&

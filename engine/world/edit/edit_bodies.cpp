@@ -20,7 +20,7 @@ namespace skerry {
 namespace {
 
 // Initial value of uninverted_until, for tetrahedra that find_inversions has not checked yet [m].
-constexpr Real not_looked_at = -infinity;
+constexpr Real not_evaluated = -infinity;
 
 // fraction of the mean surface edge; it is small against the resolution of the mesh
 constexpr Real default_contact_distance = 0.02;
@@ -202,13 +202,13 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const bool implicit = body.dynamics == BodyDynamics::implicit_elastic;
     bodies.implicit[b] = append_implicit_nodes(model, implicit ? nodes.size() : 0);
     bodies.tetrahedron_count[b] = static_cast<Index>(body.tetrahedra.size());
-    bodies.uninverted_until[b] = not_looked_at;
-    std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_looked_at);
+    bodies.uninverted_until[b] = not_evaluated;
+    std::ranges::fill(rows_of(model.tetrahedra.uninverted_until, rows.tetrahedra), not_evaluated);
     bodies.pinned_count[b] = body.kind == BodyKind::kinematic ? nodes.size() : 0;
     model.body_records.push_back(
         {.name = {},
          .element = kind_of(implicit ? all_zones : zones),
-         .asked = body.element,
+         .requested_element = body.element,
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
          .surface = {body.triangles.begin(), body.triangles.end()},
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},

@@ -24,15 +24,15 @@ struct MembersOf<StepWatch> {
     }
 };
 template <>
-struct MembersOf<StepLook> {
+struct MembersOf<StepEvaluation> {
     static auto list() {
-        using S = StepLook;
+        using S = StepEvaluation;
         return std::array{Member{"piece", &S::piece},       Member{"broken", &S::broken},
                           Member{"highest", &S::highest},   Member{"element", &S::element},
                           Member{"known", &S::known},       Member{"deformation", &S::deformation},
                           Member{"in_frame", &S::in_frame}, Member{"element_in_frame", &S::element_in_frame}};
     }
-    static_assert(sizeof(StepLook) == 16 * sizeof(Real),
+    static_assert(sizeof(StepEvaluation) == 16 * sizeof(Real),
                   "every member of this struct must be in the list of saved members");
 };
 template <>

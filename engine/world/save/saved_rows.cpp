@@ -220,7 +220,7 @@ SavedRows rows_to_save(const WorldState& world) {
     saved.meshes = meshes_of(model);
     for (const BodyRecord& record : model.body_records) {
         saved.body_element.push_back(record.element);
-        saved.body_asked.push_back(record.asked);
+        saved.body_asked.push_back(record.requested_element);
         saved.body_settled.push_back(record.settled);
         const DynamicsEstimate& e = record.choice;
         saved.choice_reason.push_back(e.reason);
@@ -299,7 +299,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         BodyRecord& record = model.body_records.emplace_back();
         record.name = text_of(saved.body_name[b]);
         record.element = saved.body_element[b];
-        record.asked = saved.body_asked[b];
+        record.requested_element = saved.body_asked[b];
         record.settled = saved.body_settled[b] != 0;
         const std::array<Real, 7>& e = saved.choice_estimate[b];
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))

@@ -92,7 +92,7 @@ void StartSearch::add_analytic(const std::vector<char>& marked, const BoxTree& t
 }
 
 std::optional<Overlap> StartSearch::look_at(const StartPair& pair) {
-    const std::optional<Overlap> overlap = pair.is_analytic ? look_at_collider(pair) : look_at_bodies(pair);
+    const std::optional<Overlap> overlap = pair.is_analytic ? overlap_with_collider(pair) : overlap_of_bodies(pair);
     // An overlap this small counts as touching, as it does in a step.
     if (overlap && overlap->depth <= touching_fraction * margin(pair)) return std::nullopt;
     return overlap;
@@ -105,7 +105,7 @@ std::optional<RoundSolid> StartSearch::round(Index body) const {
     return RoundSolid{{end[0] + shift(body), end[core - 1] + shift(body)}, core == 2, model_.bodies.round_radius[body]};
 }
 
-std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
+std::optional<Overlap> StartSearch::overlap_of_bodies(const StartPair& pair) {
     const std::optional<RoundSolid> first = round(pair.first);
     auto second = model_.round_shape(static_cast<std::size_t>(pair.second));
     if (first && second) {
@@ -118,7 +118,7 @@ std::optional<Overlap> StartSearch::look_at_bodies(const StartPair& pair) {
                         rounding(pair));
 }
 
-std::optional<Overlap> StartSearch::look_at_collider(const StartPair& pair) {
+std::optional<Overlap> StartSearch::overlap_with_collider(const StartPair& pair) {
     const PlacedSolid body{solid(pair.first), shift(pair.first)};
     const ColliderGeometry& geometry = model_.colliders.geometry[pair.second];
     const RigidMotion& motion = collider_[static_cast<std::size_t>(pair.second)];

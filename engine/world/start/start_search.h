@@ -64,8 +64,8 @@ private:
     Real rounding(const StartPair& pair) const;
     /// Returns the shape of a sphere or capsule at its shifted position, or nullopt for all other bodies.
     std::optional<RoundSolid> round(Index body) const;
-    std::optional<Overlap> look_at_bodies(const StartPair& pair);
-    std::optional<Overlap> look_at_collider(const StartPair& pair);
+    std::optional<Overlap> overlap_of_bodies(const StartPair& pair);
+    std::optional<Overlap> overlap_with_collider(const StartPair& pair);
     void add_analytic(const std::vector<char>& marked, const BoxTree& tree, std::vector<StartPair>& pairs) const;
 
     const Model& model_;

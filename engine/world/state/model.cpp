@@ -173,7 +173,7 @@ void Model::extend_derived() {
     if (!watch.step.empty()) {  // this column is empty before the first step
         watch.position.resize(nodes.position.size(), Vec3::Zero());
         watch.stiffness_sum.resize(nodes.position.size());
-        watch.step.resize(bodies.slot.size(), StepWatch::not_looked_at);
+        watch.step.resize(bodies.slot.size(), StepWatch::not_evaluated);
     }
     if (!clusters.empty()) {
         clusters.cluster_of.resize(nodes.position.size(), no_index);

@@ -45,7 +45,8 @@ inline constexpr std::uint32_t no_slot = 0xffffffffu;
 struct BodyRecord {
     std::string name;
     ElementKind element;  // element kind in use, never `smoothed`
-    ElementKind asked;    // element kind requested by the user; used again when the dynamics of the body change
+    ElementKind
+        requested_element;  // element kind requested by the user; used again when the dynamics of the body change
     std::vector<std::array<Index, 4>> tetrahedra;  // local nodes
     std::vector<std::array<Index, 3>> surface;     // local nodes
     // Material of each tetrahedron, as row of MaterialTable. If the column is empty, all tetrahedra have the material

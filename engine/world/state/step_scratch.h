@@ -138,7 +138,7 @@ struct StepScratch {
     Column<ExternalWork> work_parts;  // used by measure_work
     InversionMemory inversions;       // used by find_inversions
     Column<WatchPart> watch_parts;    // used by watch_stable_steps
-    Column<WatchPieces> watch_pieces;  // used by keep_shapes
+    Column<WatchPieces> watch_pieces;  // used by store_shapes
     Column<Real> viscous_parts;        // used by measure_viscosity
     RestingMemory resting_memory;      // used by keep_resting_contacts
 

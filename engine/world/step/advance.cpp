@@ -29,14 +29,14 @@ bool keep_watch(WorldState& world) {
     if (watch.steps < steps_per_round(world)) return false;
     // The clusters must be updated first, because stable steps depend on them.
     world.record.balance.work += follow_stiffening(world.model);
-    world.record.balance.work += take_over_looks(world.model, world.scratch.stiffness_sum);
+    world.record.balance.work += use_evaluated_steps(world.model, world.scratch.stiffness_sum);
     watch.second = !watch.second;
     return !watch.second;
 }
 
 /// Limits of the first attempt at a step in a call of advance. They follow from the velocities at the start of the
 /// call.
-Tries first_tries(WorldState& world) {
+AttemptLimits limits_of_first_attempt(WorldState& world) {
     const Model& model = world.model;
     const Real longest = trusted_step(model), max_strain_step = model.tuning.max_strain_step;
     if (!std::isfinite(longest)) return {};
@@ -204,7 +204,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     StepReport report;
     const Real end = clock.time + dt;
     Real left = dt;
-    Tries tries = first_tries(world);
+    AttemptLimits attempt = limits_of_first_attempt(world);
     // The stored crossings belong to an abandoned step, and bodies may have changed since then.
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
@@ -214,7 +214,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     Real stiffened = 0;  // energy that clusters have gained since the last committed step [J]
     // With leapfrog, the balance is checked only at the end of the call, when positions and velocities belong to one
     // time.
-    bool look_at_end = false;
+    bool check_at_end = false;
     // Exception thrown by a callback. It is rethrown at the end of the call.
     std::exception_ptr thrown;
     const auto call_back = [&thrown](auto&& call) {
@@ -240,19 +240,19 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         }
         Index stiffest = no_index;
         const Real trusted = trusted_step(model, &stiffest);
-        if (!(std::min(trusted, tries.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
+        if (!(std::min(trusted, attempt.at_most()) > std::numeric_limits<Real>::epsilon() * end)) {
             world.scratch.findings.verdict = {StepFault::too_stiff, stiffest, no_index, trusted};
             blame(world, report);
             break;
         }
         const Real within = left_in_long_step(model, left, clock.long_step);
-        const StepPlan plan = plan_step(model, within, tries.at_most());
-        keep_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
+        const StepPlan plan = plan_step(model, within, attempt.at_most());
+        store_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);
         world.query_trees.forget();
         if (leapfrog) drift(plan.h / 2);
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
-        const StepOutcome outcome = try_step(world, plan, tries);
+        const StepOutcome outcome = try_step(world, plan, attempt);
         stiffened += world.scratch.findings.stiffened;  // also counted for attempts that are not committed
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
@@ -273,9 +273,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (keep_watch(world)) {
             world.draw();
             if (clock.offset == 0)
-                look_at_balance(world);
+                check_balance_after_motion(world);
             else
-                look_at_end = true;
+                check_at_end = true;
         }
         const bool heard = call_back([&] {
             show_contact_problem(world, start);
@@ -299,7 +299,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.draw();
     world.query_trees.forget();
     if (left == 0) clock.time = end;
-    if (look_at_end) look_at_balance(world);
+    if (check_at_end) check_balance_after_motion(world);
     if (thrown) std::rethrow_exception(thrown);
     return report;
 }

@@ -238,12 +238,12 @@ Real take_over(Model& model, const PlannedBody& planned, std::span<Real> stiffne
     return step_of(model, planned.row, model.nodes.rest_position, stiffness_sum);
 }
 
-/// Sets the step length for which the clusters of a body are made. `stands`: stable step of the explicit elements of
+/// Sets the step length for which the clusters of a body are made. `stable`: stable step of the explicit elements of
 /// the body [s].
-void set_cluster_step(Model& model, std::size_t b, Real step, Real stands) {
+void set_cluster_step(Model& model, std::size_t b, Real step, Real stable) {
     model.bodies.cluster_step[b] = step;
     note_implicit(model, b);
-    model.bodies.rest_step[b] = std::min(step, stands);
+    model.bodies.rest_step[b] = std::min(step, stable);
 }
 
 /// Longest step for which the planned clusters are not too heavy [s]. `step`: step length for which they were planned.
@@ -262,10 +262,10 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
     const std::vector<std::size_t> twin = find_twins(model);
     Real step = longest_step(model);
     // stable step of the explicit elements of each planned body; 0: the body has no clusters [s]
-    std::vector<Real> stands(twin.size());
+    std::vector<Real> stable(twin.size());
     for (const PlannedBody& body : plan.body) {
         // equal bodies have equal plans, so the values of the first body are copied
-        if (const std::size_t first = twin[body.row]; stands[first] > 0) {
+        if (const std::size_t first = twin[body.row]; stable[first] > 0) {
             body.elements.put_back(model, body.row);
             const auto as_first = [&](auto& column) {
                 std::ranges::copy(rows_of(column, model.bodies.blocks[first]),
@@ -274,15 +274,15 @@ void take_over(Model& model, const Plan& plan, std::span<Real> stiffness_sum) {
             as_first(model.elements.mass_form);
             as_first(model.elements.frame_mass);
             as_first(model.elements.frame_bound);
-            stands[body.row] = stands[first];
+            stable[body.row] = stable[first];
         } else {
-            stands[body.row] = take_over(model, body, stiffness_sum);
+            stable[body.row] = take_over(model, body, stiffness_sum);
         }
-        step = std::min({step, stands[body.row], longest_by_moment(plan.step, body.moment)});
+        step = std::min({step, stable[body.row], longest_by_moment(plan.step, body.moment)});
     }
-    for (std::size_t b = 0; b < stands.size(); ++b)
-        if (has_elements(model, b) && !(stands[b] > 0)) step = std::min(step, model.bodies.rest_step[b]);
-    for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stands[body.row]);
+    for (std::size_t b = 0; b < stable.size(); ++b)
+        if (has_elements(model, b) && !(stable[b] > 0)) step = std::min(step, model.bodies.rest_step[b]);
+    for (const PlannedBody& body : plan.body) set_cluster_step(model, body.row, step, stable[body.row]);
 }
 
 /// Shortest stable step at rest among all bodies with elements [s].
@@ -367,7 +367,7 @@ void settle_clusters(Model& model, Column<Real>& stiffness_sum) {
     const Plan plan = choose_plan(model, sums);
     if (plan.step > 0) take_over(model, plan, sums);
     model.rebuild_clusters();
-    look_at_stable_steps(model, stiffness_sum);
+    evaluate_stable_steps(model, stiffness_sum);
 }
 
 Real added_energy(const Model& model) {

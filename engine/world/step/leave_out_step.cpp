@@ -30,7 +30,7 @@ bool all_stand_still(auto& table, Real time, Real h) {
 /// shape was stored and has fallen asleep since.
 bool looks_are_due(const StepWatch& watch) {
     for (Index b = watch.body; b < watch.kept; ++b)
-        if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_looked_at) return true;
+        if (watch.step[static_cast<std::size_t>(b)] != StepWatch::not_evaluated) return true;
     return false;
 }
 
@@ -53,7 +53,7 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces) {
     forces.reactions.assign(model.attachments.slot.size(), {});
 }
 
-void look_at_balance(WorldState& world) {
+void check_balance_after_motion(WorldState& world) {
     Balance& balance = world.record.balance;
     // the balance cannot have changed, because nothing has moved since the last check
     if (balance.open && world.scratch.left_out && world.record.balance_of_rest) return;

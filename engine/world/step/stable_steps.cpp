@@ -48,18 +48,18 @@ Real stable_step(const Model& model, Index* body) {
     return smallest;
 }
 
-Real told_step(const Model& model, Index* body) {
+Real reported_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body);
     return model.rigid_bodies.size() > 0 && std::isinf(stable) ? trusted_step(model) : stable;
 }
 
 Real trusted_step(const Model& model, Index* body) {
     const Real stable = stable_step(model, body) * model.tuning.step_safety;
-    Real asked = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
-    if (model.settings.step_size) asked = *model.settings.step_size;
+    Real wanted = model.rigid_bodies.size() > 0 ? step_of_rigid_bodies : stable;
+    if (model.settings.step_size) wanted = *model.settings.step_size;
     if (model.settings.implicit_step > 0 && model.implicit_nodes.size() > 0)
-        asked = std::min(asked, model.settings.implicit_step);
-    return std::min(stable, asked);
+        wanted = std::min(wanted, model.settings.implicit_step);
+    return std::min(stable, wanted);
 }
 
 Real step_with_frame(const Model& model) {
@@ -70,18 +70,18 @@ Real step_with_frame(const Model& model) {
 namespace {
 
 /// Better bound of the stable step for a body with clusters that is strained in a few places only [s]. The bound covers
-/// the explicit elements. `stands`: a step length known to be stable. `asked`: largest step length that is of interest.
-/// Returns `stands` if it is at least `asked`, or if no longer stable step is found.
-Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real asked, Real stands,
+/// the explicit elements. `stable`: a step length known to be stable. `longest`: largest step length that is of
+/// interest. Returns `stable` if it is at least `longest`, or if no longer stable step is found.
+Real strained_step_of(const Model& model, std::size_t body, std::span<const Vec3> position, Real longest, Real stable,
                       Column<Real>& memory) {
     const Range blocks = model.bodies.blocks[body], nodes = model.bodies.nodes[body];
     const ElementInputs elements = model.all_elements();
     if (!(model.bodies.cluster_step[body] > 0) || !has_mass_form(elements, static_cast<std::size_t>(blocks.begin)) ||
-        !(stands > 0) || !(stands < asked))
-        return stands;
+        !(stable > 0) || !(stable < longest))
+        return stable;
     memory.resize(std::max(memory.size(), strained_step_memory(nodes, blocks)));
-    return std::max(stands, kernels().strained_step(elements, blocks, nodes, position, model.nodes.mass,
-                                                    {asked, stands}, memory.span()));
+    return std::max(stable, kernels().strained_step(elements, blocks, nodes, position, model.nodes.mass,
+                                                    {longest, stable}, memory.span()));
 }
 
 /// Stable step of the explicit elements of a body for the given node positions [s].
@@ -107,8 +107,8 @@ Real within_clusters(const Model& model, std::size_t body, std::span<const Vec3>
 
 }  // namespace
 
-Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
-                         Column<Real>& stiffness_sum) {
+Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
+                          Column<Real>& stiffness_sum) {
     return within_clusters(model, body, position, explicit_step(model, body, position, stiffness_sum));
 }
 
@@ -142,7 +142,7 @@ public:
         energy_before_ = before;
         changed_.resize(bodies.slot.size());
         changed_[b] = 1;
-        bodies.stable_step[b] = look_at_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
+        bodies.stable_step[b] = evaluate_stable_step(model_, b, model_.nodes.position, stiffness_sum_);
     }
 
     /// Energy that the inertia of newly added clusters has added to the balance [J].
@@ -163,7 +163,7 @@ private:
 
 }  // namespace
 
-Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum) {
+Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum) {
     LooksTaken looks(model, stiffness_sum);
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b)
         if (model.bodies.blocks[b].size() > 0)
@@ -172,17 +172,17 @@ Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum) {
     return looks.end();
 }
 
-Real take_over_looks(Model& model, Column<Real>& stiffness_sum) {
+Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum) {
     StepWatch& watch = model.watch;
     LooksTaken looks(model, stiffness_sum);
     for (std::size_t b = 0; b < static_cast<std::size_t>(watch.body); ++b)
-        if (model.bodies.blocks[b].size() > 0 && watch.step[b] != StepWatch::not_looked_at)
+        if (model.bodies.blocks[b].size() > 0 && watch.step[b] != StepWatch::not_evaluated)
             looks.take(b, watch.step[b]);
     watch.begin_round();
     return looks.end();
 }
 
-void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory) {
+void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory) {
     const BodyTable& bodies = model.bodies;
     StepWatch& watch = model.watch;
     const auto rows = static_cast<Index>(bodies.slot.size());
@@ -221,7 +221,7 @@ void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<W
     parallel_for(executor, static_cast<std::size_t>(watch.kept) - first, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = first + begin; b < first + end; ++b) {
             const bool keeps_its_shape = bodies.asleep[b] || bodies.unstrained[b] > 0;
-            watch.step[b] = keeps_its_shape ? StepWatch::not_looked_at : 0;
+            watch.step[b] = keeps_its_shape ? StepWatch::not_evaluated : 0;
             if (keeps_its_shape) continue;
             std::ranges::copy(rows_of(model.nodes.position, bodies.nodes[b]),
                               rows_of(watch.position, bodies.nodes[b]).begin());

@@ -34,26 +34,26 @@ Real stable_step(const Model& model, Index* body = nullptr);
 Real step_of_body(const Model& model, std::size_t body);
 /// Stable step for reports [s]. If all bodies are rigid or implicit, and therefore stable at any step length, it is the
 /// result of trusted_step.
-Real told_step(const Model& model, Index* body = nullptr);
+Real reported_step(const Model& model, Index* body = nullptr);
 /// The longest step that is taken [s]: the stable step times Tuning::step_safety, or the step length from the settings
 /// (with rigid or implicit bodies at most 1/120 s by default), whichever is shorter.
 Real trusted_step(const Model& model, Index* body = nullptr);
 /// Longest step that would be taken after a rigid or implicit body is added [s].
 Real step_with_frame(const Model& model);
 /// Evaluates the stable step of one body for the given node positions [s].
-Real look_at_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
-                         Column<Real>& stiffness_sum);
+Real evaluate_stable_step(const Model& model, std::size_t body, std::span<const Vec3> position,
+                          Column<Real>& stiffness_sum);
 /// Evaluates the stable steps of all bodies at once. If the stable step of a body is much shorter than at rest, makes
 /// elements of this body implicit where this reduces the cost. Returns the energy that the inertia of new clusters adds
 /// to the balance [J].
-Real look_at_stable_steps(Model& model, Column<Real>& stiffness_sum);
+Real evaluate_stable_steps(Model& model, Column<Real>& stiffness_sum);
 /// Ends a round in which stable steps were evaluated in parallel with the steps. The new stable steps are used from now
-/// on. Elements become implicit as in look_at_stable_steps. Returns the energy that the inertia of new clusters adds to
-/// the balance [J].
-Real take_over_looks(Model& model, Column<Real>& stiffness_sum);
+/// on. Elements become implicit as in evaluate_stable_steps. Returns the energy that the inertia of new clusters adds
+/// to the balance [J].
+Real use_evaluated_steps(Model& model, Column<Real>& stiffness_sum);
 /// Must be called before each step. Copies the shapes of some bodies; the stable steps for these shapes are then
 /// evaluated in parallel with the step. In a round of `round` steps, all bodies are evaluated.
-void keep_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
+void store_shapes(Executor& executor, Model& model, std::uint64_t round, Column<WatchPieces>& pieces_memory);
 
 /// Updates the matrices of clusters whose elements have stiffened, exactly as the next step would do. Returns the
 /// energy that this update adds to the balance [J].
@@ -108,7 +108,7 @@ bool nothing_moves(WorldState& world);
 /// Sets the contact and attachment forces to zero after a skipped step, in which no stage measured them.
 void forget_forces_of_step(const Model& model, ForceScratch& forces);
 /// Checks the balance of energy and momentum (check_balance), unless nothing has moved since the last check.
-void look_at_balance(WorldState& world);
+void check_balance_after_motion(WorldState& world);
 
 // drift_state.cpp
 

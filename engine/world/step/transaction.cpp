@@ -186,11 +186,11 @@ Blamed blamed(const Model& model, Index body) {
 }
 
 /// Counts the cause that limited the length of a committed step: earlier attempts, the settings or the stiffest body.
-void note_step(const Model& model, const StepPlan& plan, const Tries& tries, StepLimits& limits) {
-    const bool fast = tries.slow_enough < tries.longest;
-    StepLimit limit = fast ? StepLimit::speed : tries.limit;
-    Index body = fast ? tries.fastest : tries.body;
-    if (!(tries.at_most() < plan.stable)) {
+void note_step(const Model& model, const StepPlan& plan, const AttemptLimits& attempt, StepLimits& limits) {
+    const bool fast = attempt.slow_enough < attempt.longest;
+    StepLimit limit = fast ? StepLimit::speed : attempt.limit;
+    Index body = fast ? attempt.fastest : attempt.body;
+    if (!(attempt.at_most() < plan.stable)) {
         const auto b = static_cast<std::size_t>(plan.stiffest);
         const bool set = plan.stiffest == no_index || plan.stable < step_of_body(model, b) * model.tuning.step_safety;
         limit = set ? StepLimit::setting
@@ -212,14 +212,14 @@ StepLimit shortened_by(const StepFindings& found) {
 
 /// Limits of the next attempt, after an attempt that is given up for a shorter step. If the deformation was too fast,
 /// the rate of deformation determines the new length. For all other causes the length is halved.
-Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& tries) {
+AttemptLimits limits_of_shorter_attempt(const WorldState& world, const StepPlan& plan, const AttemptLimits& attempt) {
     const StepFindings& found = world.scratch.findings;
     const StrainRate& fastest = found.verdict.fastest;
-    Tries next{.longest = tries.longest,
-               .slow_enough = tries.slow_enough,
-               .fastest = tries.fastest,
-               .limit = tries.limit,
-               .body = tries.body};
+    AttemptLimits next{.longest = attempt.longest,
+                       .slow_enough = attempt.slow_enough,
+                       .fastest = attempt.fastest,
+                       .limit = attempt.limit,
+                       .body = attempt.body};
     if (found.crossings == 0 && found.verdict.fault == StepFault::too_fast) {
         const Real least = plan.h > plan.stable / most_shortening
                                ? plan.stable
@@ -239,18 +239,18 @@ Tries shorter_tries(const WorldState& world, const StepPlan& plan, const Tries& 
 
 /// Limits of the first attempt at the next step, after a committed step. The fastest deformation limits the length.
 /// After a step that was shortened because of fast deformation, the length grows by at most the factor fast_growth.
-Tries next_tries(const StepScratch& scratch, const StepPlan& plan, const Tries& tries) {
+AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan& plan, const AttemptLimits& attempt) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
-    Tries next{.longest = tries.longest * step_growth,
-               .slow_enough = slow_enough(fastest, scratch.parameters.max_strain_step, plan.stable),
-               .fastest = fastest.body,
-               .limit = tries.limit,
-               .body = tries.body};
-    if (fastest.body == no_index && scratch.parameters.longest < plan.stable && tries.slow_enough < tries.longest) {
+    AttemptLimits next{.longest = attempt.longest * step_growth,
+                       .slow_enough = slow_enough(fastest, scratch.parameters.max_strain_step, plan.stable),
+                       .fastest = fastest.body,
+                       .limit = attempt.limit,
+                       .body = attempt.body};
+    if (fastest.body == no_index && scratch.parameters.longest < plan.stable && attempt.slow_enough < attempt.longest) {
         // The check found no deformation that is too fast for a step of length `longest`. Longer steps were not
         // checked.
         next.slow_enough = fast_growth * plan.h;
-        next.fastest = tries.fastest;
+        next.fastest = attempt.fastest;
     }
     return next;
 }
@@ -267,15 +267,15 @@ void note_try(const Model& model, const StepScratch& scratch, StepLimits& limits
 }
 
 /// Returns the outcome of an attempt, according to the table of StepOutcome.
-StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, Tries& tries) {
+StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan& plan, AttemptLimits& attempt) {
     const StepFindings& found = scratch.findings;
     if (beyond_lists) {
-        ++tries.with_longer_lists;
+        ++attempt.with_longer_lists;
         return StepOutcome::again_with_longer_lists;
     }
     const bool crosses = found.crossings > 0;
     if (scratch.taken()) return StepOutcome::committed;
-    if (crosses && ++tries.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
+    if (crosses && ++attempt.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
     if (crosses || found.verdict.fault == StepFault::too_fast || found.verdict.fault == StepFault::unsolved) {
         if (plan.h > plan.stable / (crosses ? most_shortening : most_shortening_against_speed))
             return StepOutcome::again_shorter;
@@ -291,9 +291,9 @@ Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable) {
     return std::max(longest, stable / most_shortening);
 }
 
-StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
+StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& attempt) {
     StepScratch& scratch = world.scratch;
-    const bool tried = tries.with_longer_lists > 0 || tries.with_crossings > 0;
+    const bool tried = attempt.with_longer_lists > 0 || attempt.with_crossings > 0;
     scratch.parameters.forces_known = tried && scratch.parameters.h == plan.h;
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
@@ -303,24 +303,24 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
     const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
     scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
     scratch.parameters.let_invert =
-        tries.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
+        attempt.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
     scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     scratch.parameters.forces_wanted = world.record.forces.on();
     scratch.parameters.moment_point = world.record.forces.moment_point();
-    world.cache.crossings.last_try = tries.letting_through;
+    world.cache.crossings.last_try = attempt.letting_through;
     world.cache.crossings.beyond_lists = false;
     // Largest number of repetitions with longer contact lists. Several may be needed, because contact forces change the
     // motion in the next attempt, and the lists cannot cover every motion.
     constexpr int most_longer_lists = 8;
-    world.cache.crossings.extends_lists = tries.with_longer_lists < most_longer_lists;
+    world.cache.crossings.extends_lists = attempt.with_longer_lists < most_longer_lists;
     const bool ran = run_stages(world);
-    const StepOutcome outcome = judge(scratch, world.cache.crossings.beyond_lists, plan, tries);
+    const StepOutcome outcome = judge(scratch, world.cache.crossings.beyond_lists, plan, attempt);
     switch (outcome) {
         case StepOutcome::committed:
             commit(world);
-            note_step(world.model, plan, tries, world.record.limits);
-            tries = next_tries(scratch, plan, tries);
+            note_step(world.model, plan, attempt, world.record.limits);
+            attempt = limits_of_next_attempt(scratch, plan, attempt);
             return outcome;
         case StepOutcome::again_with_longer_lists:
         case StepOutcome::again_with_crossings:
@@ -329,10 +329,10 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries) {
             // After an inversion, the crossings found in earlier attempts remain contacts of the shorter attempt.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
-            tries = shorter_tries(world, plan, tries);
+            attempt = limits_of_shorter_attempt(world, plan, attempt);
             break;
         case StepOutcome::again_letting_through:
-            tries.letting_through = true;
+            attempt.letting_through = true;
             break;
         case StepOutcome::refused:
             break;

@@ -38,7 +38,7 @@ enum class StepOutcome {
 };
 
 /// Limits of the next attempt at a step. They come from attempts at this step and at earlier steps.
-struct Tries {
+struct AttemptLimits {
     // Upper bound of the step length after crossings, inversions or steps that Newton's method could not solve [s]. The
     // bound grows in each committed step.
     Real longest = infinity;
@@ -58,8 +58,9 @@ struct Tries {
 /// `stable`: upper bound of the step length by all other limits [s].
 Real slow_enough(const StrainRate& fastest, Real max_strain_step, Real stable);
 
-/// Attempts the planned step within the limits `tries`. Returns the outcome, and updates `tries` for the next attempt.
-StepOutcome try_step(WorldState& world, const StepPlan& plan, Tries& tries);
+/// Attempts the planned step within the limits `attempt`. Returns the outcome, and updates `attempt` for the next
+/// attempt.
+StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& attempt);
 
 /// Restores data that an attempt, or a call of advance, overwrites before its success is known. This is the only list
 /// of these data:

@@ -149,8 +149,8 @@ Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, 
 
 /// Returns the greatest squared deformation rate of the tetrahedra of a block if it exceeds the square of `rate`, else
 /// 0 [1/s^2]. Marks the corners of all tetrahedra whose deformation rate exceeds `rate`.
-Real look_at_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
-                        std::span<std::uint8_t> beside_fast) {
+Real check_tetrahedra(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most,
+                      std::span<std::uint8_t> beside_fast) {
     const Real8 squared = deforming_squared(state, block, rate, part_at_most);
     if (all(squared <= rate * rate)) return 0;
     for (std::size_t l = 0; l < element_lanes; ++l) {
@@ -185,7 +185,7 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
 
 /// Greatest |F'|^2, with the rate F' of F, over the squared leeway (factor on max_strain_step) among the elements of a
 /// block [1/s^2]. It is 0 for inversion barriers, and if no node of the block is marked in `beside_fast`.
-Real look_at_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
+Real check_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
     // F of an inversion barrier is F of one tetrahedron, not a mean over several
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
@@ -255,11 +255,11 @@ Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t 
                           [&](std::size_t row) { return look_at(begin + row); });
     };
     const Real of_tetrahedra = of(state.body_blocks[body], [&](std::size_t block) {
-        return look_at_tetrahedra(state, block, rate, part_at_most, beside_fast);
+        return check_tetrahedra(state, block, rate, part_at_most, beside_fast);
     });
     if (state.body_element_blocks.empty() || of_tetrahedra == 0) return where_faster(of_tetrahedra);
     const Real of_elements = of(state.body_element_blocks[body],
-                                [&](std::size_t block) { return look_at_elements(state, block, beside_fast); });
+                                [&](std::size_t block) { return check_elements(state, block, beside_fast); });
     return where_faster(std::min(of_tetrahedra, of_elements));
 }
 

@@ -19,7 +19,7 @@ constexpr Index blocks_per_part = 256;
 
 // Number of inversion checks of a block with narrow tetrahedra for each computation of the block's width (the least
 // width of a tetrahedron). This computation takes half of the time of a check.
-constexpr std::uint8_t looks_at_narrow = 8;
+constexpr std::uint8_t checks_at_narrow = 8;
 
 // Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
 // block.
@@ -72,7 +72,7 @@ struct Body {
           travel_bound(of.body_travel[body] + reach),
           travel_base(of.body_travel[body] - 2 * of.body_displacement[body]) {}
 
-    void look(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> looks_left) const {
+    void check(InversionPart& part, std::span<Real> uninverted_until, std::span<std::uint8_t> checks_left) const {
         // All blocks are prefetched before the first is checked, because they have left the cache since the last step.
         std::array<std::size_t, blocks_per_part> due;
         std::size_t due_count = 0;
@@ -87,7 +87,7 @@ struct Body {
             }
         });
         for (std::size_t k = 0; k < due_count; ++k)
-            look_at_block(due[k], uninverted_until[due[k]], looks_left[due[k]], part);
+            check_block(due[k], uninverted_until[due[k]], checks_left[due[k]], part);
         for_each_group(part.blocks, [&](std::size_t b, std::size_t stop) {
             part.uninverted_until = std::min(part.uninverted_until, least(uninverted_until, b, stop));
         });
@@ -125,15 +125,15 @@ private:
         return least;
     }
 
-    void look_at_block(std::size_t b, Real& uninverted_until, std::uint8_t& looks_left, InversionPart& part) const {
+    void check_block(std::size_t b, Real& uninverted_until, std::uint8_t& checks_left, InversionPart& part) const {
         const LaneMat3<Real8> now = edges(inputs.tetrahedron_node[b], inputs.position);
-        if (looks_left > 0) {
-            --looks_left;
+        if (checks_left > 0) {
+            --checks_left;
         } else {
             const Real safe = width(now, inputs.tetrahedron_volume[b]) / 2;
             uninverted_until = travel_base + safe;
             if (reach < safe) return;
-            looks_left = looks_at_narrow - 1;
+            checks_left = checks_at_narrow - 1;
         }
         find_turned(b, now, part);
     }
@@ -201,12 +201,12 @@ Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Re
     SKERRY_CHECK(budgets.body_uninverted_until.size() == inputs.body_blocks.size());
     SKERRY_CHECK(budgets.block_uninverted_until.size() == inputs.tetrahedron_node.size());
     list_parts(inputs, h, budgets.body_uninverted_until, memory);
-    memory.looks_left.resize(inputs.tetrahedron_node.size());
-    const std::span<std::uint8_t> looks_left = memory.looks_left.span();
+    memory.checks_left.resize(inputs.tetrahedron_node.size());
+    const std::span<std::uint8_t> checks_left = memory.checks_left.span();
     Column<InversionPart>& parts = memory.part;
     parallel_for(executor, memory.job.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
         for (Index p = memory.job[begin]; p < memory.job[end]; ++p)
-            Body(inputs, h, parts[p].body).look(parts[p], budgets.block_uninverted_until, looks_left);
+            Body(inputs, h, parts[p].body).check(parts[p], budgets.block_uninverted_until, checks_left);
     });
     Inversions found;
     for (std::size_t first = 0, next = 0; first < parts.size(); first = next) {

@@ -70,7 +70,7 @@ struct InversionMemory {
     // For each block of tetrahedra: number of checks until the next travel budget (distance without a check) is
     // computed. The number is positive only if a tetrahedron of the block is so narrow that one step would use up a
     // budget.
-    Column<std::uint8_t> looks_left;
+    Column<std::uint8_t> checks_left;
 };
 
 struct InversionBudgets {

@@ -221,7 +221,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
         // The element would be unstable even with the full masses of its nodes.
-        if (need(b, l, goal.stands) > 1) share(b, l) = 0;
+        if (need(b, l, goal.stable) > 1) share(b, l) = 0;
     });
     ImplicitShare found = added(goal);
     bool found_enough = false;
@@ -235,15 +235,15 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
         Real shortest = infinity;  // s
         for_each_element(elements_, blocks_,
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
-        found_enough = !(shortest < goal.stands);
+        found_enough = !(shortest < goal.stable);
         if (found_enough && exact_) break;
         if (found_enough) continue;  // the estimate must be confirmed by the rigorous bound
         if (round % rounds_of_sharing == 0) {
-            give_up(goal.stands);
+            give_up(goal.stable);
             found = added(goal);
         }
         for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
-            share(b, l) *= std::clamp(goal.stands / step_[row(b)][l], 1 / most_change, most_change);
+            share(b, l) *= std::clamp(goal.stable / step_[row(b)][l], 1 / most_change, most_change);
         });
     }
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
@@ -264,7 +264,7 @@ ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks,
         Real volume = 0, implicit = 0;  // m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {
             Real& share = out.mass_share[b - first][l];
-            if (step[b - first][l] < goal.stands) {
+            if (step[b - first][l] < goal.stable) {
                 share = 0;
                 gave_up = true;
             }

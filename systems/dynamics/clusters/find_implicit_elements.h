@@ -21,7 +21,7 @@ struct ImplicitGoal {
     Real step;  // step for which the clusters are made [s]
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms,
     // computed later, allow longer steps.
-    Real stands;
+    Real stable;
     Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
 };
@@ -45,7 +45,7 @@ public:
     ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out);
 
-    /// Shares the masses of the body so that every explicit element is stable at a step of goal.stands, and makes as
+    /// Shares the masses of the body so that every explicit element is stable at a step of goal.stable, and makes as
     /// few elements implicit as necessary. The elements that need the largest fraction of the masses of their nodes
     /// become implicit first. The search stops when implicit elements have too much volume or add too much moment of
     /// inertia. The outputs are then invalid.
@@ -113,7 +113,7 @@ private:
     bool exact_ = false;  // true if step_ holds the rigorous bound, not an estimate
 };
 
-/// Makes every explicit element implicit that is unstable at a step of goal.stands. Implicit elements stay implicit,
+/// Makes every explicit element implicit that is unstable at a step of goal.stable. Implicit elements stay implicit,
 /// and the mass shares and mass forms of all other elements are unchanged. This function is faster than
 /// ImplicitSearch::find(), but makes more elements implicit because masses are not shared anew. goal.most_moment is
 /// ignored.

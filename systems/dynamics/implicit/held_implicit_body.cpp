@@ -31,14 +31,14 @@ struct HeldNodes {
 
 }  // namespace
 
-LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : stands(true), shift(Vec3::Zero()) {
+LedFrame::LedFrame(const ImplicitBodies& bodies, std::size_t r, Real h) : is_still(true), shift(Vec3::Zero()) {
     turn_start = turn = bodies.turn(r);
     across = Mat3::Identity();
     if (bodies.asleep(r)) return;
     const HeldPose end(bodies.holds, r, h, bodies.rest_center[r], bodies.axes[r]);
     const Mat3 rotation = without_strain(end.rotation);
     if (end.center == bodies.center[r] && rotation == bodies.rotation[r]) return;
-    stands = false;
+    is_still = false;
     turn = rotation * bodies.axes[r].transpose();
     across = turn.transpose() * turn_start;
     shift = turn.transpose() * (bodies.center[r] - end.center);
@@ -99,7 +99,7 @@ void kick_held_body(const ImplicitBodies& bodies, const ImplicitLoads& loads, st
     };
     // Elastic force of the step if free nodes do not move: 1 - theta times the force at the start of the step plus
     // theta times the force at the end.
-    bool carried = !frame.stands;
+    bool carried = !frame.is_still;
     for (std::size_t n = 0; n < of.count; ++n) {
         impulse[of.place(n)] = displacement[n];
         carried |= nodes.held(n) && !bodies.node_velocity[of.first_node + n].isZero(0);
@@ -214,7 +214,7 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         // elastic forces add up to zero, so the translation of the frame does no work.
         if (large)
             taken += h * next[n].dot(of_mesh);
-        else if (!frame.stands)
+        else if (!frame.is_still)
             taken += of_mesh.dot(place - frame.across * place);
         // Force on a held node over the complete step, reported as a force that acts for the time `kick`.
         if (Vec3& force_on_held = out.force[of.first_node + n]; nodes.held(n))

@@ -8,7 +8,7 @@ namespace skerry {
 
 /// Prescribed motion in this step of a held body, as the motion of the frame of its mesh.
 struct LedFrame {
-    bool stands;      // true if the frame does not move in this step
+    bool is_still;    // true if the frame does not move in this step
     Mat3 turn_start;  // rotation from the frame of the mesh to the world at the start of the step
     Mat3 turn;        // rotation from the frame of the mesh to the world at the end of the step
     Mat3 across;      // rotation from the frame at the start to the frame at the end of the step
@@ -19,7 +19,7 @@ struct LedFrame {
     /// Displacement at the end of the step of a node that does not move in the world [m]. `arm`: rest position of the
     /// node relative to the centre [m].
     Vec3 carried(const Vec3& arm, const Vec3& displacement) const {
-        return stands ? displacement : Vec3(across * (arm + displacement) - arm + shift);
+        return is_still ? displacement : Vec3(across * (arm + displacement) - arm + shift);
     }
 };
 

@@ -71,7 +71,7 @@ struct Pieces {
     static void for_each_block(Range blocks, auto&& visit) {
         for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) visit(b);
     }
-    void sum(const PieceRun& run, StepLook& look) const {
+    void sum(const PieceRun& run, StepEvaluation& look) const {
         if (frame_bound(elements, run.blocks) > 0)
             for_each_block(run.blocks, [&](std::size_t b) { add_deformation(b, look.deformation); });
         for_each_block(run.blocks, [&](std::size_t b) {
@@ -114,13 +114,13 @@ struct Greatest {
     Real& bound;  // [1/s^2]
     Index& element;
 };
-Greatest greatest_of(StepLook& look, const PieceRun& run) {
+Greatest greatest_of(StepEvaluation& look, const PieceRun& run) {
     if (run.work == PieceWork::bound_in_frame) return {look.in_frame, look.element_in_frame};
     return {look.highest, look.element};
 }
 
 /// Updates the greatest bound of omega^2 with the bounds of a block.
-void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepLook& look) {
+void note_bound(std::size_t block, const Real8& bound, Greatest greatest, StepEvaluation& look) {
     for (std::size_t l = 0; l < element_lanes; ++l) {
         const Index here = static_cast<Index>(block * element_lanes + l);
         // a shape that is not finite has no stable step
@@ -143,9 +143,9 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
 constexpr Real well_in_frame = 1.25;
 
 /// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) divides the blocks of a wave into
-/// chunks and calls body(begin, end, StepLook of the chunk) for each chunk.
+/// chunks and calls body(begin, end, StepEvaluation of the chunk) for each chunk.
 template <class InChunks>
-void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& look, InChunks&& in_chunks) {
+void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepEvaluation& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
     SKERRY_CHECK(pieces.mass.size() == pieces.position.size());
     const Real at_rest = frame_bound(pieces.elements, blocks);
@@ -158,7 +158,7 @@ void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepLook& 
         } else if (run.work == PieceWork::bound_in_frame || !(look.in_frame > 0) ||
                    look.in_frame > well_in_frame * at_rest) {
             if (run.work == PieceWork::bound_in_frame && !rotation) rotation = turn_as_whole(look.deformation);
-            in_chunks(run, [&](Index begin, Index end, StepLook& found) {
+            in_chunks(run, [&](Index begin, Index end, StepEvaluation& found) {
                 const Range some{run.blocks.begin + begin, run.blocks.begin + end};
                 const auto note = [&](std::size_t b, const Real8& bound) {
                     note_bound(b, bound, greatest_of(found, run), found);
@@ -192,7 +192,8 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks) {
 }
 
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look) {
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                   StepEvaluation& look) {
     // `least`: number of blocks in a chunk, some 20 us of work. `most_chunks`: number of chunks whose results fit on
     // the stack.
     constexpr Index least = 8, most_chunks = 64;
@@ -203,14 +204,14 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
             body(0, count, look);
             return;
         }
-        std::array<StepLook, static_cast<std::size_t>(most_chunks)> part;
+        std::array<StepEvaluation, static_cast<std::size_t>(most_chunks)> part;
         parallel_for(executor, static_cast<std::size_t>(count), static_cast<std::size_t>(size),
                      [&](std::size_t begin, std::size_t end) {
-                         StepLook& own = part[begin / static_cast<std::size_t>(size)];
+                         StepEvaluation& own = part[begin / static_cast<std::size_t>(size)];
                          body(static_cast<Index>(begin), static_cast<Index>(end), own);
                      });
         for (Index c = 0; c * size < count; ++c) {
-            StepLook& own = part[static_cast<std::size_t>(c)];
+            StepEvaluation& own = part[static_cast<std::size_t>(c)];
             if (look.broken == no_index) look.broken = own.broken;
             const Greatest most = greatest_of(look, run), here = greatest_of(own, run);
             if (!(here.bound > most.bound)) continue;
@@ -221,7 +222,7 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
     look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks), until, look, in_chunks);
 }
 
-StableStep result_of(const StepLook& look) {
+StableStep result_of(const StepEvaluation& look) {
     if (look.broken != no_index) return {0, look.broken};
     StableStep found{infinity, no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
@@ -235,7 +236,7 @@ StableStep result_of(const StepLook& look) {
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum) {
     clear_stiffness(elements, blocks, stiffness_sum);
-    StepLook look;
+    StepEvaluation look;
     look_on({elements, position, mass, stiffness_sum}, without_guards(elements, blocks),
             pieces_of_look(elements, blocks), look,
             [&](const PieceRun& run, auto&& body) { body(0, run.blocks.size(), look); });
@@ -254,7 +255,7 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     for (ElementLane& lanes : step.subspan(static_cast<std::size_t>(of_body.size())))
         std::ranges::fill(lanes.lane, infinity);
     const std::uint64_t count = pieces_of_look(by_shares, of_body);
-    StepLook look;
+    StepEvaluation look;
     for (std::uint64_t piece = 0; piece < count;) {
         const PieceRun run = run_from(of_body, false, piece, count);
         piece = run.end;

@@ -33,9 +33,10 @@ std::uint64_t pieces_of_look(const ElementInputs& elements, Range blocks);
 /// body before the first piece. All inputs must stay the same until the last piece. The result does not depend on where
 /// the check is interrupted.
 void continue_look(Executor& executor, const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until, StepLook& look);
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, std::uint64_t until,
+                   StepEvaluation& look);
 /// Result of a stable-step check, available when all of its pieces are done.
-StableStep result_of(const StepLook& look);
+StableStep result_of(const StepEvaluation& look);
 
 /// Step that each element of these blocks allows by itself, with its mass shares; infinite for elements that limit no
 /// step and in unused lanes [s]. The shortest step is that of stable_step() if the body has neither mass forms nor

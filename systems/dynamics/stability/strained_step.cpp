@@ -86,11 +86,11 @@ std::size_t strained_step_memory(Range nodes, Range blocks) {
 }
 
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
-                   std::span<const Real> mass, const StrainedLook& look, std::span<Real> memory) {
+                   std::span<const Real> mass, const StableStepGoal& goal, std::span<Real> memory) {
     SKERRY_CHECK(memory.size() >= strained_step_memory(nodes, blocks));
     const Memory of(memory, nodes, blocks);
-    const Real base = above_asked * step_times_frequency * step_times_frequency / (look.asked * look.asked);
-    if (!find_excess(elements, blocks, position, base, look.stands, of.excess))
+    const Real base = above_asked * step_times_frequency * step_times_frequency / (goal.longest * goal.longest);
+    if (!find_excess(elements, blocks, position, base, goal.stable, of.excess))
         return step_times_frequency / std::sqrt(base);
     const std::span<const Real> of_nodes =
         mass.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size()));

@@ -8,19 +8,19 @@
 
 namespace skerry {
 
-struct StrainedLook {
-    Real asked;   // longest step of interest; a longer result is of no use [s]
-    Real stands;  // step known to be stable from other bounds; springs relax for this time [s]
+struct StableStepGoal {
+    Real longest;  // longest step of interest; a longer result is of no use [s]
+    Real stable;   // step known to be stable from other bounds; springs relax for this time [s]
 };
 
 /// Number of entries in the work memory of strained_step().
 std::size_t strained_step_memory(Range nodes, Range blocks);
 
 /// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. The result is valid if it
-/// is longer than `look.stands`. One common bound covers all elements whose mass forms suffice for steps near
-/// `look.asked`. The excess of omega^2 of all other elements forms a matrix, which is bounded by its row sums. `nodes`:
-/// range of all nodes of the elements. Sequential.
+/// is longer than `goal.stable`. One common bound covers all elements whose mass forms suffice for steps near
+/// `goal.longest`. The excess of omega^2 of all other elements forms a matrix, which is bounded by its row sums.
+/// `nodes`: range of all nodes of the elements. Sequential.
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
-                   std::span<const Real> mass, const StrainedLook& look, std::span<Real> memory);
+                   std::span<const Real> mass, const StableStepGoal& goal, std::span<Real> memory);
 
 }  // namespace skerry

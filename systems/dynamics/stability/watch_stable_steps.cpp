@@ -13,7 +13,7 @@ void watch_stable_steps(Executor& executor, const WatchInputs& inputs, Column<Wa
     for (bool whole = true; whole && watch.body < watch.kept; watch.body += whole) {
         const auto b = static_cast<std::size_t>(watch.body);
         const std::uint64_t pieces = pieces_of_look(inputs.elements, inputs.body_blocks[b]);
-        if (watch.step[b] != StepWatch::not_looked_at) {
+        if (watch.step[b] != StepWatch::not_evaluated) {
             const std::uint64_t due = watch.target > watch.before ? std::min(pieces, watch.target - watch.before) : 0;
             whole = due == pieces;
             parts.push_back({watch.body, due, whole, watch.look});
