@@ -16,7 +16,9 @@ constexpr std::array built_backends{SKERRY_BACKEND_LIST Backend::serial};
 }  // namespace
 
 std::unique_ptr<Executor> make_executor(Backend backend, int workers) {
-    if (workers < 0) throw std::invalid_argument("the number of workers is negative: " + std::to_string(workers));
+    if (workers < 0)
+        throw std::invalid_argument("number of workers: found " + std::to_string(workers) +
+                                    ", expected an integer >= 0");
     switch (backend) {
         case Backend::automatic:
             return make_executor(built_backends.front(), workers);

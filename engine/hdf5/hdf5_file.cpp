@@ -19,8 +19,7 @@ hid_t open_file(const std::filesystem::path& path, const std::string& expected) 
     if (H5Fis_hdf5(path.string().c_str()) <= 0) refuse("a file that is not in HDF5 format", "check the path");
     const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (file < 0)
-        refuse("an HDF5 file that cannot be opened",
-               "check its permissions; if they allow reading, the file is damaged");
+        refuse("an HDF5 file that cannot be opened", "check the permissions of the file, or replace a damaged file");
     return file;
 }
 
@@ -131,9 +130,10 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
         complain(path, std::to_string(count) + " values", "at most 2147483647 values");
     if (!can_hold(static_cast<hsize_t>(count) * sizeof(T)))
         complain(path, std::to_string(count) + " values", "a number of values that fits the size of the file",
-                 "the file is damaged");
+                 "replace the damaged file");
     if (!all_stored(data, type, count))
-        complain(path, "fewer bytes than " + std::to_string(count) + " values need", expected, "the file is damaged");
+        complain(path, "fewer bytes than " + std::to_string(count) + " values need", expected,
+                 "replace the damaged file");
     std::vector<T> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
         complain(path, "values that cannot be read", expected,
@@ -156,9 +156,11 @@ void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t
     if (H5Tequal(type.id(), memory_type) <= 0) complain(path, "values of another type, size or byte order", expected);
     const int rank = width == 1 ? 1 : 2;
     std::array<hsize_t, 2> size{0, 1};
-    if (H5Sget_simple_extent_ndims(space.id()) != rank ||
-        H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
-        complain(path, "a data set of another shape", expected);
+    if (const int found = H5Sget_simple_extent_ndims(space.id()); found != rank)
+        complain(path, "a data set with " + std::to_string(found) + " dimensions",
+                 std::to_string(rank) + (rank == 1 ? " dimension, " : " dimensions, ") + expected);
+    if (H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
+        complain(path, "rows of " + std::to_string(size[1]) + " values", expected);
     if (size[0] > static_cast<hsize_t>(std::numeric_limits<Index>::max()))
         complain(path, std::to_string(size[0]) + " rows", "at most 2147483647 rows");
     const hsize_t count = size[0] * width;

@@ -62,7 +62,7 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
     for (std::size_t c = 1; c < corners.size(); ++c)
         if (corners[c].first == corners[c - 1].first && corners[c].second != corners[c - 1].second)
             return "node " + std::to_string(corners[c].first) +
-                   ", where parts of the boundary meet that share no edge at this node";
+                   ", at which parts of the boundary meet without a common edge";
     return {};
 }
 

@@ -119,7 +119,7 @@ ContactProblem read_problem(const std::filesystem::path& path) {
         expect_finite(file, "/fclib_global", problem);
     } else {
         file.expect_group("/fclib_local",
-                          "the file contains no FCLIB contact problem: it has neither a local nor a global group");
+                          "no FCLIB contact problem: the file has neither /fclib_local nor /fclib_global");
         read_local(file, problem);
         expect_finite(file, "/fclib_local", problem);
     }

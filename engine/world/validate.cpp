@@ -133,7 +133,7 @@ void validate(const Settings& settings) {
             "a number of threads >= 0 (0: as many as the caller's task arena has)");
     require(settings.tolerance > 0 && settings.tolerance < 1, "settings", "tolerance", settings.tolerance,
             "a number > 0 and < 1");
-    require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "at least 1");
+    require(settings.max_iterations >= 1, "settings", "max_iterations", settings.max_iterations, "an integer >= 1");
     require(settings.recovery_speed > 0, "settings", "recovery_speed", settings.recovery_speed, "a speed > 0 (m/s)");
     require(settings.sleep_time >= 0, "settings", "sleep_time", settings.sleep_time, "a time >= 0 (s)");
     require(settings.theta >= 0.5 && settings.theta <= 1, "settings", "theta", settings.theta,
@@ -295,7 +295,7 @@ void validate(const Motion& motion, const std::string& object) {
         require(key.rotation.norm() <= most, object, "motion.keys.rotation", key.rotation.norm(),
                 "a rotation of at most 1000000 rad");
         require(k == 0 || key.time > motion.keys[k - 1].time, object, "motion.keys.time", key.time,
-                "a time after that of the previous key (s)");
+                "a time after the time of the previous key (s)");
     }
 }
 

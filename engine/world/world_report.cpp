@@ -118,21 +118,22 @@ std::string StepReport::message() const {
             return "stopped on request, between two steps";
         case StepStatus::not_finite:
             return "the step was not taken: " + who + where +
-                   " would get a velocity that is not finite; check its loads, masses and initial velocities";
+                   " would get a velocity that is not finite; check the loads, masses and initial velocities of the "
+                   "body";
         case StepStatus::too_fast:
             return "the step was not taken: " + who + where + " would deform by a strain of " + short_text(value) +
-                   " in one step, even in 1/1024 of the stable step; lower its velocities and loads";
+                   " in one step, even in 1/1024 of the stable step; lower the velocities and loads of the body";
         case StepStatus::too_far:
             return "the step was not taken: " + who +
                    " is so far from the origin that neighbouring representable positions are " + short_text(value) +
                    " of its mean edge length apart; use a local frame whose origin is near the bodies";
         case StepStatus::unsolved:
             return "the step was not taken: Newton's method for large strain did not converge for " + who +
-                   ", even with a thousandth of the step; check its loads, velocities and shape, or set its dynamics "
-                   "to explicit";
+                   ", even with a thousandth of the step; check the loads, velocities and shape of the body, or set "
+                   "its dynamics to explicit";
         case StepStatus::too_stiff:
             return "the step was not taken: " + who + " has a stable step of only " + short_text(value) +
-                   " s, which is too short to advance the time; check its material, size and shape";
+                   " s, which is too short to advance the time; check the material, size and shape of the body";
     }
     return {};
 }

@@ -325,7 +325,7 @@ TEST_CASE("only what is new is moved: a body that is held or has made a step sta
     held.world.attach(held.add(mesh, {0, 0, 0}, "one"), all);
     const auto other = held.add(mesh, {0.01, 0, 0.099}, "other");
     held.world.attach(other, all);
-    CHECK_THROWS_WITH(held.world.settle_start(), Contains("neither can be moved"));
+    CHECK_THROWS_WITH(held.world.settle_start(), Contains("neither object can be moved"));
     held.world.remove(other);
     CHECK(held.world.advance(1e-4).ok());
 }

@@ -46,7 +46,9 @@ FileReader::FileReader(const std::string& path) : path_(path) {
         file.read(data_.data(), static_cast<std::streamsize>(data_.size()));
     }
     if (!file || error)
-        Complaint{path, {}, {}, "a file that cannot be opened or read", "a mesh file", "check its permissions"}.raise();
+        Complaint{
+            path, {}, {}, "a file that cannot be opened or read", "a mesh file", "check the permissions of the file"}
+            .raise();
 }
 
 void FileReader::set_row(const char* kind, std::size_t number, std::size_t count) {

@@ -7,8 +7,8 @@ namespace skerry::mesh {
 
 void NodeNumbers::add(std::int64_t number, const FileReader& reader) {
     if (!row_.try_emplace(number, static_cast<Index>(row_.size())).second)
-        reader.complain("number", std::to_string(number) + " a second time", "a number that no earlier node has",
-                        "renumber the nodes");
+        reader.complain("number", std::to_string(number) + ", the number of an earlier node",
+                        "a different number for every node", "renumber the nodes");
 }
 
 Index NodeNumbers::row(std::int64_t number, const FileReader& reader) const {

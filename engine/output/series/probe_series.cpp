@@ -66,7 +66,7 @@ std::unique_ptr<Writer> probe_series(const std::filesystem::path& file, const Sc
     const bool csv = extension == ".csv";
     if (!csv && extension != ".h5" && extension != ".hdf5")
         refuse_series(file, extension.empty() ? "a name without extension" : "the extension " + extension,
-                      ".csv, .h5 or .hdf5");
+                      "the extension .csv, .h5 or .hdf5");
     if (scene.recorded.empty())
         refuse_series(
             file, "a scene without probes that record a time series", "at least one probe with a quantity",

@@ -135,7 +135,7 @@ void VtkSeries::remove_earlier() {
                       .field = {},
                       .found = "the error \"" + error.message() + "\" while removing this file of an earlier run",
                       .expected = "a file that can be replaced",
-                      .hint = "check the permissions of the folder or choose another one"}
+                      .hint = "check the permissions of the folder, or choose another folder"}
                 .raise();
     }
     earlier_.clear();

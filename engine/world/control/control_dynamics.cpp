@@ -41,10 +41,11 @@ void require_changeable(Model& model, std::size_t body, BodyDynamics next) {
                       "rigid, because a " + std::string(model.round_name(body)) + " does not deform");
     const auto is_of_body = [row](Index of) { return of == row; };
     if (std::ranges::any_of(model.attachments.body, is_of_body))
-        refuse_change(model, body, "dynamics", "a change for an attached body", "a body without attachments",
+        refuse_change(model, body, "dynamics", "a change of dynamics for an attached body",
+                      "a body without attachments",
                       "remove the attachments, change the dynamics, then attach the body again");
     if (has_rows_joining(body, model))
-        refuse_change(model, body, "dynamics", "a change for a body with joints", "a body without joints",
+        refuse_change(model, body, "dynamics", "a change of dynamics for a body with joints", "a body without joints",
                       "remove the joints, change the dynamics, then add the joints again");
 }
 

@@ -131,7 +131,8 @@ void check_rows(const Hdf5File& file, const Model& model, const std::string& gro
     for (const Stencil& stencil : contacts.stencil)
         expect_rows_of(file, group + "stencil/node", stencil.node, model.nodes.position.size());
     for (const Index region : contacts.region)
-        if (region < no_index) file.complain(group + "region", std::to_string(region), "a region index, or -1");
+        if (region < no_index)
+            file.complain(group + "region", std::to_string(region), "the index of a region, or -1 for none");
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
             file.complain("/node_blocks/end",
                           std::to_string(next) + " as the end of the last block of body " + std::to_string(b),
                           std::to_string(step_nodes_of(nodes, model.bodies.core_nodes[b]).end) +
-                              ", the end of its nodes that a step moves");
+                              ", the end of the nodes of the body that a step moves");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
             for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)

@@ -48,7 +48,8 @@ void check_head(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(status))
         refuse_file(file, "a folder or device", expected_file(), "check the path");
     std::ifstream in(file, std::ios::binary);
-    if (!in) refuse_file(file, "a file that cannot be opened or read", expected_file(), "check its permissions");
+    if (!in)
+        refuse_file(file, "a file that cannot be opened or read", expected_file(), "check the permissions of the file");
     std::string head(head_bytes, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));

@@ -108,9 +108,10 @@ private:
                 "the depth exceeds half the thickness of the thinner object, so the direction that separates them is "
                 "ambiguous");
         if (!(mobility(found.pair.first) + mobility_of_second(found.pair) > 0))
-            refuse(found,
-                   "neither can be moved, because colliders, attached bodies and bodies that have made a step keep "
-                   "their positions");
+            refuse(
+                found,
+                "neither object can be moved, because colliders, attached bodies and bodies that have made a step keep "
+                "their positions");
     }
 
     void require_near(const PairOverlap& found) const {
@@ -196,7 +197,7 @@ void World::settle_start() {
     for (const PairOverlap& found : overlaps) reports.push_back(report_of(model, found));
     const StartOverlaps wanted = model.settings.start_overlaps;
     if (!overlaps.empty() && wanted == StartOverlaps::refuse)
-        refuse_overlap(reports.front(), reports.size() - 1, "start_overlaps is \"refuse\"");
+        refuse_overlap(reports.front(), reports.size() - 1, "the setting start_overlaps is \"refuse\"");
     std::vector<StartMove> moves;
     if (!overlaps.empty() && wanted == StartOverlaps::resolve) {
         MoveApart(model, search).run(overlaps);

@@ -83,7 +83,7 @@ TEST_CASE("two tetrahedra that meet in one node are no manifold, and the node is
     CHECK(inspect(mesh).components == 1);
     CHECK_FALSE(inspect(mesh).closed_manifold);
     CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==
-          "node 0, where parts of the boundary meet that share no edge at this node");
+          "node 0, at which parts of the boundary meet without a common edge");
     CHECK(mesh::manifold_fault(boundary_triangles(mesh::ball(1, 4).tetrahedra)).empty());
     mesh.tetrahedra.back() = {0, 1, 4, 5};
     CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==

@@ -206,7 +206,7 @@ TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") 
                Contains("second or higher order"));
     CHECK_THAT(refusal("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")),
-               Contains("$Nodes, node 2 of 5") && Contains("1 a second time"));
+               Contains("$Nodes, node 2 of 5") && Contains("1, the number of an earlier node"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")),
                Contains("position: found nan, expected a finite number"));
     CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1e999 0 0")),
@@ -272,7 +272,7 @@ TEST_CASE("a bad TetGen file is refused with the place and the reason", "[unit]"
     CHECK_THAT(refused(nodes, replaced(elements, "1 4 2", "1 10 2")), Contains("second-order"));
     CHECK_THAT(refused(nodes, replaced(elements, "1 4 2", "2 4 2")), Contains("end of the file"));
     CHECK_THAT(refused(nodes, elements + "2 1 2 3 4 0.5 7\n"), Contains("more tetrahedra than its header announces"));
-    CHECK_THAT(refused(replaced(nodes, "2 1 0 0", "1 1 0 0"), elements), Contains("1 a second time"));
+    CHECK_THAT(refused(replaced(nodes, "2 1 0 0", "1 1 0 0"), elements), Contains("1, the number of an earlier node"));
     const TemporaryFolder folder;
     CHECK_THROWS_WITH(mesh::read(folder.write("lonely.node", nodes)), Contains("lonely.ele: found no such file"));
 }
