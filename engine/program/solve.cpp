@@ -52,8 +52,8 @@ void print(const SolveOptions& options, const ContactProblem& problem, const Pro
     std::cout << problem.name << ": " << count(problem.contacts()) << " contacts in " << count(solution.regions)
               << " contact regions; the largest region has " << count(solution.largest_region) << " contacts\n";
     if (problem.freedoms > 0)
-        std::cout << "  condensed     from a global problem with " << count(problem.freedoms)
-                  << " degrees of freedom to the contacts\n";
+        std::cout << "  condensed     to the unknowns of the contacts, from " << count(problem.freedoms)
+                  << " degrees of freedom\n";
     std::cout << "  method        " << name_of(options.settings.method) << ", " << name_of(options.settings.friction)
               << "\n"
               << "  iterations    " << count(solution.iterations) << " in " << with_unit(solution.seconds, "s") << "\n"

@@ -214,7 +214,9 @@ const Rule<Settings>& rule_of<Settings>() {
             .key("tolerance", &S::tolerance,
                  {.meaning = "relative error at which the solver of a region stops", .limits = above(0)})
             .key("max_iterations", &S::max_iterations,
-                 {.meaning = "largest number of sweeps over a region", .limits = at_least(1)})
+                 {.meaning = "largest number of solver iterations for a contact region in a step; an iteration passes "
+                             "over all its contacts once",
+                  .limits = at_least(1)})
             .key(
                 "recovery_speed", &S::recovery_speed,
                 {.meaning =

@@ -142,7 +142,9 @@ void require_page_library(const std::filesystem::path& file) {
               .field = {},
               .found = "a build without three.js",
               .expected = "a build with three.js",
-              .hint = "install libjs-three or set SKERRY_THREE_JS, then configure and build again"}
+              .hint =
+                  "install the package libjs-three, or set the CMake variable SKERRY_THREE_JS to the file "
+                  "three.module.js, then build again"}
         .raise();
 }
 

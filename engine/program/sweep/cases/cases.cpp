@@ -16,8 +16,8 @@ void add_parameter(Cases& cases, const std::string& name, const std::vector<std:
     const std::string own = name.empty() ? places.front() : name;
     constexpr std::array columns{case_column, status_column, message_column, warnings_column, hash_column};
     if (std::ranges::find(columns, own) != columns.end())
-        place.key("name").refuse(in_quotes(own) + ", a column that every table has",
-                                 "a different name for every parameter");
+        place.key("name").refuse(in_quotes(own) + ", which is reserved for a column of the results",
+                                 "another name for the parameter");
     for (const Parameter& other : cases.parameters)
         if (other.name == own)
             place.key("name").refuse(in_quotes(own) + ", which is already the name of a parameter",
@@ -50,8 +50,9 @@ void expand_grid(const SweepFile& sweep, Cases& cases) {
         const std::vector<Json> values = values_of(entry);
         if (values.size() * cases.values.size() > most_cases)
             sweep.place.key("grid").refuse(std::to_string(values.size() * cases.values.size()) +
-                                               " combinations of the parameters 0 to " + std::to_string(p),
-                                           "at most " + std::to_string(most_cases) + " cases");
+                                               " combinations of the first " + std::to_string(p + 1) + " parameters",
+                                           "at most " + std::to_string(most_cases) + " cases in all",
+                                           "use fewer parameters or fewer values");
         std::vector<Row> rows;
         for (const Row& row : cases.values)
             for (const Json& value : values) rows.emplace_back(row).emplace_back(value);

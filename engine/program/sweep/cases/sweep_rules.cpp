@@ -10,9 +10,10 @@ namespace {
 
 constexpr Real largest_seed = 4294967295;
 
-const KeyDoc set_doc{
-    .meaning = "place in the scene, written as for `skerry run --set`, or a list of places that all get the same value",
-    .required = true};
+const KeyDoc set_doc{.meaning =
+                         "place of the varied value in the scene, as in `skerry run --set`, for example "
+                         "materials.rubber.young_modulus; or a list of places that all get the same value",
+                     .required = true};
 const KeyDoc name_doc{
     .meaning = "column heading of this parameter in tables; default: the place in the scene that the parameter sets"};
 
