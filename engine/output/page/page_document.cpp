@@ -144,7 +144,7 @@ void require_page_library(const std::filesystem::path& file) {
               .expected = "a build with three.js",
               .hint =
                   "install the package libjs-three, or set the CMake variable SKERRY_THREE_JS to the file "
-                  "three.module.js, then build again"}
+                  "three.min.js, then build again"}
         .raise();
 }
 
