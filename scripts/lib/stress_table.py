@@ -8,11 +8,11 @@ from records import by_item, cells, rows_of, write_csv
 
 HEADER = """# Stress
 
-On this page you see which extreme inputs the engine withstands. `scripts/stress` runs the tests tagged `[stress]` in
-`tests/scene/stress`, writes this page, and lists all {checks} checks with their tests in `build/stress/stress.csv`.
-An item is a group of checks of one kind of input. The table names the first scene of each item. In all items
-the engine must take each step or refuse it with a message, and the state must stay finite. The item `-` contains
-problems that users of other engines reported. {items} numbered items, {failed} checks failed.
+This page shows which extreme inputs the engine withstands. `scripts/stress` runs the tests tagged `[stress]` in
+`tests/scene/stress`, writes this page, and lists all {checks} checks in `build/stress/stress.csv`. An item is a group of
+checks of one kind of input. The table names the first scene of each item; "and 3 more" counts its other scenes. In
+all items the engine must take each step or refuse the step with a message, and the state must stay finite. The item
+`-` contains problems that users of other engines reported. {items} numbered items, {failed} checks failed.
 
 | item | checks | passed | first scene |
 |---:|---:|---:|---|
@@ -22,16 +22,15 @@ COLUMNS = ["item", "scene", "criterion", "found", "passed", "file", "test"]
 NOTES = """
 ## Notes
 
-- **2**: The stiffest body sets the time step of all bodies. To avoid short steps, make stiff bodies
-  [implicit](methods/implicit_bodies.md).
-- **6**: If all nodes of a body lie exactly on a line, all elastic forces point along the line, so the body stays on
-  this line until it is disturbed. A body pressed into a random heap of nodes may end twisted, without inverted
-  tetrahedra.
-- **9**: The push-out moves overlapping nodes apart at no more than 0.5 m/s. The rest of the body follows by its
-  elasticity, so the body can leave at up to twice this speed.
-- **10, 12, 16, 17, 22, 23**: contact problems without a simulation; `tests/unit/solver` contains more of them.
-- **20**: By default contacts are solved to a relative error of 1e-3. So in each step a heap can creep by 1e-3 of the
-  distance that gravity would move it. To keep a heap still for an hour, let it sleep or set `tolerance` to 1e-8.
+- **2**: All explicit bodies take time steps of the same length, which the stiffest of them limits. To avoid short
+  steps, make stiff bodies [implicit](methods/implicit_bodies.md).
+- **6**: If all nodes of a body lie exactly on a line, all elastic forces point along the line, so the nodes stay
+  on the line until a disturbance.
+- **9**: The push-out moves overlapping nodes apart at up to 0.5 m/s. The rest of the body follows like a mass on a
+  spring whose end moves at this speed. The elastic rebound lets the body leave at up to twice this speed.
+- **20**: By default the relative error of contact impulses is at most 1e-3. So in each step a heap can creep by 1e-3
+  of the distance that it would fall without contacts. To keep a heap still for an hour, leave the setting `sleep` on,
+  or set `tolerance` to 1e-8.
 """
 
 
