@@ -70,7 +70,7 @@ RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time
     const RunPlan plan{options.seconds.value_or(memory.seconds), memory.frame_step, memory.samples};
     expect_countable_frames(options, plan);
     if (plan.seconds > time + RunPlan::slack * plan.frame_step) return plan;
-    char found[64], expected[64];
+    char found[128], expected[128];
     std::snprintf(found, sizeof found, "a checkpoint at %g s", time);
     std::snprintf(expected, sizeof expected, "a checkpoint from before the end of the run, which is at %g s",
                   plan.seconds);
