@@ -8,12 +8,13 @@ from records import by_item, cells, rows_of, write_csv
 
 HEADER = """# Accuracy
 
-This page shows how close the engine comes to known solutions. `scripts/accuracy` runs the tests tagged `[accuracy]` in
-`tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks in
-`build/accuracy/accuracy.csv`. The checks form {items} items, one for each problem with a known solution. The table shows
-the {shown} items with the largest ratios of error to tolerance, and of each item the check with the largest ratio. Errors
-and tolerances in % are relative to the expected value, all others are absolute. In the formulas, `n` is a number of
-elements, and `h` the time step or, in some items, a length. [Accuracy](methods/accuracy.md) explains the formulas.
+This page shows how close the engine comes to known solutions. `scripts/accuracy` runs the tests tagged
+`[accuracy]` in `tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks in
+`build/accuracy/accuracy.csv`. The checks form {items} items, one for each problem with a known solution. The table
+shows the {shown} items with the largest ratios of error to tolerance, and of each item the check with the largest
+ratio. Errors and tolerances in % are relative to the expected value, all others are absolute. In the formulas,
+`n` is a number of elements, and `h` the time step or, in some items, a length. [Accuracy](methods/accuracy.md)
+explains the formulas.
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|

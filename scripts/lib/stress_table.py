@@ -9,10 +9,11 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Stress
 
 This page shows which extreme inputs the engine withstands. `scripts/stress` runs the tests tagged `[stress]` in
-`tests/scene/stress`, writes this page, and lists all {checks} checks in `build/stress/stress.csv`. An item is a group of
-checks of one kind of input. The table names the first scene of each item; "and 3 more" counts its other scenes. In
-all items the engine must take each step or refuse the step with a message, and the state must stay finite. The item
-`-` contains problems that users of other engines reported. {items} numbered items, {failed} checks failed.
+`tests/scene/stress`, writes this page, and lists all {checks} checks in `build/stress/stress.csv`. An item is a
+group of checks of one kind of input. The table names the first scene of each item; "and 3 more" counts its
+other scenes. In all items the engine must take each step or refuse the step with a message, and the state must
+stay finite. The item `-` contains problems that users of other engines reported. {items} numbered items,
+{failed} checks failed.
 
 | item | checks | passed | first scene |
 |---:|---:|---:|---|

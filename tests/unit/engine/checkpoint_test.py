@@ -107,8 +107,8 @@ class CheckpointTest(ProgramCase):
                                "--every", "0.05"], capture_output=True, text=True, timeout=300, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)))
         self.assertEqual(done.returncode, 0, done.stderr)
-        said = (r"no checkpoint at 0.[0-9]* s: .*run.skerry.*enough space for the whole file "
-                r"\(free disk space or choose another path\); the run goes on")
+        said = (r"the checkpoint at 0.[0-9]* s could not be written: .*run.skerry.*enough space for the whole file "
+                r"\(free disk space or choose another path\); the run continues")
         self.assertEqual(len(re.findall(said, done.stderr)), 4, done.stderr)
         found = json.loads(stats.read_text())
         self.assertEqual(found["checkpoints"], {"written": 0, "failed": 4})

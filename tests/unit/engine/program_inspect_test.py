@@ -192,7 +192,7 @@ class ProgramInspectTest(ProgramCase):
         self.write("m.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n")
         mesh = self.write("m.ele", "2 4 1\n1 1 2 3 4 -1\n2 2 3 4 5 20\n")
         self.assertEqual(json.loads(self.skerry("inspect", mesh, "--json").stdout)["labels"], {"-1": 1, "20": 1})
-        self.assertIn("-1: 1, 20: 1 tetrahedra", self.skerry("inspect", mesh).stdout)
+        self.assertIn("label -1: 1 tetrahedra, label 20: 1 tetrahedra", self.skerry("inspect", mesh).stdout)
         layered = self.write("layered.json", {"materials": {"rubber": {"E": 1e5}, "steel": {"E": 1e7}}, "bodies": [
             {"mesh": {"file": "m.ele"}, "material": "rubber", "materials": {"20": "steel"}}]})
         kind = json.loads(self.skerry("inspect", layered, "--json").stdout)["body_kinds"][0]

@@ -51,7 +51,7 @@ FILES = [
     ("a name twice", grid({"name": "a", "values": [1]}, {"name": "a", "set": "seconds", "values": [1]}),
      ["grid[1].name", '"a", which is already']),
     ("a name that tables have", grid({"name": "status", "values": [1]}),
-     ["grid[0].name", '"status"', "a different name"]),
+     ["grid[0].name", '"status"', "another name for the parameter"]),
     ("an item that is not there", grid({"set": "bodies[3].name", "values": ["a"]}),
      ["cases.json", "grid[0].set", "drop.json", "index 3 in a list of length 1"]),
     ("a place within a number", grid({"set": "seconds.x", "values": [1]}), ["grid[0].set", "seconds.x", "an object"]),
