@@ -14,9 +14,9 @@ namespace skerry {
 namespace {
 
 /// The archive (see list_state.h) that writes to a file.
-class Writer final : public Archive {
+class StateWriter final : public Archive {
 public:
-    explicit Writer(Hdf5Image& image) : image_(image) {}
+    explicit StateWriter(Hdf5Image& image) : image_(image) {}
 
     void column(const std::string& path, AnyColumn column) override {
         put_rows(path, column.type(), column.read(), column.size());
@@ -50,7 +50,7 @@ void save_world(WorldState& world, const SavedNote& note, const std::filesystem:
     world.settle();
     Hdf5Image image(file.string());
     SavedRows saved = rows_to_save(world);
-    Writer writer(image);
+    StateWriter writer(image);
     list_settings(world.model.settings, world.model.tuning, saved, writer);
     list_state(world, saved, writer);
     std::uint64_t hash = state_hash(world);
