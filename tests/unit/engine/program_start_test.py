@@ -77,7 +77,7 @@ class ProgramStartTest(ProgramCase):
         scene = self.write("joined.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
             {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
         said = self.skerry("run", scene).stdout
-        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of the boundary meet", said)
+        self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of", said)
         self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
 
     def test_a_collider_that_turns_by_much_in_a_step_is_named(self):
