@@ -54,6 +54,10 @@ function(skerry_folder name)
         return()
     endif()
     skerry_objects(skerry_${name} ${sources})
+    if(SKERRY_UNITY GREATER 12)
+        # In larger units gcc inlines less: steps take 3 to 8 % longer.
+        set_target_properties(skerry_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
+    endif()
     if(NOT name STREQUAL "jobs")  # which has flags of its own, those of OpenMP
         skerry_share_headers(skerry_${name} skerry_precompiled)
     endif()
