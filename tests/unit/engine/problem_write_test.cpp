@@ -133,6 +133,9 @@ TEST_CASE("what cannot be written is refused and leaves what was there", "[unit]
     ContactProblem broken = problem;
     std::swap(broken.row_offset[0], broken.row_offset[1]);
     CHECK(refusal_to_write(broken, path).find("at entry 0") != std::string::npos);
+    broken = problem;
+    std::swap(broken.row_offset[1], broken.row_offset[2]);
+    CHECK(refusal_to_write(broken, path).find("at entry 2, expected an offset >=") != std::string::npos);
     CHECK(bytes_of(path) == "old");
     CHECK(refusal_to_write(problem, path / "inside.hdf5").find("old.hdf5") != std::string::npos);
 }
