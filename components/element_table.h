@@ -23,8 +23,18 @@ using ElementRotation = std::array<ElementLane, 4>;  // unit quaternion w, x, y,
 using ElementForm = std::array<ElementLane, 6>;      // symmetric matrix: xx, yy, zz, xy, yz, zx
 // coefficients q [1/(kg m^2)] and b [kg m^2] of the masses of frame_masses.h
 using FrameMass = std::array<ElementLane, 2>;
-// Components xx, yy, zz, xy, yz, zx of a symmetric strain, followed by a volume strain, which is independent of them.
-using ElementStrain = std::array<ElementLane, 7>;
+
+/// Number of Maxwell elements (a spring in series with a dashpot) that act in parallel with the material law of each
+/// element (docs/methods/elasticity.md 6).
+inline constexpr std::size_t maxwell_count = 3;
+// Relaxation rates of the Maxwell elements of a body, the highest first [1/s]
+using RelaxationRates = std::array<Real, maxwell_count>;
+// All strains in the last step that the losses of an element depend on, twice, in single precision. Entries 0 to 5:
+// components xx, yy, zz, xy, yz, zx of Green's strain. Entries 6 to 23: strains of the springs of the Maxwell elements,
+// six components each. Entry 24: volume strain of the spring of the bulk viscosity. Entry 25 is unused; with it a block
+// fills whole cache lines.
+using SpringStrain = std::array<Lanes<float, element_lanes>, 8 + 6 * maxwell_count>;
+inline constexpr std::size_t bulk_entry = 6 + 6 * maxwell_count;  // entry of the spring of the bulk viscosity
 
 /// The tetrahedra of the meshes, in mesh order. Unused lanes repeat the first node of the body and have zero volume.
 /// Tetrahedron t of the table is lane t % element_lanes of block t / element_lanes.
@@ -77,16 +87,14 @@ struct ElementBlockTable {
     // Corotational frame in this step. The columns `rotation` and `rotation_next` are swapped when the step is
     // committed.
     Column<ElementRotation> rotation_next;
-    // Strain of the dashpots (systems/material/relaxation.h). Entries 0 to 5: twice the Green strain of the dashpot
-    // that relaxes part of the stress. Entry 6: twice the volume strain of the dashpot of the bulk viscosity. 0 without
-    // viscosity.
-    Column<ElementStrain> viscous_strain;
-    // Strain of the dashpots at the end of this step. The columns viscous_strain and viscous_strain_next are swapped
-    // when the step is committed. Between steps viscous_strain_next is therefore the strain before the last step.
-    Column<ElementStrain> viscous_strain_next;
-    Column<ElementLane> relaxation_rate;  // relaxation rate of the part of the stress that relaxes [1/s]
-    Column<ElementLane> own_frequency;    // upper bound of the highest frequency of the element at rest [1/s]
-    // ratio of the stiffness of the relaxing stress to the stiffness of the material law
+    // Strains of the springs of the Maxwell elements in the last step (systems/material/relaxation.h); 0 without losses
+    Column<SpringStrain> spring_strain;
+    // Strains of the springs in this step. The columns spring_strain and spring_strain_next are swapped when the step
+    // is committed.
+    Column<SpringStrain> spring_strain_next;
+    Column<RelaxationRates> relaxation_rate;  // equal for all blocks of a body
+    Column<ElementLane> own_frequency;        // upper bound of the highest frequency of the element at rest [1/s]
+    // ratio of the stiffness of the spring of each Maxwell element to the stiffness of the material law
     Column<Real> relaxing_share;
     Column<Index> body;      // row of BodyTable
     Column<Index> material;  // row of MaterialTable
@@ -111,11 +119,11 @@ struct ElementBlockTable {
         visit("part", part, ColumnRole::state);
         visit("opens_patch", opens_patch, ColumnRole::state);
         visit("viscous_time", viscous_time, ColumnRole::state);
-        visit("viscous_strain", viscous_strain, ColumnRole::state);
+        visit("spring_strain", spring_strain, ColumnRole::state);
         visit("relaxation_rate", relaxation_rate, ColumnRole::state);
         visit("own_frequency", own_frequency, ColumnRole::state);
         visit("relaxing_share", relaxing_share, ColumnRole::state);
-        visit("viscous_strain_next", viscous_strain_next, ColumnRole::memory);
+        visit("spring_strain_next", spring_strain_next, ColumnRole::memory);
         visit("rotation_next", rotation_next, ColumnRole::scratch);
     }
 };

@@ -2,6 +2,7 @@
 // type of the loaded values.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "components/types.h"
@@ -27,11 +28,16 @@ typedef Real Real8 __attribute__((vector_size(sizeof(Real) * element_lanes)));
 /// Half of the lanes of a Real8.
 typedef Real Real4 __attribute__((vector_size(sizeof(Real) * element_lanes / 2)));
 
+// Vectors of single precision: one number for each lane of a block, and for half of the lanes.
+typedef float Float8 __attribute__((vector_size(sizeof(float) * element_lanes)));
+typedef float Float4 __attribute__((vector_size(sizeof(float) * element_lanes / 2)));
+
 // Types for loads of vectors from the address of any Real. They need no alignment and may alias other reals. memcpy is
 // not used: without 512-bit registers the compiler turns memcpy into copies of 16 bytes, and a load of 32 bytes right
 // after such copies has to wait for them.
 typedef Real Real8InMemory __attribute__((vector_size(sizeof(Real8)), aligned(alignof(Real)), may_alias));
 typedef Real Real4InMemory __attribute__((vector_size(sizeof(Real4)), aligned(alignof(Real)), may_alias));
+typedef float Float8InMemory __attribute__((vector_size(sizeof(Float8)), may_alias));
 
 /// Vector type of the element force kernel: a vector that fits into one register.
 #ifdef __AVX512VL__  // tested instead of __AVX512F__, which cmake/flags.cmake hides from Eigen
@@ -43,6 +49,9 @@ template <class T>
 inline constexpr std::size_t lanes_of = sizeof(T) / sizeof(Real);
 // number of KernelReal vectors per block
 inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>;
+/// One value for each register-wide part of a block.
+template <class T>
+using Parts = std::array<T, kernel_parts>;
 
 [[gnu::always_inline]] inline Real4 half_at(const Real* from) {
     return *reinterpret_cast<const Real4InMemory*>(from);
@@ -53,6 +62,11 @@ inline constexpr std::size_t kernel_parts = element_lanes / lanes_of<KernelReal>
 
 [[gnu::always_inline]] inline Real8 load(const Lanes<Real, element_lanes>& from) {
     return *reinterpret_cast<const Real8InMemory*>(from.lane);
+}
+
+/// Loads numbers of single precision as reals.
+inline Real8 load_reals(const Lanes<float, element_lanes>& from) {
+    return __builtin_convertvector(static_cast<Float8>(*reinterpret_cast<const Float8InMemory*>(from.lane)), Real8);
 }
 
 [[gnu::always_inline]] inline void store(const Real8& from, Lanes<Real, element_lanes>& to) {

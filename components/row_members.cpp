@@ -34,6 +34,7 @@ std::int64_t number_at(const std::byte* place, NumberType type) {
         case NumberType::uint64:
             return static_cast<std::int64_t>(copy_of<std::uint64_t>(place));
         case NumberType::real:
+        case NumberType::single:
             break;
     }
     throw std::logic_error("number_at() was called for a column of reals, but reads integers only");

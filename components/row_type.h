@@ -15,14 +15,14 @@
 
 namespace skerry {
 
-enum class NumberType : std::uint8_t { real, int32, uint8, uint16, uint32, uint64 };
+enum class NumberType : std::uint8_t { real, single, int32, uint8, uint16, uint32, uint64 };
 
 inline constexpr std::size_t bytes_of(NumberType type) {
-    constexpr std::array<std::size_t, 6> bytes{8, 4, 1, 2, 4, 8};
+    constexpr std::array<std::size_t, 7> bytes{8, 4, 4, 1, 2, 4, 8};
     return bytes[static_cast<std::size_t>(type)];
 }
 
-/// Returns the integer at an address. Throws std::logic_error for reals.
+/// Returns the integer at an address. Throws std::logic_error for reals of either precision.
 std::int64_t number_at(const std::byte* place, NumberType type);
 
 struct Member;
@@ -54,6 +54,8 @@ template <class T>
 struct NumbersOf;
 template <>
 struct NumbersOf<Real> : Reals<1> {};
+template <>
+struct NumbersOf<float> : SameNumbers<NumberType::single, 1> {};
 template <class T>
 requires(std::is_integral_v<T> && (std::is_unsigned_v<T> || sizeof(T) == sizeof(std::int32_t))) struct NumbersOf<T>
     : SameNumbers<std::is_signed_v<T> ? NumberType::int32

@@ -29,6 +29,8 @@ hid_t hdf5_type(NumberType type) {
     switch (type) {
         case NumberType::real:
             return H5T_NATIVE_DOUBLE;
+        case NumberType::single:
+            return H5T_NATIVE_FLOAT;
         case NumberType::int32:
             return H5T_NATIVE_INT32;
         case NumberType::uint8:

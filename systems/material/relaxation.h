@@ -2,8 +2,9 @@
 // (docs/methods/elasticity.md 6).
 #pragma once
 
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <complex>
 
 #include "components/element_table.h"
 #include "components/material_table.h"
@@ -20,6 +21,10 @@ struct LaneSymmetric {
 };
 
 template <class T>
+[[gnu::always_inline]] inline LaneSymmetric<T> operator+(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
+    return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.zx + b.zx};
+}
+template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> operator-(const LaneSymmetric<T>& a, const LaneSymmetric<T>& b) {
     return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.zx - b.zx};
 }
@@ -32,7 +37,7 @@ template <class T>
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.zx * b.zx);
 }
 
-/// Twice Green's strain: F^T F - I. Rotations do not change this strain. All viscous strains are stored doubled, so
+/// Twice Green's strain: F^T F - I. Rotations do not change this strain. All strains of springs are stored doubled, so
 /// that no strain has to be halved.
 template <class T>
 [[gnu::always_inline]] inline LaneSymmetric<T> twice_green_strain(const LaneMat3<T>& F) {
@@ -61,30 +66,67 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// Twice the strain of the springs of the two Maxwell elements. The strain of a spring is the total strain minus the
-/// strain of its dashpot.
+/// Sum of the strains of the springs of all Maxwell elements, twice. `volume`: volume strain of the spring of the bulk
+/// viscosity.
 template <class T>
 struct ViscousStretch {
     LaneSymmetric<T> strain;
     T volume;
 };
 
-/// Spring stiffnesses of the two Maxwell elements [Pa]. `mu` and `lambda` are the Lame constants of the material, times
-/// the ratio relaxing_share; `bulk` acts on the change of volume alone.
+/// Strains of the springs of the Maxwell elements, twice. The strain of a spring is the total strain minus the strain
+/// of its dashpot.
+template <class T>
+struct Springs {
+    std::array<LaneSymmetric<T>, maxwell_count> strain;
+    T volume;
+
+    ViscousStretch<T> sum() const {
+        ViscousStretch<T> sum{strain[0], volume};
+        for (std::size_t k = 1; k < maxwell_count; ++k) sum.strain = sum.strain + strain[k];
+        return sum;
+    }
+};
+
+/// Spring stiffnesses of the Maxwell elements [Pa]. `mu` and `lambda`: Lame constants of each of the maxwell_count
+/// equal springs, which are those of the material times the ratio relaxing_share. `bulk` acts on the change of volume
+/// alone.
 struct ViscousModuli {
     Real mu, lambda, bulk;
 };
 
-/// Ratio of the lowest frequency of a free body to the lowest relaxation rate. The ratio allows for held bodies: a held
-/// end makes the lowest frequency of a beam six times lower.
-inline constexpr Real rates_below = 20;
+/// Ratio of the lowest frequency of a free body to the lower end of the band of relaxation rates. The ratio allows for
+/// held bodies: a held end makes the lowest frequency of a beam six times lower.
+inline constexpr Real rates_below = 12;
 
-/// Ratio s of the stiffness of the relaxing part to the stiffness of the material law, chosen for a given loss factor
-/// at the lowest frequency of a body. Relaxation rates are spread evenly on a logarithmic scale; the highest rate is
-/// `span` times the lowest. At the lowest frequency the relaxing part adds a loss modulus of (pi / 2) s / log(span) and
-/// a storage modulus of s log(rates_below) / log(span), both relative to the stiffness of the law.
+/// Relaxation rates of the Maxwell elements. They divide a band evenly on a logarithmic scale. The upper end of the
+/// band is `highest` [1/s], the lower end `highest / span`.
+inline RelaxationRates relaxation_rates(Real highest, Real span) {
+    RelaxationRates rates;
+    for (std::size_t k = 0; k < maxwell_count; ++k)
+        rates[k] = highest * std::pow(span, -(static_cast<Real>(k) + 0.5) / maxwell_count);
+    return rates;
+}
+
+/// Ratio of the stiffness of each spring to the stiffness of the material law, so that a body that vibrates freely at
+/// its lowest frequency has this loss factor eta: its amplitude falls by the factor exp(-pi eta) in a period. The lowest
+/// frequency is taken to be rates_below times the lower end of the band of rates. A mode with the motion exp(z t), where
+/// z = omega (i - eta/2), has the stiffness -z^2 of the mass, and a Maxwell element of rate r adds the fraction
+/// z / (z + r) to the stiffness of the law.
 inline Real relaxing_share(Real loss_factor, Real span) {
-    return loss_factor * std::log(span) / (std::numbers::pi / 2 - loss_factor * std::log(rates_below));
+    const std::complex<Real> z = rates_below * std::complex<Real>(-loss_factor / 2, 1), needed = -z * z;
+    std::complex<Real> added = 0;
+    for (const Real rate : relaxation_rates(span, span)) added += z / (z + rate);
+    const Real slope = needed.imag() / needed.real();
+    return slope / (added.imag() - slope * added.real());
+}
+
+/// Number of springs that count in the stiffness for steps of length `step` [s]. A spring that relaxes at the rate r
+/// counts as 2 / (2 + step r).
+inline Real8 springs_that_count(const RelaxationRates& rates, const Real8& step) {
+    Real8 count{};
+    for (const Real rate : rates) count += 2.0 / (2.0 + step * rate);
+    return count;
 }
 
 /// Relaxation time of the bulk viscosity times the highest frequency of the element at rest (own_frequency).
@@ -97,35 +139,35 @@ inline ViscousModuli viscous_moduli(const MaterialConstants& material, Real rela
 
 /// Elastic energy density of the springs of all Maxwell elements [J/m^3].
 template <class T>
-[[gnu::always_inline]] inline T energy_density(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
-    const T trace = stretch.strain.trace();
-    return 0.125 * ((2 * moduli.mu) * inner_product(stretch.strain, stretch.strain) + moduli.lambda * (trace * trace) +
-                    moduli.bulk * (stretch.volume * stretch.volume));
+T energy_density(const ViscousModuli& moduli, const Springs<T>& springs) {
+    T sum = moduli.bulk * (springs.volume * springs.volume);
+    for (const LaneSymmetric<T>& strain : springs.strain)
+        sum = sum + (2 * moduli.mu) * inner_product(strain, strain) + moduli.lambda * (strain.trace() * strain.trace());
+    return 0.125 * sum;
 }
 
-/// Second Piola-Kirchhoff stress of the springs, times `scale` [Pa].
+/// Second Piola-Kirchhoff stress of the springs [Pa].
 template <class T>
-[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch,
-                                                      const T& scale) {
-    LaneSymmetric<T> S = T(scale * moduli.mu) * stretch.strain;
-    const T pressure =
-        (scale * (0.5 * moduli.lambda)) * stretch.strain.trace() + (scale * (0.5 * moduli.bulk)) * stretch.volume;
+LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
+    LaneSymmetric<T> S = T(T{} + moduli.mu) * stretch.strain;
+    const T pressure = 0.5 * moduli.lambda * stretch.strain.trace() + 0.5 * moduli.bulk * stretch.volume;
     S.xx += pressure;
     S.yy += pressure;
     S.zz += pressure;
     return S;
 }
 
-template <class T>
-[[gnu::always_inline]] inline LaneSymmetric<T> stress(const ViscousModuli& moduli, const ViscousStretch<T>& stretch) {
-    return stress(moduli, stretch, T{} + 1.0);
-}
-
-template <class T>
-[[gnu::always_inline]] inline ViscousStretch<T> viscous_stretch(const LaneSymmetric<T>& strain,
-                                                                const ElementStrain& forgotten, std::size_t part = 0) {
-    const auto old = [&](std::size_t i) { return load_part<T>(forgotten[i], part); };
-    return {strain - LaneSymmetric<T>{old(0), old(1), old(2), old(3), old(4), old(5)}, strain.trace() - old(6)};
+/// Strains of the springs of a block in its present shape. `strain`: twice Green's strain in this shape.
+inline Springs<Real8> springs_in(const LaneSymmetric<Real8>& strain, const SpringStrain& last) {
+    const auto six_from = [&](std::size_t i) {
+        return LaneSymmetric<Real8>{load_reals(last[i]),     load_reals(last[i + 1]), load_reals(last[i + 2]),
+                                    load_reals(last[i + 3]), load_reals(last[i + 4]), load_reals(last[i + 5])};
+    };
+    const LaneSymmetric<Real8> change = strain - six_from(0);
+    Springs<Real8> springs;
+    for (std::size_t k = 0; k < maxwell_count; ++k) springs.strain[k] = six_from(6 + 6 * k) + change;
+    springs.volume = load_reals(last[bulk_entry]) + change.trace();
+    return springs;
 }
 
 }  // namespace skerry

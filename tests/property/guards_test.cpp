@@ -111,8 +111,8 @@ struct GuardedBody : test::ElasticBody {
         ElementInputs now = inputs();
         now.implicit_modulus = elements.implicit_modulus;
         now.viscous_time = viscous_time;
-        compute_element_forces(*executor, now, position, velocity, 1e-3, 0, elements.rotation,
-                               {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
+        compute_element_forces(*executor, now, position, velocity, 1e-3, elements.rotation,
+                               {elements.rotation_next, elements.spring_strain_next}, patch_forces());
         gather();
         return force;
     }

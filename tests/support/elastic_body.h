@@ -80,7 +80,7 @@ struct ElasticBody {
                 .relaxation_rate = elements.relaxation_rate,
                 .own_frequency = elements.own_frequency,
                 .relaxing_share = elements.relaxing_share,
-                .viscous_strain = elements.viscous_strain,
+                .spring_strain = elements.spring_strain,
                 .mass_form = elements.mass_form,
                 .frame_mass = elements.frame_mass,
                 .frame_bound = elements.frame_bound};
@@ -89,8 +89,8 @@ struct ElasticBody {
     /// Computes element forces. Viscous strain relaxes for `h`, the time since the last evaluation [s]. Returns the
     /// dissipated energy [J].
     Real compute_elements(Executor& executor, Real h = 0) {
-        return compute_element_forces(executor, inputs(), position, velocity, h, 0, elements.rotation,
-                                      {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
+        return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,
+                                      {elements.rotation_next, elements.spring_strain_next}, patch_forces());
     }
     PatchForces patch_forces() {
         return {.blocks = patches.blocks,

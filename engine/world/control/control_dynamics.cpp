@@ -133,8 +133,8 @@ void copy_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
-/// Sets the viscous strain of a body as if the body had been held in its present shape for a long time, so that all
-/// viscous stress has relaxed.
+/// Sets the strains of the springs of a body as if the body had been held in its present shape for a long time, so that
+/// all viscous stress has relaxed.
 void relax_fully(Model& model, std::size_t body) {
     const Range blocks = model.bodies.blocks[body];
     const ElementInputs elements = model.all_elements();
@@ -142,13 +142,14 @@ void relax_fully(Model& model, std::size_t body) {
     kernels().element_strains(elements, blocks, model.nodes.position, strain);
     for (Index b = blocks.begin; b < blocks.end; ++b) {
         if (!elements.material_of(static_cast<std::size_t>(b)).relaxes()) continue;
-        ElementStrain& taken = model.elements.viscous_strain[static_cast<std::size_t>(b)];
+        SpringStrain& taken = model.elements.spring_strain[static_cast<std::size_t>(b)];
+        taken = {};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const Mat3& E = strain[static_cast<std::size_t>(b - blocks.begin) * element_lanes + l];
-            const std::array<Real, 7> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0), E.trace()};
-            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = 2 * entry[i];
+            const std::array<Real, 6> entry{E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
+            for (std::size_t i = 0; i < entry.size(); ++i) taken[i][l] = static_cast<float>(2 * entry[i]);
         }
-        model.elements.viscous_strain_next[static_cast<std::size_t>(b)] = taken;
+        model.elements.spring_strain_next[static_cast<std::size_t>(b)] = taken;
     }
 }
 

@@ -52,7 +52,8 @@ private:
     std::vector<ElementForm> mass_form_;
     std::vector<FrameMass> frame_mass_;
     std::vector<Real> frame_bound_;
-    std::vector<ElementLane> mass_share_, volume_, implicit_modulus_, relaxation_rate_, own_frequency_;
+    std::vector<ElementLane> mass_share_, volume_, implicit_modulus_, own_frequency_;
+    std::vector<RelaxationRates> relaxation_rate_;
     Real rest_step_ = 0, stable_step_ = 0;
 };
 
@@ -150,10 +151,9 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
         for (const std::size_t body : bodies) weigh(model, body);
         model.clusters_open |= !bodies.empty();
         settle_clusters(model, state_->scratch.stiffness_sum);
-        // If the new material does not relax, a step writes neither viscous_strain nor viscous_strain_next, but swaps
+        // If the new material does not relax, a step writes neither spring_strain nor spring_strain_next, but swaps
         // these two columns. Their values must therefore be equal.
-        model.elements.viscous_strain_next = model.elements.viscous_strain;
-        state_->clock.kick_before = 0;
+        model.elements.spring_strain_next = model.elements.spring_strain;
     }
     state_->record.balance.close();
     for (const std::size_t body : bodies) model.wake(body);

@@ -49,7 +49,7 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
     const Real lowest = lowest_frequency_estimate(
         position.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size())),
         rows_of(model.nodes.mass, nodes), speed);
-    find_relaxation(model.all_elements(), blocks, position, position, model.nodes.mass, stiffness_sum, lowest,
+    find_relaxation(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum, lowest,
                     step_times_frequency / step,
                     {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
                      rows_of(elements.relaxing_share, blocks)});
@@ -221,7 +221,7 @@ void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>
     std::ranges::fill(rows_of(elements.implicit_modulus, blocks), ElementLane{});
     disarm_guards(rows_of(elements.part, blocks), rows_of(elements.volume, blocks));
     if (model.bodies.cluster_step[b] > 0) std::ranges::fill(rows_of(elements.viscous_time, blocks), Real(0));
-    std::ranges::fill(rows_of(elements.relaxation_rate, blocks), ElementLane{});
+    std::ranges::fill(rows_of(elements.relaxation_rate, blocks), RelaxationRates{});
     std::ranges::fill(rows_of(elements.own_frequency, blocks), ElementLane{});
     std::ranges::fill(rows_of(elements.relaxing_share, blocks), Real(0));
     stiffness_sum.resize(model.nodes.position.size());

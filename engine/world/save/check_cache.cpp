@@ -29,7 +29,6 @@ void check_clock(const Hdf5File& file, const Clock& clock, Real kick) {
     constexpr Real long_time = std::numeric_limits<Real>::max();
     expect_between(file, "/clock/time", std::array{clock.time}, 0.0, long_time);
     expect_between(file, "/clock/step_before", std::array{clock.step_before}, 0.0, long_time);
-    expect_between(file, "/clock/kick_before", std::array{clock.kick_before}, 0.0, long_time);
     expect_between(file, "/last_step/kick", std::array{kick}, 0.0, long_time);
 }
 

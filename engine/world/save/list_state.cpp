@@ -139,7 +139,6 @@ void list_state(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.value("/clock/time", world.clock.time);
     archive.value("/clock/offset", world.clock.offset);
     archive.value("/clock/step_before", world.clock.step_before);
-    archive.value("/clock/kick_before", world.clock.kick_before);
     list_records(saved, archive);
     list_model(world.model, archive);
     list_cache(world.cache, saved, archive);

@@ -113,14 +113,17 @@ private:
     }
     void check(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
         if (type.number == NumberType::real)
-            check_reals(path, type, rows, count);
+            check_reals<Real>(path, type, rows, count);
+        else if (type.number == NumberType::single)
+            check_reals<float>(path, type, rows, count);
         else if (type.values > 0)
             check_values(path, type, rows, count);
     }
+    template <class Number>
     void check_reals(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
         const bool infinite = may_be_infinite(path);
         for (std::size_t i = 0; i < count * type.width; ++i) {
-            Real number;
+            Number number;
             std::memcpy(&number, rows + i * sizeof number, sizeof number);
             if (std::isnan(number) || (std::isinf(number) && !infinite))
                 refuse(path, std::to_string(number), i / type.width, "finite numbers");

@@ -20,10 +20,6 @@ struct Clock {
     // Length of the last step [s]; 0 before the first step. With symplectic Euler, velocities are half of this step
     // behind positions.
     Real step_before = 0;
-    // Duration of the forces in the last step [s]. It is 0 if this duration is not known: before the first step, and
-    // after an abandoned attempt at a step. Such an attempt overwrites the relaxed strain that the last step stored in
-    // the elements. Only the measured dissipation depends on this value.
-    Real kick_before = 0;
     LongStepClock long_step;
 };
 

@@ -18,7 +18,8 @@ struct KnownElements {
     ElementKind element;  // element kind requested by the user
 
     ElementPlaces places;
-    Column<ElementLane> mass_share, relaxation_rate, own_frequency;
+    Column<ElementLane> mass_share, own_frequency;
+    Column<RelaxationRates> relaxation_rate;
     Column<ElementForm> mass_form;
     Column<FrameMass> frame_mass;
     Column<Real> frame_bound, relaxing_share;

@@ -28,11 +28,8 @@ namespace skerry {
 
 /// Inputs of a step. They are set before its stages start, and no stage writes them.
 struct StepParameters {
-    Real h = 0;     // step length: time by which positions move [s]
-    Real kick = 0;  // time for which forces act on velocities in this step [s]
-    // Ratio of this step's kick to the previous step's kick. It is 0 if the elements do not contain the relaxed strain
-    // of the previous step.
-    Real kick_over_last = 0;
+    Real h = 0;        // step length: time by which positions move [s]
+    Real kick = 0;     // time for which forces act on velocities in this step [s]
     Real longest = 0;  // estimated upper bound of the length of the next step [s]
     Real lag = 0;      // time by which velocities are older than positions when the kick begins [s]
     // time by which velocities are older than positions between steps: `lag`, or 0 with leapfrog [s]

@@ -32,7 +32,7 @@ bool are_alike(const Model& model, std::size_t a, std::size_t b) {
     return alike(e.count, bodies.blocks) && alike(e.material, bodies.blocks) && alike(e.part, bodies.blocks) &&
            alike(e.volume, bodies.blocks) && alike(e.relaxing_share, bodies.blocks) &&
            alike(e.relaxation_rate, bodies.blocks) && alike(e.own_frequency, bodies.blocks) &&
-           alike(e.viscous_strain, bodies.blocks) && alike(model.nodes.mass, bodies.nodes) &&
+           alike(e.spring_strain, bodies.blocks) && alike(model.nodes.mass, bodies.nodes) &&
            alike(model.nodes.inverse_mass, bodies.nodes) && alike(model.nodes.rest_position, bodies.nodes) &&
            alike(model.element_nodes.gradient, bodies.element_nodes) &&
            same_local_nodes(rows_of(model.element_nodes.node, bodies.element_nodes[a]), bodies.nodes[a].begin,

@@ -80,14 +80,6 @@ Real kick_of_step(const Model& model, const Clock& clock, const StepPlan& plan) 
     return (before + plan.h) / 2;
 }
 
-/// Returns the ratio of the present kick to the last kick. The ratio is exactly 1 if the kicks differ only by rounding,
-/// and 0 if the last kick is not known.
-Real kick_over_last(Real kick, Real last) {
-    constexpr Real rounding = 1e-12;
-    if (!(last > 0)) return 0;
-    return std::abs(kick - last) <= rounding * last ? 1 : kick / last;
-}
-
 /// Runs the stages of a step, unless nothing moves. The stages write their results to world.scratch. Returns false if a
 /// check before the stages refuses the step.
 bool run_stages(WorldState& world) {
@@ -127,13 +119,13 @@ bool run_stages(WorldState& world) {
     return true;
 }
 
-/// Makes the element rotations and viscous strains of this step the input of the next step, by swapping columns. For
+/// Makes the element rotations and spring strains of this step the input of the next step, by swapping columns. For
 /// unstrained bodies the swapped columns contain equal values.
 void keep_frames(WorldState& world) {
     ElementBlockTable& elements = world.model.elements;
     if (!world.model.any_asleep) {
         elements.rotation.swap(elements.rotation_next);
-        elements.viscous_strain.swap(elements.viscous_strain_next);
+        elements.spring_strain.swap(elements.spring_strain_next);
         return;
     }
     ElementInputs awake = world.model.awake_elements();
@@ -163,7 +155,6 @@ void commit(WorldState& world) {
     add_step(scratch, world.record.balance);
     world.clock.time += parameters.h;
     world.clock.step_before = parameters.h;
-    world.clock.kick_before = parameters.kick;
 }
 
 /// Largest ratio of the stable step of a body to its stable step at rest for which strain counts as the cause of a
@@ -298,7 +289,6 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     scratch.parameters.h = plan.h;
     scratch.parameters.longest = std::min(plan.stable, plan.h * fast_growth / strain_margin);
     scratch.parameters.kick = kick_of_step(world.model, world.clock, plan);
-    scratch.parameters.kick_over_last = kick_over_last(scratch.parameters.kick, world.clock.kick_before);
     scratch.parameters.lag = scratch.parameters.kick - plan.h / 2;
     const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
     scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
@@ -337,11 +327,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::refused:
             break;
     }
-    if (ran) {
-        world.transaction.roll_back_try(world.model);
-        // The attempt has overwritten the relaxed strain that the previous step stored in the elements.
-        world.clock.kick_before = 0;
-    }
+    if (ran) world.transaction.roll_back_try(world.model);
     return outcome;
 }
 

@@ -6,12 +6,13 @@
 
 #include "components/ask_for_lines.h"
 #include "components/check.h"
+#include "components/flush_subnormals.h"
 #include "jobs/parallel_for.h"
 #include "systems/dynamics/elements/element_block.h"
 #include "systems/dynamics/elements/idle_guards.h"
 #include "systems/dynamics/elements/quick_stiffness.h"
 #include "systems/material/extract_rotation.h"
-#include "systems/material/relaxation.h"
+#include "systems/material/maxwell_block.h"
 #include "systems/material/viscous_stress.h"
 #include "systems/material/with_law.h"
 
@@ -26,18 +27,13 @@ constexpr std::size_t blocks_ahead = 6;
 // patches.position instead.
 constexpr std::size_t near_nodes = 512;
 
-/// `alike`: the force interval (kick) of this step equals the kick of the step before. Dissipated energy then needs one
-/// subtraction instead of a weighted difference.
-enum class Kicks { alike, any };
-
 /// Consecutive blocks of a patch with one material and one part of the stress (ElementPart).
 struct Run {
     std::size_t begin, end;
     const ElementInputs& elements;
     MaterialConstants material;
     Real kick;  // s
-    // Kick of this step over the kick of the last; 0 if the last change of viscous strain is unknown.
-    Real kick_over_last;
+    MaxwellStep maxwell;
     PatchRows<const Real> position;  // positions of the nodes of the patch [m]
     PatchRows<Real> force;           // forces on the nodes of the patch [N]
     std::span<const Vec3> velocity;  // of all nodes
@@ -62,9 +58,8 @@ struct Run {
         ask_for_lines(patches.slot.data() + row, rows);
         ask_for_lines(elements.volume.data() + block, 1);
         if (!relaxes()) return;
-        ask_for_lines(elements.viscous_strain.data() + block, 1);
-        ask_for_lines(next.viscous_strain.data() + block, 1);
-        ask_for_lines(elements.relaxation_rate.data() + block, 1);
+        ask_for_lines(elements.spring_strain.data() + block, 1);
+        ask_for_lines(next.spring_strain.data() + block, 1);
         ask_for_lines(elements.own_frequency.data() + block, 1);
     }
 
@@ -73,76 +68,36 @@ struct Run {
         return load_part<T>(column[block], part);
     }
 
-    /// Fractions of the elastic stretch that remain after the dashpots have relaxed for the time of the kick: one
-    /// fraction for the strain, one for the volume.
-    template <class T>
-    struct Kept {
-        T strain, volume;
-    };
-    template <class T>
-    [[gnu::always_inline]] Kept<T> kept_of(std::size_t block, std::size_t part) const {
-        const T forgets = kick * part_of<T>(elements.relaxation_rate, block, part);
-        const T forgets_volume = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
-        // Backward Euler never relaxes more than the complete stretch. One division serves both fractions.
-        const T less = 1.0 + forgets, less_volume = 1.0 + forgets_volume, over_both = 1.0 / (less * less_volume);
-        return {over_both * less_volume, over_both * less};
-    }
+    bool relaxes() const { return material.relaxes() && !next.spring_strain.empty(); }
 
-    bool relaxes() const { return material.relaxes() && !next.viscous_strain.empty(); }
-
-    [[gnu::always_inline]] Parts<Kept<KernelReal>> kept_of(std::size_t block) const {
-        Parts<Kept<KernelReal>> kept{};
-        if (relaxes())
-            for (std::size_t part = 0; part < kernel_parts; ++part) kept[part] = kept_of<KernelReal>(block, part);
-        return kept;
-    }
-
-    /// Relaxes the dashpots, then computes the stress of the springs. Returns the second Piola-Kirchhoff stress [Pa]
-    /// times `scale`. Writes the viscous strain, and a number `dissipated` that dissipated_of() converts to an energy.
-    template <Kicks kicks, class T>
-    [[gnu::always_inline]] LaneSymmetric<T> relax(const LaneMat3<T>& F, const Kept<T>& kept, const T& scale,
-                                                  std::size_t block, std::size_t part, T& dissipated) const {
-        ElementStrain& forgotten_next = next.viscous_strain[block];
-        const ViscousModuli moduli = viscous_moduli(material, elements.relaxing_share[block]);
-        const LaneSymmetric<T> strain = twice_green_strain(F);
-        const ElementStrain& forgotten = elements.viscous_strain[block];
-        const ViscousStretch<T> before = viscous_stretch(strain, forgotten, part);
-        // weight of the present change of viscous strain; 2 if the last change is unknown, which is then assumed equal
-        const Real of_now = kick_over_last > 0 ? 1 : 2;
-        const ViscousStretch<T> after{kept.strain * before.strain, kept.volume * before.volume};
-        const LaneSymmetric<T> taken = strain - after.strain;
-        const T taken_volume = strain.trace() - after.volume;
-        // The dissipated energy is the mean of the spring stresses of the last step and this step, times the change of
-        // viscous strain. The stress of the last step follows from the change of viscous strain in that step, which is
-        // the relaxation rate times the stretch.
-        const auto twice = [&](const T& now, std::size_t i) {
-            const T older = load_part<T>(forgotten_next[i], part);
-            if constexpr (kicks == Kicks::alike) return T(now - older);
-            const T last = load_part<T>(forgotten[i], part);
-            return T(of_now * (now - last) + kick_over_last * (last - older));
-        };
-        const LaneSymmetric<T> taken_twice{twice(taken.xx, 0), twice(taken.yy, 1), twice(taken.zz, 2),
-                                           twice(taken.xy, 3), twice(taken.yz, 4), twice(taken.zx, 5)};
-        const T volume_twice = twice(taken_volume, 6);
-        const LaneSymmetric<T> S = stress(moduli, after, scale);
-        dissipated = inner_product(S, taken_twice) +
-                     ((scale * (0.5 * moduli.bulk)) * after.volume) * (volume_twice - taken_twice.trace());
-        store_part(taken.xx, forgotten_next[0], part);
-        store_part(taken.yy, forgotten_next[1], part);
-        store_part(taken.zz, forgotten_next[2], part);
-        store_part(taken.xy, forgotten_next[3], part);
-        store_part(taken.yz, forgotten_next[4], part);
-        store_part(taken.zx, forgotten_next[5], part);
-        store_part(taken_volume, forgotten_next[6], part);
+    /// Relaxes the springs, then computes their second Piola-Kirchhoff stress [Pa] times `scale`. Writes the strains of
+    /// the springs. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to joules.
+    [[gnu::always_inline]] Parts<LaneSymmetric<KernelReal>> relax_springs(std::size_t block,
+                                                                          const Parts<LaneMat3<KernelReal>>& F,
+                                                                          const Parts<KernelReal>& scale,
+                                                                          Parts<KernelReal>& relaxed) const {
+        using T = KernelReal;
+        Parts<T> xx, yy, zz, xy, yz, zx, relaxes_volume;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            const LaneSymmetric<T> E = twice_green_strain(F[part]);
+            xx[part] = E.xx, yy[part] = E.yy, zz[part] = E.zz;
+            xy[part] = E.xy, yz[part] = E.yz, zx[part] = E.zx;
+            relaxes_volume[part] = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
+        }
+        Float8 dissipated;
+        const LaneSymmetric<Float8> stress =
+            relax(maxwell, {floats_of(xx), floats_of(yy), floats_of(zz), floats_of(xy), floats_of(yz), floats_of(zx)},
+                  floats_of(relaxes_volume), elements.spring_strain[block], next.spring_strain[block], dissipated);
+        xx = reals_of(stress.xx), yy = reals_of(stress.yy), zz = reals_of(stress.zz);
+        xy = reals_of(stress.xy), yz = reals_of(stress.yz), zx = reals_of(stress.zx);
+        const Parts<T> energy = reals_of(dissipated);
+        Parts<LaneSymmetric<T>> S;
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            S[part] = T(maxwell.modulus * scale[part]) *
+                      LaneSymmetric<T>{xx[part], yy[part], zz[part], xy[part], yz[part], zx[part]};
+            relaxed[part] = relaxed[part] + scale[part] * energy[part];
+        }
         return S;
-    }
-
-    /// Calls relax() for the rare case that this kick and the last kick differ. The call is out of line. Arguments are
-    /// passed by value, so that the caller need not store them in memory.
-    template <class T>
-    [[gnu::noinline]] static LaneSymmetric<T> relax_unlike(Run run, LaneMat3<T> F, Kept<T> kept, T scale,
-                                                           std::size_t block, std::size_t part, T& dissipated) {
-        return run.relax<Kicks::any>(F, kept, scale, block, part, dissipated);
     }
 
     /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for all lanes of a block at once, so that
@@ -270,7 +225,6 @@ struct Run {
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
                                                                  const Parts<LaneMat3<KernelReal>>& F,
-                                                                 const Parts<Kept<KernelReal>>& kept,
                                                                  Parts<KernelReal>& relaxed) const {
         const Parts<KernelReal> scale = scale_of(block);
         auto elastic = elastic_stress(law, block, F, scale);
@@ -288,31 +242,19 @@ struct Run {
             }
         }
         Parts<LaneMat3<KernelReal>> P;
-        for (std::size_t part = 0; part < kernel_parts; ++part) {
-            if (!relaxes()) {
-                P[part] = whole(elastic[part], F[part]);
-                continue;
-            }
-            KernelReal dissipated;
-            LaneSymmetric<KernelReal> S;
-            if (kick_over_last == 1) {
-                S = relax<Kicks::alike>(F[part], kept[part], scale[part], block, part, dissipated);
-            } else {
-                // Copy for the call only, because a variable whose address is taken is stored in memory.
-                KernelReal unlike;
-                S = relax_unlike(*this, F[part], kept[part], scale[part], block, part, unlike);
-                dissipated = unlike;
-            }
-            P[part] = multiply_and_add(F[part], S, elastic[part]);
-            relaxed[part] = relaxed[part] + dissipated;
+        if (!relaxes()) {
+            for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = whole(elastic[part], F[part]);
+            return P;
         }
+        const Parts<LaneSymmetric<KernelReal>> S = relax_springs(block, F, scale, relaxed);
+        for (std::size_t part = 0; part < kernel_parts; ++part)
+            P[part] = multiply_and_add(F[part], S[part], elastic[part]);
         return P;
     }
 
-    /// Dissipated energy from the sum over the elements [J]. The factor 1/4 is needed because the sum contains the
-    /// changes of two steps instead of their mean, and twice the strain. The minus sign is needed because `scale` is
-    /// negative.
-    static Real dissipated_of(const Parts<KernelReal>& sum) { return -0.25 * sum_of_parts(sum); }
+    /// Dissipated energy from the sum over the elements [J]. MaxwellStep defines the unit of the sum. The minus sign is
+    /// needed because `scale` is negative.
+    Real dissipated_of(const Parts<KernelReal>& sum) const { return -0.25 * maxwell.modulus * sum_of_parts(sum); }
 
     /// Deformation gradients F of the elements of a block.
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
@@ -340,20 +282,13 @@ struct Run {
     Parts<KernelReal> relaxed{};
     with_law(run.material.model, [&](auto law) {
         Parts<LaneMat3<KernelReal>> F = run.fetch(run.begin);
-        auto kept = run.kept_of(run.begin);
         for (std::size_t block = run.begin; block < run.end; ++block) {
             run.ask_for_one_ahead_of(block);
-            const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, kept, relaxed);
+            const Parts<LaneMat3<KernelReal>> Q = run.stress_of(law, block, F, relaxed);
             const bool goes_on = block + 1 < run.end;
-            if (ahead && goes_on) {
-                F = run.fetch(block + 1);
-                kept = run.kept_of(block + 1);  // computed early, because the division in kept_of() takes long
-            }
+            if (ahead && goes_on) F = run.fetch(block + 1);
             run.add(block, Q);
-            if (!ahead && goes_on) {
-                kept = run.kept_of(block + 1);
-                F = run.fetch(block + 1);
-            }
+            if (!ahead && goes_on) F = run.fetch(block + 1);
         }
     });
     return run.dissipated_of(relaxed);
@@ -382,13 +317,13 @@ std::size_t end_of_run(const ElementInputs& elements, std::size_t begin, std::si
 }  // namespace
 
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real kick, Real kick_over_last,
-                            std::span<const ElementRotation> rotation, const ElementMemory& next,
-                            const PatchForces& patches) {
+                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
+                            const ElementMemory& next, const PatchForces& patches) {
     SKERRY_CHECK(patches.force.size() == patches.node.size() && patches.position.size() == patches.node.size());
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
     SKERRY_CHECK(elements.viscous_time.empty() || elements.implicit_modulus.size() == elements.blocks());
     parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
+        const FlushSubnormals flush;  // strains of springs decay to zero
         for (std::size_t p = first; p < last; ++p) {
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);
@@ -404,9 +339,12 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
             fetch(node, position, x, force);
             for (std::size_t b = begin; b < end;) {
                 const std::size_t after = end_of_run(elements, b, end);
-                const Run run{b,        after,          elements,  elements.material_of(b),
-                              kick,     kick_over_last, {x->lane}, {force->lane},
-                              velocity, rotation,       next,      patches};
+                const MaterialConstants material = elements.material_of(b);
+                const bool has_rates = !elements.relaxation_rate.empty();
+                const MaxwellStep maxwell(material, has_rates ? elements.relaxation_rate[b] : RelaxationRates{},
+                                          has_rates ? elements.relaxing_share[b] : 0, kick);
+                const Run run{b,         after,         elements, material, kick, maxwell,
+                              {x->lane}, {force->lane}, velocity, rotation, next, patches};
                 const Real relaxed = compute_run(run);
                 if (!patches.relaxed.empty()) patches.relaxed[p] += relaxed;
                 b = after;

@@ -23,9 +23,10 @@ struct ElementInputs {
     std::span<const Index> body = {};         // row of BodyTable by block; may be empty if no body is left out
     std::span<const Real> viscous_time = {};  // viscous time by block; empty if no element is viscous [s]
     // Relaxing part of the stress; empty if no stress relaxes.
-    std::span<const ElementLane> relaxation_rate = {}, own_frequency = {};  // 1/s
+    std::span<const RelaxationRates> relaxation_rate = {};
+    std::span<const ElementLane> own_frequency = {};  // 1/s
     std::span<const Real> relaxing_share = {};
-    std::span<const ElementStrain> viscous_strain = {};
+    std::span<const SpringStrain> spring_strain = {};
     // Flags from BodyTable. Elements of sleeping and of unstrained bodies are left out of a step. The spans are empty
     // if there are no such bodies.
     std::span<const std::uint8_t> body_asleep = {};
@@ -84,7 +85,7 @@ struct ElementInputs {
                 .relaxation_rate = binder.read(element.relaxation_rate),
                 .own_frequency = binder.read(element.own_frequency),
                 .relaxing_share = binder.read(element.relaxing_share),
-                .viscous_strain = binder.read(element.viscous_strain),
+                .spring_strain = binder.read(element.spring_strain),
                 .mass_form = binder.read(element.mass_form),
                 .frame_mass = binder.read(element.frame_mass),
                 .frame_bound = binder.read(element.frame_bound)};
@@ -126,13 +127,12 @@ struct PatchForces {
 /// State of the elements that a step writes for the next step.
 struct ElementMemory {
     std::span<ElementRotation> rotation;
-    // Viscous strain after this step. Until this step writes the column, the column still contains the viscous strain
-    // before the last step. Empty if no stress relaxes.
-    std::span<ElementStrain> viscous_strain = {};
+    // Strains of the springs in this step; empty if no stress relaxes
+    std::span<SpringStrain> spring_strain = {};
 
     static ElementMemory bind(const Binder& binder, ElementBlockTable& element) {
         return {.rotation = binder.write(element.rotation_next),
-                .viscous_strain = binder.write(element.viscous_strain_next)};
+                .spring_strain = binder.write(element.spring_strain_next)};
     }
 };
 
@@ -141,13 +141,10 @@ struct ElementMemory {
 /// at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 + f_2 + ...). Sums run block
 /// by block and lane by lane, so that the bits do not depend on the number of workers. Corotational elements start the
 /// search for their frame from `rotation` and write next.rotation; other laws write no frame. The forces of patches of
-/// bodies that are left out stay unchanged. `kick`: time for which forces act [s]. `kick_over_last`: this kick over the
-/// kick of the step before; 0 if next.viscous_strain no longer contains the strain from before that step. With 0 the
-/// dissipated energy is exact to first order only (docs/methods/elasticity.md 6.2). Returns the dissipated energy [J].
+/// bodies that are left out stay unchanged. `kick`: time for which forces act [s]. Returns the dissipated energy [J].
 /// Parallel over patches.
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
-                            std::span<const Vec3> velocity, Real kick, Real kick_over_last,
-                            std::span<const ElementRotation> rotation, const ElementMemory& next,
-                            const PatchForces& patches);
+                            std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
+                            const ElementMemory& next, const PatchForces& patches);
 
 }  // namespace skerry

@@ -214,10 +214,6 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// One value for each register-wide part of a block.
-template <class T>
-using Parts = std::array<T, kernel_parts>;
-
 /// Copies matrices number by number. A rare call gets the copy, so that the original can stay in registers.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {

@@ -79,10 +79,9 @@ Real elastic_energy(const ElementInputs& elements, Range blocks, std::span<const
                    [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                        const LaneMat3<Real8>& R) {
                        Real8 density = energy_of(material, F, R);
-                       if (material.relaxes() && !elements.viscous_strain.empty())
-                           density +=
-                               energy_density(viscous_moduli(material, elements.relaxing_share[b]),
-                                              viscous_stretch(twice_green_strain(F), elements.viscous_strain[b]));
+                       if (material.relaxes() && !elements.spring_strain.empty())
+                           density += energy_density(viscous_moduli(material, elements.relaxing_share[b]),
+                                                     springs_in(twice_green_strain(F), elements.spring_strain[b]));
                        const Real8 of_lanes = volume * density;
                        for (std::size_t l = 0; l < element_lanes; ++l) energy += of_lanes[l];
                    });
@@ -97,9 +96,9 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
         [&](std::size_t b, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
             const LaneMat3<Real8>& R) {
             LaneMat3<Real8> P = stress_of(material, F, R);
-            if (material.relaxes() && !elements.viscous_strain.empty())
+            if (material.relaxes() && !elements.spring_strain.empty())
                 P = P + multiply(F, stress(viscous_moduli(material, elements.relaxing_share[b]),
-                                           viscous_stretch(twice_green_strain(F), elements.viscous_strain[b])));
+                                           springs_in(twice_green_strain(F), elements.spring_strain[b]).sum()));
             const Real8 of_lanes = volume * inner_product(P, deformation_gradient(elements.nodes_of(b), velocity));
             for (std::size_t l = 0; l < element_lanes; ++l) power += of_lanes[l];
         });

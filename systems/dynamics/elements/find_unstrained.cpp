@@ -32,9 +32,9 @@ bool move_alike(std::span<const Vec3> velocity) {
     return true;
 }
 
-bool is_zero(const ElementStrain& strain) {
-    return std::ranges::all_of(strain, [](const ElementLane& entry) {
-        return std::ranges::all_of(entry.lane, [](Real value) { return value == 0; });
+bool is_zero(const SpringStrain& strain) {
+    return std::ranges::all_of(strain, [](const auto& entry) {
+        return std::ranges::all_of(entry.lane, [](float value) { return value == 0; });
     });
 }
 
@@ -51,7 +51,7 @@ bool is_unstrained(const LaneMat3<Real8>& F, const ElementLane& volume) {
 bool is_unstrained(const UnstrainedInputs& inputs, Range blocks) {
     const ElementInputs& elements = inputs.elements;
     for (auto b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        if (!elements.viscous_strain.empty() && !is_zero(elements.viscous_strain[b])) return false;
+        if (!elements.spring_strain.empty() && !is_zero(elements.spring_strain[b])) return false;
         if (!is_unstrained(deformation_gradient(elements.nodes_of(b), inputs.position), elements.volume[b]))
             return false;
     }
@@ -75,8 +75,8 @@ Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const 
             if (before > 0 || out.unstrained[body] == 0) continue;
             const Range blocks = inputs.body_blocks[body];
             std::ranges::copy(rows_of(inputs.rotation, blocks), rows_of(out.rotation_next, blocks).begin());
-            if (!out.viscous_strain_next.empty())
-                std::ranges::fill(rows_of(out.viscous_strain_next, blocks), ElementStrain{});
+            if (!out.spring_strain_next.empty())
+                std::ranges::fill(rows_of(out.spring_strain_next, blocks), SpringStrain{});
         }
     });
     return static_cast<Index>(std::ranges::count_if(out.unstrained, [](std::uint16_t steps) { return steps > 0; }));

@@ -43,18 +43,18 @@ struct UnstrainedInputs {
 struct UnstrainedOutputs {
     std::span<std::uint16_t> unstrained;  // BodyTable
     std::span<ElementRotation> rotation_next;
-    std::span<ElementStrain> viscous_strain_next;
+    std::span<SpringStrain> spring_strain_next;
 
     static UnstrainedOutputs bind(const Binder& binder, BodyTable& body, ElementBlockTable& element) {
         return {.unstrained = binder.write(body.unstrained),
                 .rotation_next = binder.write(element.rotation_next),
-                .viscous_strain_next = binder.write(element.viscous_strain_next)};
+                .spring_strain_next = binder.write(element.spring_strain_next)};
     }
 };
 
 /// Finds the awake bodies that are unstrained. All nodes of an unstrained body have bitwise the same velocity, and none
-/// of its elements is strained, rotated or has a viscous strain. A body stays unstrained while its velocities are
-/// equal; its strains are checked again every unstrained_steps steps. The rotation and viscous strain of its elements
+/// of its elements is strained, rotated or has a strained spring. A body stays unstrained while its velocities are
+/// equal; its strains are checked again every unstrained_steps steps. The rotations and spring strains of its elements
 /// stay the same for the next step. Code that moves nodes other than by their velocities must set `unstrained` to 0.
 /// Returns the number of unstrained bodies. Parallel over bodies.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);

@@ -1,4 +1,4 @@
-// Updates the memory of the elements (rotation, viscous strain) after a committed step with sleeping bodies.
+// Updates the memory of the elements (rotation, spring strains) after a committed step with sleeping bodies.
 #pragma once
 
 #include <span>
@@ -7,9 +7,8 @@
 
 namespace skerry {
 
-/// Sets `rotation` and `viscous_strain` to their values after the step, and viscous_strain_next to the viscous strain
-/// before the step. Changes only the columns that the material of a block uses. Blocks that were left out of the step
-/// stay unchanged. Parallel over blocks.
+/// Sets `rotation` and `spring_strain` to their values after the step. Changes only the columns that the material of a
+/// block uses. Blocks that were left out of the step stay unchanged. Parallel over blocks.
 void keep_memory(Executor& executor, const ElementInputs& elements, ElementBlockTable& table);
 
 }  // namespace skerry

@@ -14,7 +14,9 @@ namespace skerry {
 struct ViscousPart {
     ViscousModuli moduli{};
     ViscousStretch<Real8> stretch{};
-    Real8 strain_share = Real8{} + 1.0, volume_share = Real8{} + 1.0;  // fractions of the moduli that count in a step
+    // Number of springs, and fraction of the spring of the bulk viscosity, that count in a step. A spring that relaxes
+    // in the step counts as a fraction.
+    Real8 strain_share = Real8{} + Real{maxwell_count}, volume_share = Real8{} + 1.0;
 };
 
 /// Mass b (R:X)^2 of an element in addition to its other mass (frame_masses.h). R is `rotation`, X the gradient of

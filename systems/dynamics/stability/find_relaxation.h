@@ -15,19 +15,17 @@ Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const R
 
 /// Values that find_relaxation writes for each block of the body.
 struct RelaxationOutputs {
-    std::span<ElementLane> relaxation_rate;  // [1/s]
-    std::span<ElementLane> own_frequency;    // [1/s]
+    std::span<RelaxationRates> relaxation_rate;
+    std::span<ElementLane> own_frequency;  // [1/s]
     std::span<Real> relaxing_share;
 };
 
-/// Assigns to every element of a body one rate at which its stress relaxes. The rates are spread evenly on a
-/// logarithmic scale. They range from `highest`, the highest frequency of the body, to a twentieth of `lowest`, an
-/// estimate of the lowest frequency [1/s]. The ratio of the highest to the lowest rate is limited to 100 to 10,000.
-/// Neighbours differ, and any region of more than a few elements has all rates (coarse-grained memory variables, Day
-/// and Bradley 2001). The rate depends only on the position of an element in the rest shape, not on the order of nodes
-/// and elements. `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
-void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> rest_position,
-                     std::span<const Vec3> position, std::span<const Real> mass, std::span<const Real> stiffness_sum,
-                     Real lowest, Real highest, const RelaxationOutputs& out);
+/// Finds the relaxation rates of the losses of a body. They divide a band of frequencies, from `highest`, the highest
+/// frequency of the body, to 1/rates_below of `lowest`, an estimate of the lowest frequency [1/s]. The ratio of the
+/// ends of the band is limited to 100 to 10,000. All elements get the same rates, so that losses depend neither on the
+/// position of an element nor on its number. `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
+void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                     std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
+                     const RelaxationOutputs& out);
 
 }  // namespace skerry

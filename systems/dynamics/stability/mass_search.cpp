@@ -34,7 +34,7 @@ RestModuli::Moduli RestModuli::of(std::size_t block) const {
                   Real8{} + std::max(material.lame_lambda, Real{0})};
     if (material.relaxes() && !elements_.relaxing_share.empty()) {
         const ViscousModuli viscous = viscous_moduli(material, elements_.relaxing_share[block]);
-        const Real8 strain = 2.0 / (2.0 + relaxing_step_ * load(elements_.relaxation_rate[block]));
+        const Real8 strain = springs_that_count(elements_.relaxation_rate[block], Real8{} + relaxing_step_);
         const Real8 volume = 2.0 / (2.0 + (relaxing_step_ / bulk_time) * load(elements_.own_frequency[block]));
         moduli.shear += 2 * viscous.mu * strain;
         moduli.volumetric += std::max(viscous.lambda, Real{0}) * strain + viscous.bulk * volume;

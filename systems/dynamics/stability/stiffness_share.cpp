@@ -38,13 +38,13 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
 
 ViscousPart viscous_part(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F) {
     return {viscous_moduli(elements.material_of(block), elements.relaxing_share[block]),
-            viscous_stretch(twice_green_strain(F), elements.viscous_strain[block])};
+            springs_in(twice_green_strain(F), elements.spring_strain[block]).sum()};
 }
 
-/// Sets the fractions of their stiffness with which the springs of Maxwell elements count in steps of length `step`
-/// [s]. In longer steps a spring counts less, because it relaxes more.
+/// Sets the parts of their stiffness with which the springs of Maxwell elements count in steps of length `step` [s]. In
+/// longer steps a spring counts less, because it relaxes more.
 void count_springs(const ElementInputs& elements, std::size_t block, const Real8& step, ViscousPart& viscous) {
-    viscous.strain_share = 2.0 / (2.0 + step * load(elements.relaxation_rate[block]));
+    viscous.strain_share = springs_that_count(elements.relaxation_rate[block], step);
     viscous.volume_share = 2.0 / (2.0 + step * (load(elements.own_frequency[block]) / bulk_time));
 }
 
@@ -55,7 +55,7 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
     const Real8 volume = load(elements.volume[block]);
     // A number that is 0, or NaN if F is not finite. It is added because some bounds do not depend on F.
     const Real8 nothing = 0.0 * inner_product(F, F);
-    if (!material.relaxes() || elements.viscous_strain.empty())
+    if (!material.relaxes() || elements.spring_strain.empty())
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
@@ -67,7 +67,8 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         const Real8 compared =
             frequency_squared_bound(material, F, viscous, volume, Q, q, enough, Sharpness::compared, frame);
         if (all(compared <= enough)) return compared + nothing;
-        viscous.strain_share = viscous.volume_share = Real8{} + 1.0;
+        viscous.strain_share = Real8{} + Real{maxwell_count};
+        viscous.volume_share = Real8{} + 1.0;
     }
     // The stable step with unrelaxed springs is shorter than the stable step with relaxing springs. It is therefore a
     // safe estimate of the step in which springs relax.
@@ -140,7 +141,7 @@ Real8 stepped_by_form(const ElementInputs& elements, std::size_t block, const La
                       LaneQuaternion<Real8>& q, Real enough, Real step) {
     const MaterialConstants material = elements.material_of(block);
     ViscousPart viscous;
-    if (material.relaxes() && !elements.viscous_strain.empty()) {
+    if (material.relaxes() && !elements.spring_strain.empty()) {
         viscous = viscous_part(elements, block, F);
         count_springs(elements, block, Real8{} + step, viscous);
     }
@@ -164,7 +165,7 @@ namespace {
 Real8 hessian_bound(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F, const Real8& volume,
                     LaneQuaternion<Real8>& q, Real enough, Sharpness sharpness) {
     const MaterialConstants material = elements.material_of(block);
-    const bool viscous = material.relaxes() && !elements.viscous_strain.empty();
+    const bool viscous = material.relaxes() && !elements.spring_strain.empty();
     const Real8 one = Real8{} + 1.0, zero{};
     return frequency_squared_bound(material, F, viscous ? viscous_part(elements, block, F) : ViscousPart{}, volume,
                                    {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}, q, enough, sharpness);

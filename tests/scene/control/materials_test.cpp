@@ -139,7 +139,7 @@ TEST_CASE("friction of a material, a body and a collider can change while a bloc
           }) == slides(0.2));
 }
 
-// Regression: with losses off, kernels leave both buffers of the viscous strain alone, and every step swaps them. A
+// Regression: with losses off, kernels leave both buffers of the spring strains alone, and every step swaps them. A
 // loaded world, whose buffers are equal, then had another state_hash in every other step.
 TEST_CASE("what elements have forgotten stays as it is once losses are off", "[scene]") {
     MaterialSettings rubber{.young_modulus = 1e5};
@@ -153,7 +153,7 @@ TEST_CASE("what elements have forgotten stays as it is once losses are off", "[s
     REQUIRE(world.advance(0.01).ok());
     rubber.loss_factor = rubber.bulk_viscosity = 0;
     world.set_material(material, rubber);
-    const auto first = [&] { return WorldAccess::state_of(world).model.elements.viscous_strain[0][0][0]; };
+    const auto first = [&] { return WorldAccess::state_of(world).model.elements.spring_strain[0][0][0]; };
     const Real forgotten = first();
     CHECK(forgotten != 0);
     for (int i = 0; i < 3; ++i) {

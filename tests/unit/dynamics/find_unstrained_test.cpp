@@ -36,7 +36,7 @@ struct Flight : ElasticBody {
         const Index found = find_unstrained(*executor, inputs,
                                             {.unstrained = unstrained,
                                              .rotation_next = elements.rotation_next,
-                                             .viscous_strain_next = elements.viscous_strain_next});
+                                             .spring_strain_next = elements.spring_strain_next});
         CHECK(found == (unstrained[0] > 0));
         return found > 0;
     }
@@ -86,7 +86,7 @@ TEST_CASE("what is strained, turned, mirrored or not a number is not unstrained"
         for (Vec3& x : body.position) x.x() = -x.x();
     }
     SECTION("an element remembers a strain") {
-        body.elements.viscous_strain[1][6].lane[0] = 1e-300;
+        body.elements.spring_strain[1][6].lane[0] = 1e-30F;
     }
     SECTION("at rest") {
         body.asleep[0] = 1;
@@ -108,12 +108,12 @@ TEST_CASE("what is taken to be unstrained is looked at again in the end", "[unit
 TEST_CASE("elements of what becomes unstrained remember for the next step what they remember now", "[unit]") {
     Flight body;
     for (ElementRotation& rotation : body.elements.rotation_next) rotation = {};
-    for (ElementStrain& strain : body.elements.viscous_strain_next) strain[0].lane[0] = 1;
+    for (SpringStrain& strain : body.elements.spring_strain_next) strain[0].lane[0] = 1;
     REQUIRE(body.find());
     for (std::size_t b = 0; b < body.elements.first.size(); ++b) {
         for (std::size_t i = 0; i < body.elements.rotation[b].size(); ++i)
             CHECK(std::ranges::equal(body.elements.rotation_next[b][i].lane, body.elements.rotation[b][i].lane));
-        if (!body.elements.viscous_strain_next.empty()) CHECK(body.elements.viscous_strain_next[b][0].lane[0] == 0);
+        if (!body.elements.spring_strain_next.empty()) CHECK(body.elements.spring_strain_next[b][0].lane[0] == 0);
     }
 }
 

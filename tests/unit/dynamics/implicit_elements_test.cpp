@@ -426,9 +426,9 @@ std::vector<Vec3> viscous_forces(SliverBox& box, std::vector<std::uint8_t>& visc
     std::vector<Vec3> without;
     for (const bool with : {false, true}) {
         if (with) inputs.viscous_time = time;
-        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, 1e-4, 0,
+        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, 1e-4,
                                box.body.elements.rotation,
-                               {box.body.elements.rotation_next, box.body.elements.viscous_strain_next}, patches);
+                               {box.body.elements.rotation_next, box.body.elements.spring_strain_next}, patches);
         box.body.gather();
         if (!with) without = box.body.force;
     }

@@ -20,8 +20,8 @@ struct SliverBody : ElasticBody {
         for (Vec3& v : velocity) v = random_vector(random);
     }
     void compute(const ElementInputs& inputs) {
-        compute_element_forces(*executor, inputs, position, velocity, 1e-3, 0, elements.rotation,
-                               {elements.rotation_next, elements.viscous_strain_next}, patch_forces());
+        compute_element_forces(*executor, inputs, position, velocity, 1e-3, elements.rotation,
+                               {elements.rotation_next, elements.spring_strain_next}, patch_forces());
     }
     /// Assigns the patches alternately to two bodies.
     std::vector<Index> bodies_in_turns() const {
@@ -63,8 +63,7 @@ TEST_CASE("patches of bodies that rest or are unstrained keep their force, other
 TEST_CASE("frames and strains of a step are kept for bodies that were in it", "[unit]") {
     SliverBody body(MaterialModel::corotational);
     body.constants[0].loss_factor = 0.1;
-    for (ElementLane& rate : body.elements.relaxation_rate)
-        for (Real& lane : rate.lane) lane = 100;
+    for (RelaxationRates& rates : body.elements.relaxation_rate) rates.fill(100);
     for (Real& share : body.elements.relaxing_share) share = 0.1;
     const std::vector<Index> of_body = body.bodies_in_turns();
     const std::vector<std::uint8_t> asleep{1, 0};
@@ -75,7 +74,7 @@ TEST_CASE("frames and strains of a step are kept for bodies that were in it", "[
     keep_memory(*body.executor, inputs, body.elements);
     for (std::size_t b = 0; b < of_body.size(); ++b) {
         CHECK((body.elements.rotation[b][1][0] != 0) == (of_body[b] == 1));
-        CHECK((body.elements.viscous_strain[b][0][0] != 0) == (of_body[b] == 1));
+        CHECK((body.elements.spring_strain[b][0][0] != 0) == (of_body[b] == 1));
     }
     for (std::size_t p = 0; p < body.patches.blocks.size(); ++p) CHECK((body.patches.relaxed[p] > 0) == (p % 2 == 1));
 }

@@ -141,7 +141,7 @@ TEST_CASE("the step that is found is one that all elements stand as they relax i
             const Real elastic = test::stable_step_of(body);
             for (std::size_t b = 0; b < body.elements.relaxing_share.size(); ++b) {
                 body.elements.relaxing_share[b] = b % 2 == 0 ? 0.5 : 0.1;
-                for (Real& rate : body.elements.relaxation_rate[b].lane)
+                for (Real& rate : body.elements.relaxation_rate[b])
                     rate = 0.1 * std::pow(10, static_cast<Real>(b % 4)) / elastic;
             }
             if (by_forms) find_forms(body);

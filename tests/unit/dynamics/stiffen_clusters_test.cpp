@@ -71,9 +71,9 @@ TEST_CASE("where forces say that elements stiffen is all that a look at every el
         inputs.viscous_time = time;
         PatchForces patches = box.body.patch_forces();
         patches.stiffening = stiffening;
-        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, 1e-4, 0,
+        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, 1e-4,
                                box.body.elements.rotation,
-                               {box.body.elements.rotation_next, box.body.elements.viscous_strain_next}, patches);
+                               {box.body.elements.rotation_next, box.body.elements.spring_strain_next}, patches);
         const auto marked = static_cast<std::size_t>(std::ranges::count(stiffening, 1));
         if (marked > 0) fewest = std::min(fewest, marked);
         quiet += marked == 0;
@@ -121,8 +121,8 @@ TEST_CASE("elements that stiffen are deformed with the momentum that they had, a
     patches.stiffening = stiffening;
     patches.viscous = viscous;
     patches.viscous_impulse = impulse;
-    compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, kick, 0, box.body.elements.rotation,
-                           {box.body.elements.rotation_next, box.body.elements.viscous_strain_next}, patches);
+    compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, kick, box.body.elements.rotation,
+                           {box.body.elements.rotation_next, box.body.elements.spring_strain_next}, patches);
     const std::vector<PaddedVec3> force_before(patches.force.begin(), patches.force.end());
     std::vector<ElementViscousImpulse> impulse_before = impulse;
     for (std::size_t b = 0; b < blocks; ++b)
@@ -234,9 +234,9 @@ TEST_CASE("the energy that viscosity takes is the work of its impulses on the no
     patches.viscous = viscous;
     patches.viscous_impulse = impulse;
     const auto forces = [&] {
-        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, kick, 0,
+        compute_element_forces(*executor, inputs, box.body.position, box.body.velocity, kick,
                                box.body.elements.rotation,
-                               {box.body.elements.rotation_next, box.body.elements.viscous_strain_next}, patches);
+                               {box.body.elements.rotation_next, box.body.elements.spring_strain_next}, patches);
         box.body.gather();
         return box.body.force;
     };

@@ -99,8 +99,7 @@ TEST_CASE("the step of a body that is strained in places is one in which it rela
     const Real elastic = test::stable_step_of(body);
     for (std::size_t b = 0; b < body.elements.relaxing_share.size(); ++b) {
         body.elements.relaxing_share[b] = 0.5;
-        for (Real& rate : body.elements.relaxation_rate[b].lane)
-            rate = std::pow(10, static_cast<Real>(b % 4)) / elastic;
+        for (Real& rate : body.elements.relaxation_rate[b]) rate = std::pow(10, static_cast<Real>(b % 4)) / elastic;
     }
     find_forms(body);
     const Real at_rest = test::stable_step_of(body);

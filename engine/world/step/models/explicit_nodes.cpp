@@ -22,8 +22,8 @@ void list_element_forces(WorldState& w, TaskGraph& g) {
                         outputs<UnstrainedOutputs>(b, e), if_unknown);
     g.stage_with_result("dynamics/compute_element_forces", w.scratch.findings.relaxed, kernels().compute_element_forces,
                         inputs<ElementInputs>(e, m.element_nodes, m.materials, b, m.any_asleep), read(n.position),
-                        read(n.velocity), value(p.kick), value(p.kick_over_last), read(e.rotation),
-                        outputs<ElementMemory>(e), outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
+                        read(n.velocity), value(p.kick), read(e.rotation), outputs<ElementMemory>(e),
+                        outputs<PatchForces>(m.patches, m.element_nodes), if_unknown);
 }
 
 void list_prediction(WorldState& w, TaskGraph& g) {

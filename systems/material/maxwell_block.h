@@ -1,0 +1,170 @@
+// Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
+// are computed and stored in single precision. Their errors are 6e-8 of the strains, and hence far below those of the
+// stress.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "components/element_table.h"
+#include "components/lanes.h"
+#include "systems/material/relaxation.h"
+
+namespace skerry {
+
+/// Vector type of this code: two components of a strain with wide registers, else one.
+#ifdef __AVX512VL__
+typedef float KernelFloat __attribute__((vector_size(2 * sizeof(Float8))));
+#else
+using KernelFloat = Float8;
+#endif
+typedef float KernelFloatInMemory
+    __attribute__((vector_size(sizeof(KernelFloat)), aligned(alignof(Float8)), may_alias));
+inline constexpr std::size_t components_together = sizeof(KernelFloat) / sizeof(Float8);
+
+/// The six components of a symmetric matrix in the order xx, yy, zz, xy, yz, zx, for all lanes of a block.
+struct SixFloats {
+    static constexpr std::size_t count = 6 / components_together;
+    KernelFloat of[count];
+};
+
+[[gnu::always_inline]] inline SixFloats load_six(const Lanes<float, element_lanes>* from) {
+    SixFloats six;
+    for (std::size_t i = 0; i < six.count; ++i) six.of[i] = reinterpret_cast<const KernelFloatInMemory*>(from)[i];
+    return six;
+}
+[[gnu::always_inline]] inline void store_six(const SixFloats& six, Lanes<float, element_lanes>* to) {
+    for (std::size_t i = 0; i < six.count; ++i) reinterpret_cast<KernelFloatInMemory*>(to)[i] = six.of[i];
+}
+
+[[gnu::always_inline]] inline SixFloats operator+(const SixFloats& a, const SixFloats& b) {
+    SixFloats sum;
+    for (std::size_t i = 0; i < sum.count; ++i) sum.of[i] = a.of[i] + b.of[i];
+    return sum;
+}
+[[gnu::always_inline]] inline SixFloats operator-(const SixFloats& a, const SixFloats& b) {
+    SixFloats difference;
+    for (std::size_t i = 0; i < difference.count; ++i) difference.of[i] = a.of[i] - b.of[i];
+    return difference;
+}
+[[gnu::always_inline]] inline SixFloats operator*(float s, const SixFloats& a) {
+    SixFloats product;
+    for (std::size_t i = 0; i < product.count; ++i) product.of[i] = s * a.of[i];
+    return product;
+}
+
+// The functions below sum in an order that does not depend on the register width.
+#ifdef __AVX512VL__
+[[gnu::always_inline]] inline KernelFloat together(const Float8& a, const Float8& b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+[[gnu::always_inline]] inline Float8 first_of(const KernelFloat& pair) {
+    return __builtin_shufflevector(pair, pair, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+[[gnu::always_inline]] inline Float8 second_of(const KernelFloat& pair) {
+    return __builtin_shufflevector(pair, pair, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+[[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {
+    return {first_of(six.of[0]),  second_of(six.of[0]), first_of(six.of[1]),
+            second_of(six.of[1]), first_of(six.of[2]),  second_of(six.of[2])};
+}
+[[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
+    return {{together(a.xx, a.yy), together(a.zz, a.xy), together(a.yz, a.zx)}};
+}
+[[gnu::always_inline]] inline Float8 trace(const SixFloats& a) {
+    return (first_of(a.of[0]) + second_of(a.of[0])) + first_of(a.of[1]);
+}
+[[gnu::always_inline]] inline Float8 inner_product(const SixFloats& a, const SixFloats& b) {
+    const Float8 one = Float8{} + 1.0F;
+    const KernelFloat sum =
+        (a.of[0] * b.of[0] + together(one, one + one) * (a.of[1] * b.of[1])) + 2.0F * (a.of[2] * b.of[2]);
+    return first_of(sum) + second_of(sum);
+}
+[[gnu::always_inline]] inline Float8 floats_of(const Parts<Real8>& reals) {
+    return __builtin_convertvector(reals[0], Float8);
+}
+[[gnu::always_inline]] inline Parts<Real8> reals_of(const Float8& floats) {
+    return {__builtin_convertvector(floats, Real8)};
+}
+#else
+[[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {
+    return {six.of[0], six.of[1], six.of[2], six.of[3], six.of[4], six.of[5]};
+}
+[[gnu::always_inline]] inline SixFloats six_of(const LaneSymmetric<Float8>& a) {
+    return {{a.xx, a.yy, a.zz, a.xy, a.yz, a.zx}};
+}
+[[gnu::always_inline]] inline Float8 trace(const SixFloats& a) {
+    return (a.of[0] + a.of[1]) + a.of[2];
+}
+[[gnu::always_inline]] inline Float8 inner_product(const SixFloats& a, const SixFloats& b) {
+    const Float8 even = (a.of[0] * b.of[0] + a.of[2] * b.of[2]) + 2.0F * (a.of[4] * b.of[4]);
+    const Float8 odd = (a.of[1] * b.of[1] + 2.0F * (a.of[3] * b.of[3])) + 2.0F * (a.of[5] * b.of[5]);
+    return even + odd;
+}
+[[gnu::always_inline]] inline Float8 floats_of(const Parts<Real4>& reals) {
+    return __builtin_shufflevector(__builtin_convertvector(reals[0], Float4), __builtin_convertvector(reals[1], Float4),
+                                   0, 1, 2, 3, 4, 5, 6, 7);
+}
+[[gnu::always_inline]] inline Parts<Real4> reals_of(const Float8& floats) {
+    return {__builtin_convertvector(__builtin_shufflevector(floats, floats, 0, 1, 2, 3), Real4),
+            __builtin_convertvector(__builtin_shufflevector(floats, floats, 4, 5, 6, 7), Real4)};
+}
+#endif
+
+/// Constants of a step of the Maxwell elements of a body, which all elements share. Moduli are relative to `modulus`.
+struct MaxwellStep {
+    std::array<float, maxwell_count> kept;  // fraction 1 / (1 + h r) of the spring strain that remains after the step
+    std::array<float, maxwell_count> relaxes;  // h r: flow of the dashpot in the step over the remaining spring strain
+    float shear, trace, bulk;                  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
+    Real modulus;                              // reference modulus: sum of the Lame constants of the material [Pa]
+
+    MaxwellStep(const MaterialConstants& material, const RelaxationRates& rates, Real share, Real h)
+        : modulus(material.shear_modulus + std::abs(material.lame_lambda)) {
+        for (std::size_t k = 0; k < maxwell_count; ++k) {
+            relaxes[k] = static_cast<float>(h * rates[k]);
+            kept[k] = static_cast<float>(1 / (1 + h * rates[k]));
+        }
+        const ViscousModuli moduli = viscous_moduli(material, share);
+        shear = static_cast<float>(moduli.mu / modulus);
+        trace = static_cast<float>(moduli.lambda / (2 * modulus));
+        bulk = static_cast<float>(moduli.bulk / (2 * modulus));
+    }
+};
+
+/// Relaxes the springs of a block by backward Euler. `strain`: twice Green's strain in this step. `relaxes_volume`:
+/// step length times the rate of the bulk viscosity. `last`: springs in the last step; `next` receives those of this
+/// step. Returns the second Piola-Kirchhoff stress of all springs over step.modulus. Sets `dissipated` to the
+/// energy density that the dashpots dissipated since the last step, over a quarter of step.modulus: the mean of
+/// the spring stresses in the last and this step, times the flow of the dashpots.
+[[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
+                                                          const Float8& relaxes_volume, const SpringStrain& last,
+                                                          SpringStrain& next, Float8& dissipated) {
+    const SixFloats now = six_of(strain), change = now - load_six(&last[0]);
+    store_six(now, &next[0]);
+    const auto spring = [&](std::size_t k, Float8 & energy) __attribute__((always_inline)) {
+        const SixFloats before = load_six(&last[6 + 6 * k]), after = step.kept[k] * (before + change),
+                        twice_mean = before + after;
+        store_six(after, &next[6 + 6 * k]);
+        energy = step.relaxes[k] * (step.shear * inner_product(twice_mean, after) +
+                                    step.trace * (skerry::trace(twice_mean) * skerry::trace(after)));
+        return after;
+    };
+    SixFloats sum = spring(0, dissipated);
+    for (std::size_t k = 1; k < maxwell_count; ++k) {
+        Float8 energy;
+        sum = sum + spring(k, energy);
+        dissipated = dissipated + energy;
+    }
+    const Float8 before = *reinterpret_cast<const Float8InMemory*>(last[bulk_entry].lane),
+                 after = (before + skerry::trace(change)) / (1.0F + relaxes_volume);
+    *reinterpret_cast<Float8InMemory*>(next[bulk_entry].lane) = after;
+    dissipated = dissipated + relaxes_volume * (step.bulk * ((before + after) * after));
+    const Float8 pressure = step.trace * skerry::trace(sum) + step.bulk * after;
+    LaneSymmetric<Float8> stress = components_of(step.shear * sum);
+    stress.xx += pressure;
+    stress.yy += pressure;
+    stress.zz += pressure;
+    return stress;
+}
+
+}  // namespace skerry
