@@ -169,7 +169,7 @@ TEST_CASE("implicit bodies of large strain allocate nothing, whether they swing 
 TEST_CASE("bodies at rest beside one that moves allocate nothing, either", "[determinism]") {
     World world = resting_balls(Backend::serial, 1, {}, {.sleep_speed = 0.01});
     do REQUIRE(world.advance(0.5).ok());
-    while (world.report().asleep < 6 && world.time() < 20);
+    while (world.report().asleep < 6 && world.time() < 40);
     REQUIRE(world.report().asleep == 6);
     const auto rolling = world.add_body(
         mesh::ball(0.05, 4),

@@ -260,7 +260,7 @@ TEST_CASE("a sphere lies in a soft body that closes around it, and is carried by
     Spheres s({.step_size = 1e-3});
     s.world.add_collider(Plane{});
     const auto soft = s.world.add_material(
-        {.young_modulus = 2e4, .poisson_ratio = 0.3, .density = 500, .friction = 0.5, .damping = 5});
+        {.young_modulus = 2e4, .poisson_ratio = 0.3, .density = 500, .friction = 0.5, .damping = 50});
     const BodyHandle pad = s.world.add_body(mesh::box({0.5, 0.5, 0.2}, {10, 10, 4}),
                                             {.material = soft, .position = {0, 0, 0.1005}, .contact_distance = 0.001});
     const BodyHandle ball = s.add({0.013, 0.007, 0.2 + radius + 0.003});
