@@ -223,7 +223,8 @@ RunResult simulate(const RunOptions& asked) {
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
     {
-        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world));
+        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world),
+                          world.time());
         FrameLoop(scene, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
     }
 

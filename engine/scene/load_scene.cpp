@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <utility>
+
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
+#include "engine/world/world_state.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -50,16 +54,16 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
     return EnergyProbe{};
 }
 
-}  // namespace
-
-Scene build_scene(const ScenePlan& plan) {
+/// Builds a scene. `assumed`: settings while bodies are added. Their step size is the step that choices of dynamics
+/// assume.
+Scene build_scene(const ScenePlan& plan, const Settings& assumed) {
     const Place top(plan.file);
     Scene scene{.name = plan.name,
                 .description = plan.description,
                 .materials = {},
                 .seconds = plan.seconds,
                 .frame_step = plan.frame_step,
-                .world = called_at(top.key("settings"), [&] { return tuned_world(plan.settings, plan.tuning); }),
+                .world = called_at(top.key("settings"), [&] { return tuned_world(assumed, plan.tuning); }),
                 .probes = {},
                 .recorded = {},
                 .probe_step = plan.probe_step};
@@ -88,6 +92,7 @@ Scene build_scene(const ScenePlan& plan) {
             pins.back().push_back(
                 called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); }));
     }
+    WorldAccess::state_of(world).model.settings.step_size = plan.settings.step_size;
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
             called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
@@ -102,6 +107,25 @@ Scene build_scene(const ScenePlan& plan) {
     for (const SeriesPlan& series : plan.series)
         scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins})});
     return scene;
+}
+
+/// True if a body was made implicit for a much longer step than the bodies that were added after it allow.
+bool assumed_longer_step(const World& world) {
+    constexpr Real much_longer = 1.5;  // least ratio of the two steps; the compared costs change by this ratio
+    return std::ranges::any_of(world.bodies(), [&](const BodyHandle body) {
+        return world.dynamics(body) == BodyDynamics::implicit_elastic &&
+               world.dynamics_choice(body).implicit_step > much_longer * world.stable_step();
+    });
+}
+
+}  // namespace
+
+Scene build_scene(const ScenePlan& plan) {
+    Scene scene = build_scene(plan, plan.settings);
+    if (!assumed_longer_step(scene.world)) return scene;
+    Settings assumed = plan.settings;
+    assumed.step_size = scene.world.stable_step();
+    return build_scene(plan, assumed);
 }
 
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {

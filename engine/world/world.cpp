@@ -211,14 +211,17 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .velocity = body.velocity,
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
+    std::optional<KnownElements> trial;
     if (body.dynamics == BodyDynamics::automatic) {
-        state.settle();  // afterwards the stable steps of removed bodies no longer limit the step
+        // Removed bodies must not limit the step. Without removals the stored results of earlier bodies are kept.
+        if (!state.edits.bodies_gone.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
-        fresh.dynamics = choose_dynamics(model, fresh, choice);
+        fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
     }
     const BodyHandle handle = model.body_map.insert(static_cast<Index>(model.bodies.slot.size()));
     fresh.slot = handle.slot;
-    append_body(model, state.scratch.stiffness_sum, fresh);
+    append_body(model, state.scratch.stiffness_sum, fresh, trial ? &*trial : nullptr);
+    if (trial) remember_elements(model, static_cast<Index>(model.body_records.size() - 1), std::move(*trial));
     model.body_records.back().choice = choice;
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
     model.body_records.back().name = name;
@@ -301,6 +304,10 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                   .hint = {}}
             .raise();
     state_->require_between_steps("attach");
+    if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
+        set_dynamics(body, BodyDynamics::explicit_elastic);
+        return attach(body, nodes, motion, pivot);
+    }
     std::vector<Index> held(nodes.begin(), nodes.end());
     if (rigid) {
         held.resize(static_cast<std::size_t>(count));

@@ -77,7 +77,7 @@ public:
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
     /// absolute times; the nodes are attached to the pose that the keys have now. For a rigid or implicit body at least
     /// three nodes that are not on one line are required. They hold the whole rigid body, or the frame of the implicit
-    /// body.
+    /// body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);
