@@ -10,7 +10,7 @@ void TimeLeft::reach(double wall, double time) {
     // Ratio of the wall times of two samples that are kept. It sets the resolution of the last half of the wall time.
     constexpr double growth = 1.05;
     const std::size_t count = samples_.size();
-    if (count > 1 && samples_[count - 1].wall < growth * samples_[count - 2].wall)
+    if (count > 1 && wall < growth * samples_[count - 2].wall)
         samples_.back() = {wall, time};
     else
         samples_.push_back({wall, time});

@@ -293,6 +293,10 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                   .hint = std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider"}
             .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
+    if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
+        set_dynamics(body, BodyDynamics::explicit_elastic);
+        return attach(body, nodes, motion, pivot);
+    }
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},
                   .object = "attach",
@@ -304,10 +308,6 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                   .hint = {}}
             .raise();
     state_->require_between_steps("attach");
-    if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
-        set_dynamics(body, BodyDynamics::explicit_elastic);
-        return attach(body, nodes, motion, pivot);
-    }
     std::vector<Index> held(nodes.begin(), nodes.end());
     if (rigid) {
         held.resize(static_cast<std::size_t>(count));

@@ -122,7 +122,8 @@ TEST_CASE("a body that became implicit by itself becomes explicit when it is att
     const Mesh box = mesh::box(Vec3::Constant(0.1), {2, 2, 2});
     const auto other = world.add_body(box, {.material = steel, .position = {1, 0, 0}}),
                chosen = world.add_body(box, {.material = steel, .name = "chosen"}),
-               told = world.add_body(box, {.material = steel, .dynamics = BodyDynamics::implicit_elastic});
+               told = world.add_body(
+                   box, {.material = steel, .position = {-1, 0, 0}, .dynamics = BodyDynamics::implicit_elastic});
     REQUIRE(world.dynamics(chosen) == BodyDynamics::implicit_elastic);
     const Index corner[] = {0};
     CHECK_THROWS_AS(world.attach(told, corner), SceneError);  // one node does not hold a frame
@@ -147,9 +148,11 @@ TEST_CASE("the elements of equal bodies are tried once", "[scene]") {
     Model& model = state.model;
     const MaterialHandle steel = world.add_material({.young_modulus = 2e11});
     const Mesh mesh = mesh::box(Vec3::Constant(0.1), {2, 2, 2});
-    NewBody body{.material = model.row(steel, "test"),
+    NewBody body{.element = BodySettings{}.element,
+                 .material = model.row(steel, "test"),
                  .nodes = mesh.nodes,
                  .tetrahedra = mesh.tetrahedra,
+                 .triangles = {},
                  .position = Vec3::Zero(),
                  .rotation = Mat3::Identity(),
                  .velocity = Vec3::Zero(),

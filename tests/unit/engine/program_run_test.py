@@ -178,7 +178,8 @@ class ProgramRunTest(ProgramCase):
         scene = self.write("thrown.json", {**thrown, "probes": []})
         run = json.loads(self.run_with_stats(scene))
         self.assertGreater(run["steps"], 1.1 * 0.2 / run["stable_dt"])
-        self.assertAlmostEqual(json.loads(self.skerry("inspect", scene, "--json").stdout)["steps"], run["steps"], delta=1)
+        found = json.loads(self.skerry("inspect", scene, "--json").stdout)
+        self.assertAlmostEqual(found["steps"], run["steps"], delta=1)
 
     def test_inspect_estimates_a_run_that_is_too_long_to_try(self):
         found = json.loads(self.skerry("inspect", self.write("slow.json", SLOW), "--json").stdout)
@@ -192,9 +193,9 @@ class ProgramRunTest(ProgramCase):
 
     def test_a_run_names_the_chosen_dynamics_in_one_line(self):
         block = SCENE["bodies"][0]
-        scene = self.write("mixed.json", {**SCENE, "probes": [], "materials": {**SCENE["materials"], "steel": {"E": 2e11}},
-                                          "bodies": [block, {**block, "name": "stiff", "material": "steel",
-                                                             "position": [0, 0, 3]}]})
+        stiff = {**block, "name": "stiff", "material": "steel", "position": [0, 0, 3]}
+        scene = self.write("mixed.json", {**SCENE, "probes": [], "bodies": [block, stiff],
+                                          "materials": {**SCENE["materials"], "steel": {"E": 2e11}}})
         lines = [line for line in self.skerry("run", scene).stdout.splitlines() if "  dynamics  " in line]
         self.assertEqual(len(lines), 1)
         self.assertRegex(lines[0], r"2 bodies: 1 explicit \(soft: strains of up to [\d.]+ % expected\), "
