@@ -116,6 +116,23 @@ TEST_CASE("in a pile of stiff cubes the predicted costs are those that were meas
     CHECK(27 * estimate.explicit_cost == Approx(4.5).epsilon(0.5));
 }
 
+TEST_CASE("with default settings a stiff block holds half a degree below the critical angle", "[scene]") {
+    constexpr Real mu = 0.3;
+    const Real angle = std::atan(mu) - 0.5 * std::numbers::pi / 180;
+    Settings settings;
+    settings.gravity = 9.81 * Vec3(std::sin(angle), 0, -std::cos(angle));
+    World world(settings);
+    const auto material = world.add_material({.young_modulus = 1e8, .poisson_ratio = 0.3, .friction = mu});
+    const auto block =
+        world.add_body(mesh::box({0.2, 0.2, 0.1}, {4, 4, 2}), {.material = material, .position = {0, 0, 0.05}});
+    world.add_collider(Plane{});
+    const Vec3 start = world.center_of_mass(block);
+    REQUIRE(world.advance(1).ok());
+    CHECK(world.asleep(block));
+    // Shear under the weight, rho g h^2/(2 G), is 4e-7 m. As an explicit body the block slides by 4 mm.
+    CHECK(std::abs(world.center_of_mass(block).x() - start.x()) < 1e-6);
+}
+
 TEST_CASE("a body that became implicit by itself becomes explicit when it is attached", "[scene]") {
     World world;
     const auto steel = world.add_material({.young_modulus = 2e11});
