@@ -1,5 +1,6 @@
 #include "engine/program/progress.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,11 +19,21 @@ constexpr double first_line = 1;
 constexpr double longest_silence = 600;  // longest time between two lines [s]
 constexpr int bar_width = 24;            // [characters]
 
+double seconds_of(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 double share_of(double time, double seconds) {
     return time < seconds ? time / seconds : 1;
 }
 
 }  // namespace
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+}
 
 std::string bar_text(double share) {
     const int filled = static_cast<int>(share * bar_width);

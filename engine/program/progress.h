@@ -19,6 +19,9 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Returns the CPU time of this process since its start, summed over all threads [s].
+double cpu_seconds();
+
 /// Returns a bar filled to the fraction `share`, for example [######..................].
 std::string bar_text(double share);
 

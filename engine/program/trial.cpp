@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "engine/program/progress.h"
 #include "engine/program/start_text.h"
@@ -14,10 +13,6 @@ namespace {
 
 // CPU time after which a trial ends [s]. A person waits for it, and most scenes have their first impacts within it.
 constexpr double longest_trial = 3;
-
-double cpu_seconds() {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 /// Runs the trial and sets the measured and estimated costs.
 void measure(World& world, const RunPlan& plan, SceneCost& cost) {
