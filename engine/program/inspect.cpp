@@ -366,7 +366,7 @@ int inspect_scene(const InspectOptions& options) {
     SceneStart start = start_of(plan);
     Scene& scene = start.scene;
     std::vector<BodyDynamics> became;
-    for (const BodyHandle body : scene.world.bodies()) became.push_back(scene.world.dynamics(body));
+    for (const BodyHandle body : bodies_in_order(scene.world)) became.push_back(scene.world.dynamics(body));
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true, became);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();

@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <utility>
 
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
-#include "engine/world/world_state.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -54,16 +52,16 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
     return EnergyProbe{};
 }
 
-/// Builds a scene. `assumed`: settings while bodies are added. Their step size is the step that choices of dynamics
-/// assume.
-Scene build_scene(const ScenePlan& plan, const Settings& assumed) {
+}  // namespace
+
+Scene build_scene(const ScenePlan& plan) {
     const Place top(plan.file);
     Scene scene{.name = plan.name,
                 .description = plan.description,
                 .materials = {},
                 .seconds = plan.seconds,
                 .frame_step = plan.frame_step,
-                .world = called_at(top.key("settings"), [&] { return tuned_world(assumed, plan.tuning); }),
+                .world = called_at(top.key("settings"), [&] { return tuned_world(plan.settings, plan.tuning); }),
                 .probes = {},
                 .recorded = {},
                 .probe_step = plan.probe_step};
@@ -92,7 +90,6 @@ Scene build_scene(const ScenePlan& plan, const Settings& assumed) {
             pins.back().push_back(
                 called_at(pin.place, [&] { return world.attach(bodies.back(), pin.nodes, pin.motion, pin.pivot); }));
     }
-    WorldAccess::state_of(world).model.settings.step_size = plan.settings.step_size;
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
             called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
@@ -109,23 +106,10 @@ Scene build_scene(const ScenePlan& plan, const Settings& assumed) {
     return scene;
 }
 
-/// True if a body was made implicit for a much longer step than the bodies that were added after it allow.
-bool assumed_longer_step(const World& world) {
-    constexpr Real much_longer = 1.5;  // least ratio of the two steps; the compared costs change by this ratio
-    return std::ranges::any_of(world.bodies(), [&](const BodyHandle body) {
-        return world.dynamics(body) == BodyDynamics::implicit_elastic &&
-               world.dynamics_choice(body).implicit_step > much_longer * world.stable_step();
-    });
-}
-
-}  // namespace
-
-Scene build_scene(const ScenePlan& plan) {
-    Scene scene = build_scene(plan, plan.settings);
-    if (!assumed_longer_step(scene.world)) return scene;
-    Settings assumed = plan.settings;
-    assumed.step_size = scene.world.stable_step();
-    return build_scene(plan, assumed);
+std::vector<BodyHandle> bodies_in_order(const World& world) {
+    std::vector<BodyHandle> bodies = world.bodies();
+    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // without removals, slots are numbered in the order added
+    return bodies;
 }
 
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {

@@ -238,12 +238,28 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
+/// Makes bodies explicit for which this costs less since the body `added` requires short steps.
+void revise_choices(World& world, WorldState& state, BodyHandle added) {
+    Model& model = state.model;
+    if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
+        return;
+    if (!state.edits.bodies_gone.empty()) state.settle();
+    DynamicsEstimate now;
+    for (Index row = outdated_choice(model, now); row != no_index; row = outdated_choice(model, now)) {
+        const BodyHandle body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
+        world.set_dynamics(body, BodyDynamics::explicit_elastic);
+        model.body_records[static_cast<std::size_t>(model.row(body, "add_body"))].choice = now;
+    }
+}
+
 }  // namespace
 
 BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     const Model& model = state_->model;
     validate(mesh, body, model.body_of_mesh(model.bodies.slot.size(), {mesh.tetrahedra, mesh.nodes}) != no_index);
-    return add_valid_body(*state_, mesh, body);
+    const BodyHandle added = add_valid_body(*state_, mesh, body);
+    revise_choices(*this, *state_, added);
+    return added;
 }
 
 BodyHandle World::add_body(const Sphere& sphere, const BodySettings& body) {

@@ -116,6 +116,33 @@ TEST_CASE("in a pile of stiff cubes the predicted costs are those that were meas
     CHECK(27 * estimate.explicit_cost == Approx(4.5).epsilon(0.5));
 }
 
+TEST_CASE("an implicit body becomes explicit when a later body requires short steps, if this costs less", "[scene]") {
+    World world;
+    const auto firm = world.add_material({.young_modulus = 1e8}), steel = world.add_material({.young_modulus = 2e11}),
+               rubber = world.add_material({.young_modulus = 1e5});
+    const Mesh cube = mesh::box(Vec3::Constant(0.1), {4, 4, 4});
+    const auto changes = world.add_body(cube, {.material = firm, .velocity = {1, 0, 0}, .name = "changes"}),
+               stays = world.add_body(cube, {.material = steel, .position = {1, 0, 0}}),
+               told = world.add_body(
+                   cube, {.material = firm, .position = {-1, 0, 0}, .dynamics = BodyDynamics::implicit_elastic});
+    world.add_body(mesh::box(Vec3::Constant(1), {2, 2, 2}), {.material = rubber, .position = {0, 0, 9}});
+    CHECK(world.dynamics(changes) == BodyDynamics::implicit_elastic);  // the long steps of a large body suit it
+    REQUIRE(world.advance(0.01).ok());
+    const Vec3 before = world.center_of_mass(changes);
+    world.add_body(mesh::box(Vec3::Constant(0.03), {4, 4, 4}), {.material = rubber, .position = {0, 0, 5}});
+    CHECK(world.dynamics(changes) == BodyDynamics::explicit_elastic);
+    CHECK(world.dynamics(stays) == BodyDynamics::implicit_elastic);
+    CHECK(world.dynamics(told) == BodyDynamics::implicit_elastic);
+    const DynamicsEstimate now = world.dynamics_choice(changes);
+    CHECK(now.reason == DynamicsReason::cost);
+    CHECK(now.implicit_step < 1e-3);
+    CHECK(2 * now.implicit_cost > now.explicit_cost);
+    CHECK(world.name(changes) == "changes");
+    CHECK((world.center_of_mass(changes) - before).norm() < 1e-12);  // rounding
+    CHECK((world.velocities(changes)[0] - Vec3(1, 0, -9.81 * 0.01)).norm() < 1e-9);
+    REQUIRE(world.advance(1e-3).ok());
+}
+
 TEST_CASE("with default settings a stiff block holds half a degree below the critical angle", "[scene]") {
     constexpr Real mu = 0.3;
     const Real angle = std::atan(mu) - 0.5 * std::numbers::pi / 180;

@@ -53,7 +53,8 @@ struct MaterialSettings {
 ///   Newton's method (docs/methods/implicit_bodies.md).
 /// - automatic (default): the body becomes implicit if this more than halves the predicted cost and the expected strain
 ///   is at most 2 %, otherwise explicit. The choice is made when the body is added, for the step length that the other
-///   bodies then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
+///   bodies then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later
+///   requires short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
 template <>
 struct EnumNames<BodyDynamics> {

@@ -151,7 +151,7 @@ public:
     bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
     void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
     Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
-    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added
+    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added (but see set_dynamics)
     std::vector<ColliderHandle> colliders() const;
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.

@@ -11,6 +11,7 @@ namespace skerry {
 
 namespace {
 
+constexpr Real ns = 1e-9;  // [s]
 // Cost of a step of an implicit body, as a power law of its number of nodes. The law was fitted to the output of
 // profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
@@ -65,21 +66,24 @@ KnownElements try_alone(const Model& model, const NewBody& body) {
     return std::move(alone.known_elements.back());
 }
 
+/// Cost of elements in a step [s]. `blocks`: number of element blocks.
+Real cost_of_elements(std::size_t blocks) {
+    return ns * element_cost * static_cast<Real>(blocks * element_lanes);
+}
+
 /// Fills in the steps and costs of an estimate.
 void compare_costs(const Model& model, const NewBody& body, const KnownElements& elements, DynamicsEstimate& estimate) {
-    constexpr Real ns = 1e-9;
-    const auto count = [](std::size_t blocks) { return static_cast<Real>(blocks * element_lanes); };
-    const Real others = element_cost * count(model.elements.volume.size());
+    const Real others = cost_of_elements(model.elements.volume.size());
     const auto nodes = static_cast<Real>(body.nodes.size());
-    const Real own = element_cost * count(elements.mass_share.size()) + node_contacts * nodes;
+    const Real own = cost_of_elements(elements.mass_share.size()) + ns * node_contacts * nodes;
     const Real size = nodes / fitted_nodes, one_step = step_time * std::pow(size, step_power);
     estimate.implicit_step = step_with_frame(model);
     estimate.deforming_step = std::max(estimate.implicit_step, model.settings.implicit_step);
     estimate.explicit_step = std::min(trusted_step(model), elements.rest_step * model.tuning.step_safety);
-    estimate.explicit_cost = ns * (others + own) / estimate.explicit_step;
-    estimate.implicit_cost = ns * ((others + pile_contacts * contact_share * one_step) / estimate.implicit_step +
-                                   (1 - contact_share) * one_step / estimate.deforming_step +
-                                   factors_a_second * factor_time * std::pow(size, factor_power));
+    estimate.explicit_cost = (others + own) / estimate.explicit_step;
+    estimate.implicit_cost = (others + ns * pile_contacts * contact_share * one_step) / estimate.implicit_step +
+                             ns * (1 - contact_share) * one_step / estimate.deforming_step +
+                             ns * factors_a_second * factor_time * std::pow(size, factor_power);
     const Real damps = 2 * model.settings.theta - 1;
     if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
 }
@@ -101,6 +105,30 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
     compare_costs(model, body, *known, estimate);
     return estimate.implicit_cost * least_saving < estimate.explicit_cost ? BodyDynamics::implicit_elastic
                                                                           : BodyDynamics::explicit_elastic;
+}
+
+Index outdated_choice(const Model& model, DynamicsEstimate& now) {
+    // Least ratio of the step that was assumed to the present step. The costs that the choice compares change by it.
+    constexpr Real much_longer = 1.5;
+    if (model.implicit_nodes.size() == 0) return no_index;
+    const Real step = trusted_step(model), others = cost_of_elements(model.elements.volume.size());
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        const DynamicsEstimate& before = model.body_records[b].choice;
+        if (before.reason != DynamicsReason::cost || model.dynamics_of(b) != BodyDynamics::implicit_elastic ||
+            !(before.implicit_step > much_longer * step))
+            continue;
+        now = before;
+        now.implicit_step = step;
+        now.deforming_step = std::max(step, model.settings.implicit_step);
+        now.explicit_step = std::min(before.explicit_step, step);
+        // The stored costs contain those of the bodies that were there at the time. These bodies count twice, more for
+        // the explicit steps, so the body changes only if this certainly saves time.
+        now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
+        now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
+        now.damped_above = 0;  // an explicit body is not damped by its steps
+        if (!(now.implicit_cost * least_saving < now.explicit_cost)) return static_cast<Index>(b);
+    }
+    return no_index;
 }
 
 }  // namespace skerry

@@ -71,6 +71,10 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial);
 
+/// Returns the row of a body that became implicit by choose_dynamics, but for which explicit steps now cost less
+/// because bodies were added that require short steps; no_index if there is none. Writes the present estimate to `now`.
+Index outdated_choice(const Model& model, DynamicsEstimate& now);
+
 // body_steps.cpp
 
 /// Groups the tetrahedra of a body by material. The groups are in the order in which the materials first occur in the
