@@ -1,4 +1,4 @@
-// profile_first_scene: the first scene of a newcomer, a body on a slope with default settings. Does it hold below the
+// profile_first_scene: the first scene of a newcomer, an explicit body on a slope. Does it hold below the
 // critical angle, and slide above it by Coulomb's law? Prints docs/first_scene.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -103,8 +103,9 @@ Motion run(const Case& one, Real offset, Real seconds) {
     MaterialSettings material = one.material;
     material.friction = one.subject.friction;
     world.add_collider(Plane{});
-    const auto body =
-        world.add_body(one.subject.mesh, {.material = world.add_material(material), .position = {0, 0, one.above}});
+    const auto body = world.add_body(one.subject.mesh, {.material = world.add_material(material),
+                                                        .position = {0, 0, one.above},
+                                                        .dynamics = BodyDynamics::explicit_elastic});
     const Real shell = world.contact_distance(body) / 2;  // a plane contributes nothing to the distance
     const Real at_shell = world.center_of_mass(body).z() - one.above + shell;
 
@@ -239,7 +240,7 @@ void print_peers(Real seconds, const std::vector<profiling::Peer>& peers, const 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"A body on a slope with default settings: what it does below and above the critical angle."};
+    CLI::App app{"An explicit body on a slope: what it does below and above the critical angle."};
     Real seconds = 2;
     std::vector<Real> moduli{1e4, 1e5, 1e6, 1e8, 1e10, 1e11};
     std::string mesh_file, python = "python3";
@@ -265,7 +266,7 @@ int main(int argc, char** argv) {
             material.bulk_viscosity = viscosity;
             return material;
         };
-        section("A block, default settings");
+        section("A block");
         print_starts(block(), usual, moduli, seconds);
         section("A skittle on its foot, friction 0.1");
         print_starts(standing(mesh::skittle(0.38, 3), 0.1), usual, {1e5, 1e6, 1e8, 1e10}, seconds);

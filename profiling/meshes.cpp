@@ -65,6 +65,7 @@ void run(const Mesh& mesh, const Fall& fall, Outcome& outcome) {
     world.add_body(mesh, {.material = rubber,
                           .position = {0, 0, 0.01},
                           .velocity = {0, 0, -fall.velocity},
+                          .dynamics = BodyDynamics::explicit_elastic,
                           .element = fall.linear ? ElementKind::linear : ElementKind::smoothed});
     outcome.at_start = world.report();  // clusters are found now, not in the first step
     const double found = cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);

@@ -42,6 +42,7 @@ World make_world(const Pile& pile, bool slivers) {
         world.add_body(mesh, {.material = rubber,
                               .position = place,
                               .velocity = {0, 0, -0.5 * i},
+                              .dynamics = BodyDynamics::explicit_elastic,
                               .element = pile.linear ? ElementKind::linear : ElementKind::smoothed});
     }
     return world;

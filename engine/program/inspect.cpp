@@ -11,6 +11,7 @@
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
+#include "engine/program/trial.h"
 #include "engine/scene/scene_plan.h"
 
 namespace skerry {
@@ -23,8 +24,7 @@ using Problems = std::vector<std::string>;
 constexpr Real poor_quality = 0.1;
 // Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
-constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
-constexpr int timed_steps = 20;
+constexpr Real hardly_longer = 1.03;       // a ratio of step lengths between 1 and this value counts as a small gain
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
 Problems problems_of(const MeshReport& r) {
@@ -293,35 +293,6 @@ SceneStart start_of(const ScenePlan& plan) {
     return start;
 }
 
-struct SceneCost {
-    double seconds_per_second = 0;  // wall time per simulated second, measured over the first steps
-    Real overlap = 0;               // deepest overlap at the start [m]
-    // Largest penetration into the contact distance at the start, minus the largest overlap [m].
-    Real into_shell = 0;
-    Index contacts = 0;  // number of contacts at the start
-    std::string failure{}, turning{};
-};
-
-/// Runs the first steps, and measures their cost, overlaps and contacts. `overlap`: deepest overlap known so far [m].
-SceneCost try_steps(World& world, Real overlap) {
-    SceneCost cost{.overlap = overlap};
-    // duration of a step that is long enough to find the contacts but moves hardly anything [s]
-    constexpr Real hardly = 1e-9;
-    const StepReport first = world.advance(hardly);
-    cost.overlap = std::max(overlap, first.max_penetration);
-    cost.into_shell = first.max_gap_violation - first.max_penetration;
-    cost.contacts = first.contacts;
-    if (!first.ok()) cost.failure = first.message();
-    if (const WorldReport report = world.report(); report.collider_turn > visible_turn)
-        cost.turning = turning_text(report);
-    const Stopwatch watch;
-    const Real duration = timed_steps * world.stable_step();
-    const StepReport steps = world.advance(duration);
-    if (!steps.ok()) cost.failure = steps.message();
-    cost.seconds_per_second = watch.seconds() / duration;
-    return cost;
-}
-
 Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart& start, const SceneCost& cost) {
     Problems problems;
     for (const BodyKindReport& kind : kinds)
@@ -395,14 +366,13 @@ int inspect_scene(const InspectOptions& options) {
     SceneStart start = start_of(plan);
     Scene& scene = start.scene;
     std::vector<BodyDynamics> became;
-    for (const BodyHandle body : scene.world.bodies()) became.push_back(scene.world.dynamics(body));
+    for (const BodyHandle body : bodies_in_order(scene.world)) became.push_back(scene.world.dynamics(body));
     const std::vector<BodyKindReport> kinds = body_kinds(plan, true, became);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
-    const double steps = plan_run(scene, run).steps(scene.world);
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
-    const SceneCost cost = try_steps(scene.world, overlap);
+    const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
     const Problems problems = problems_of(kinds, start, cost);
     if (options.json) {
         Json bodies = Json::array();
@@ -436,7 +406,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"elements", report.elements},
                            {"stable_dt", stable_step},
                            {"stable_dt_body", report.stable_step_body},
-                           {"steps", steps},
+                           {"steps", cost.steps},
                            {"dynamics_choices", choices_json(report)},
                            {"clusters",
                             {{"count", report.clusters},
@@ -446,8 +416,9 @@ int inspect_scene(const InspectOptions& options) {
                            {"contacts_at_start", cost.contacts},
                            {"overlap_at_start", cost.overlap},
                            {"start_overlaps", overlaps_json(start.as_written)},
-                           {"wall_seconds_per_second", cost.seconds_per_second},
-                           {"wall_seconds", cost.seconds_per_second * scene.seconds},
+                           {"trial_seconds", cost.simulated},
+                           {"wall_seconds_per_second", cost.seconds / scene.seconds},
+                           {"wall_seconds", cost.seconds},
                            {"body_kinds", bodies},
                            {"problems", problems}};
         std::cout << json.dump(1) << std::endl;
@@ -460,10 +431,12 @@ int inspect_scene(const InspectOptions& options) {
               << (report.clusters > 0 ? "  clusters      " + cluster_text(report) + "\n" : "")  //
               << "  step          " << with_unit(stable_step, "s") << " ("
               << (report.stable_step_body.empty() ? "no body limits the step" : "limited by " + report.stable_step_body)
-              << "), " << count_text(steps) << " steps for " << short_number(scene.seconds) << " s\n"
-              << "  cost          about " << duration_text(cost.seconds_per_second)
-              << " of wall time per simulated second, estimated from the first steps; "
-              << duration_text(cost.seconds_per_second * scene.seconds) << " for the whole run\n"
+              << "), " << count_text(cost.steps) << " steps for " << short_number(scene.seconds) << " s\n"
+              << "  cost          about " << duration_text(cost.seconds) << " of wall time for the whole run, "
+              << duration_text(cost.seconds / scene.seconds) << " per simulated second, "
+              << (cost.whole ? "measured in a trial of the whole run"
+                             : "estimated from a trial of the first " + with_unit(cost.simulated, "s"))
+              << "\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";
     for (const BodyKindReport& kind : kinds) {

@@ -1,8 +1,10 @@
 #include "engine/program/progress.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "engine/program/number_text.h"
@@ -17,11 +19,21 @@ constexpr double first_line = 1;
 constexpr double longest_silence = 600;  // longest time between two lines [s]
 constexpr int bar_width = 24;            // [characters]
 
+double seconds_of(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 double share_of(double time, double seconds) {
     return time < seconds ? time / seconds : 1;
 }
 
 }  // namespace
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+}
 
 std::string bar_text(double share) {
     const int filled = static_cast<int>(share * bar_width);
@@ -33,12 +45,13 @@ void clear_bar() {
     if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
 }
 
-Progress::Progress(bool wanted, double seconds, double steps, double step)
+Progress::Progress(bool wanted, double seconds, double steps, double step, double begin)
     : wanted_(wanted),
       bar_(wanted && isatty(STDERR_FILENO) != 0),
       seconds_(seconds),
       steps_(steps),
       step_(step),
+      left_(seconds, begin),
       next_(bar_ ? 0 : first_line) {}
 
 void Progress::begin() {
@@ -54,6 +67,7 @@ Progress::~Progress() {
 void Progress::show(double time, std::uint64_t steps) {
     if (!wanted_) return;
     const double wall = watch_.seconds();
+    left_.reach(wall, time);
     if (wall < next_) return;
     if (!begun_) begin();
     if (bar_)
@@ -68,9 +82,8 @@ void Progress::show_bar(double wall, double time) {
     const double share = share_of(time, seconds_);
     std::fprintf(stderr, "\r\033[K%s %s %%  %s of %s s", bar_text(share).c_str(), short_number(100 * share).c_str(),
                  short_number(time).c_str(), short_number(seconds_).c_str());
-    if (share > 0)
-        std::fprintf(stderr, "  %s x real time  %s left", short_number(time / wall).c_str(),
-                     duration_text(wall * (1 - share) / share).c_str());
+    if (const std::string left = left_text(); !left.empty())
+        std::fprintf(stderr, "  %s x real time  %s left", short_number(time / wall).c_str(), left.c_str());
 }
 
 void Progress::show_line(double wall, double time, std::uint64_t steps) {
@@ -78,8 +91,13 @@ void Progress::show_line(double wall, double time, std::uint64_t steps) {
     std::fprintf(stderr, "skerry: after %s: %s of %s s (%s %%), %s steps", duration_text(wall).c_str(),
                  short_number(time).c_str(), short_number(seconds_).c_str(), short_number(100 * share).c_str(),
                  grouped(steps).c_str());
-    if (share > 0) std::fprintf(stderr, "; about %s left", duration_text(wall * (1 - share) / share).c_str());
+    if (const std::string left = left_text(); !left.empty()) std::fprintf(stderr, "; about %s left", left.c_str());
     std::fputc('\n', stderr);
+}
+
+std::string Progress::left_text() const {
+    const double seconds = left_.estimate();
+    return std::isfinite(seconds) ? duration_text(seconds) : "";
 }
 
 }  // namespace skerry

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/program/time_left.h"
+
 namespace skerry {
 
 /// Measures the wall time since the construction of the object [s].
@@ -17,6 +19,9 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Returns the CPU time of this process since its start, summed over all threads [s].
+double cpu_seconds();
+
 /// Returns a bar filled to the fraction `share`, for example [######..................].
 std::string bar_text(double share);
 
@@ -26,8 +31,9 @@ void clear_bar();
 class Progress {
 public:
     /// `wanted`: if false, nothing is displayed. `seconds`: simulated time of the run [s]. `steps`: estimated number of
-    /// steps. `step`: step length [s]. All output goes to standard error.
-    Progress(bool wanted, double seconds, double steps, double step);
+    /// steps. `step`: step length [s]. `begin`: time at which the run begins or resumes [s]. All output goes to
+    /// standard error.
+    Progress(bool wanted, double seconds, double steps, double step, double begin);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -41,11 +47,14 @@ private:
     void begin();
     void show_bar(double wall, double time);
     void show_line(double wall, double time, std::uint64_t steps);
+    /// Returns the estimated time left as text, or an empty text if there is no estimate yet.
+    std::string left_text() const;
 
     bool wanted_, bar_;
     double seconds_, steps_, step_;
     bool begun_ = false;
     Stopwatch watch_;
+    TimeLeft left_;
     double next_;  // wall time of the next display [s]
 };
 

@@ -166,7 +166,7 @@ void count_bodies(const World& world, RunResult& result) {
 /// Where the boundary is not a manifold, a contact cannot tell the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
-    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
+    const std::vector<BodyHandle> bodies = bodies_in_order(world);
     std::vector<bool> seen(plan.meshes.size(), false);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
@@ -223,7 +223,8 @@ RunResult simulate(const RunOptions& asked) {
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
     {
-        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world));
+        Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world),
+                          world.time());
         FrameLoop(scene, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
     }
 

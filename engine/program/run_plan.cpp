@@ -16,14 +16,17 @@ double RunPlan::length_of(long frame) const {
     return std::min(frame_step, seconds - static_cast<double>(frame) * frame_step);
 }
 
+double RunPlan::sample() const {
+    return std::min(frame_step, seconds) / samples;
+}
+
 double RunPlan::longest_step(const World& world) const {
     const Real stable = world.stable_step();
     return std::min({frame_step / samples, seconds / samples, stable, world.settings().step_size.value_or(stable)});
 }
 
 double RunPlan::steps(const World& world) const {
-    const double sample = std::min(frame_step, seconds) / samples;
-    return std::max(0.0, seconds - world.time()) / sample * std::ceil(sample / longest_step(world));
+    return std::max(0.0, seconds - world.time()) / sample() * std::ceil(sample() / longest_step(world));
 }
 
 bool cut_short(const RunPlan& plan, long frame, double planned) {

@@ -18,6 +18,8 @@ struct RunPlan {
     /// Returns the length of a frame, which is the time since the previous frame [s]. The last frame may be shorter
     /// than the others.
     double length_of(long frame) const;
+    /// Returns the length of a sample [s]. In a frame that is shorter than the others, samples are shorter too.
+    double sample() const;
     /// Returns an upper bound of the step length in the present state of the world [s]. A step is never longer than a
     /// sample.
     double longest_step(const World& world) const;

@@ -28,6 +28,7 @@ Body body_of(const Mesh& mesh, const StepCase& of) {
     settings.backend = Backend::serial;
     World world(settings);
     BodySettings body = of.body;
+    body.dynamics = BodyDynamics::explicit_elastic;
     body.material = world.add_material(of.material);
     body.materials.clear();
     for (const auto& [label, material] : of.labelled)

@@ -9,7 +9,7 @@
 namespace skerry {
 
 /// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
-/// default material and elements.
+/// default material and elements. The dynamics of the body are ignored; it is explicit.
 struct StepCase {
     Settings settings;
     MaterialSettings material;

@@ -1,6 +1,7 @@
 // Summary that is printed at the end of a run, for people who do not know the methods of the engine.
 #include <cmath>
 
+#include "engine/program/dynamics_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
 
@@ -104,6 +105,7 @@ std::string summary_of(const RunResult& result) {
     if (result.status != "ok") text += summary_line("ENDED EARLY", result.status);
     if (result.restarted_at) text += summary_line("restarted", "at " + with_unit(*result.restarted_at, "s"));
     text += summary_line("bodies", bodies_text(result));
+    if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);
     text += summary_line("elements",
                          count_of(r.elements, "tetrahedron", "tetrahedra") + ", " + count_of(r.nodes, "node", "nodes"));
     return text + step_lines(result) + warning_lines(result) + probe_lines(result) + file_lines(result);

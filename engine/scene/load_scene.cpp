@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
 #include "skerry/scene.h"
@@ -102,6 +104,12 @@ Scene build_scene(const ScenePlan& plan) {
     for (const SeriesPlan& series : plan.series)
         scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins})});
     return scene;
+}
+
+std::vector<BodyHandle> bodies_in_order(const World& world) {
+    std::vector<BodyHandle> bodies = world.bodies();
+    std::ranges::sort(bodies, {}, &BodyHandle::slot);  // without removals, slots are numbered in the order added
+    return bodies;
 }
 
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {

@@ -88,4 +88,8 @@ void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
 Scene build_scene(const ScenePlan& plan);
 
+/// Returns the bodies of a scene that was just built, in the order of ScenePlan::bodies. World::bodies() returns bodies
+/// last whose dynamics have changed.
+std::vector<BodyHandle> bodies_in_order(const World& world);
+
 }  // namespace skerry

@@ -88,9 +88,10 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                  {.meaning = "whether the body can touch itself; default: false"})
             .key("dynamics", &BodyEntry::dynamics,
                  {.meaning =
-                      "model of the motion. \"explicit\" (default): any deformation, short steps; \"implicit\": small "
-                      "deformation, any step size, for stiff bodies; \"rigid\": no deformation, with the mass and "
-                      "inertia of the mesh; \"automatic\": explicit or implicit, whichever is predicted to cost less"})
+                      "model of the motion. \"automatic\" (default): implicit if the body is stiff, without "
+                      "self-contact and pins, and this more than halves the predicted cost, otherwise explicit; "
+                      "\"explicit\": any deformation, short steps; \"implicit\": small deformation, any step size, for "
+                      "stiff bodies; \"rigid\": no deformation, with the mass and inertia of the mesh"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})

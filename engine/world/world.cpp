@@ -211,14 +211,17 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .velocity = body.velocity,
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
+    std::optional<KnownElements> trial;
     if (body.dynamics == BodyDynamics::automatic) {
-        state.settle();  // afterwards the stable steps of removed bodies no longer limit the step
+        // Removed bodies must not limit the step. Without removals the stored results of earlier bodies are kept.
+        if (!state.edits.bodies_gone.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
-        fresh.dynamics = choose_dynamics(model, fresh, choice);
+        fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
     }
     const BodyHandle handle = model.body_map.insert(static_cast<Index>(model.bodies.slot.size()));
     fresh.slot = handle.slot;
-    append_body(model, state.scratch.stiffness_sum, fresh);
+    append_body(model, state.scratch.stiffness_sum, fresh, trial ? &*trial : nullptr);
+    if (trial) remember_elements(model, static_cast<Index>(model.body_records.size() - 1), std::move(*trial));
     model.body_records.back().choice = choice;
     const std::string name = body.name.empty() ? "body " + std::to_string(handle.slot) : body.name;
     model.body_records.back().name = name;
@@ -235,12 +238,28 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
+/// Makes bodies explicit for which this costs less since the body `added` requires short steps.
+void revise_choices(World& world, WorldState& state, BodyHandle added) {
+    Model& model = state.model;
+    if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
+        return;
+    if (!state.edits.bodies_gone.empty()) state.settle();
+    DynamicsEstimate now;
+    for (Index row = outdated_choice(model, now); row != no_index; row = outdated_choice(model, now)) {
+        const BodyHandle body = model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(row)]);
+        world.set_dynamics(body, BodyDynamics::explicit_elastic);
+        model.body_records[static_cast<std::size_t>(model.row(body, "add_body"))].choice = now;
+    }
+}
+
 }  // namespace
 
 BodyHandle World::add_body(const Mesh& mesh, const BodySettings& body) {
     const Model& model = state_->model;
     validate(mesh, body, model.body_of_mesh(model.bodies.slot.size(), {mesh.tetrahedra, mesh.nodes}) != no_index);
-    return add_valid_body(*state_, mesh, body);
+    const BodyHandle added = add_valid_body(*state_, mesh, body);
+    revise_choices(*this, *state_, added);
+    return added;
 }
 
 BodyHandle World::add_body(const Sphere& sphere, const BodySettings& body) {
@@ -290,6 +309,10 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
                   .hint = std::string("to prescribe its motion, replace the ") + model.round_name(b) + " by a collider"}
             .raise();
     const bool rigid = model.is_rigid(b), implicit = model.has_frame(b) && !rigid;
+    if (implicit && model.body_records[b].choice.reason != DynamicsReason::given) {
+        set_dynamics(body, BodyDynamics::explicit_elastic);
+        return attach(body, nodes, motion, pivot);
+    }
     if (model.has_frame(b) && !hold_whole(model, b, nodes))
         Complaint{.file = {},
                   .object = "attach",

@@ -99,7 +99,7 @@ std::string DynamicsChoice::message() const {
     if (e.reason == DynamicsReason::given) return text;
     if (e.reason == DynamicsReason::self_contact) return text + ", because the body can touch itself";
     if (e.reason == DynamicsReason::strain)
-        text += ", because the body may deform by " + short_text(100 * e.strain) + " %";
+        return text + ", because the body may deform by " + short_text(100 * e.strain) + " %";
     text += ": " + (is_implicit ? implicit : way(e.explicit_cost, e.explicit_step)) +
             (is_implicit ? "; explicit: " + way(e.explicit_cost, e.explicit_step) : "; implicit: " + implicit);
     if (is_implicit && e.damped_above > 0)

@@ -51,10 +51,10 @@ struct MaterialSettings {
 /// - implicit_elastic: the body deforms by backward Euler (see Settings::theta), which is stable at any step length. It
 ///   is meant for stiff bodies. Elasticity is linear in the frame that moves with the body; large strain is solved by
 ///   Newton's method (docs/methods/implicit_bodies.md).
-/// - automatic: the body becomes implicit if this more than halves the predicted cost and the expected strain is small,
-/// else
-///   explicit. This is decided when the body is added, for the step length that the other bodies then allow
-///   (World::dynamics_choice; docs/methods/implicit_bodies.md 6).
+/// - automatic (default): the body becomes implicit if this more than halves the predicted cost and the expected strain
+///   is at most 2 %, otherwise explicit. The choice is made when the body is added, for the step length that the other
+///   bodies then allow (World::dynamics_choice; docs/methods/implicit_bodies.md 6). If a body that is added later
+///   requires short steps, an implicit body becomes explicit where this costs less, as by World::set_dynamics().
 enum class BodyDynamics : std::uint8_t { explicit_elastic, rigid, implicit_elastic, automatic };
 template <>
 struct EnumNames<BodyDynamics> {
@@ -81,7 +81,7 @@ struct BodySettings {
     // contact distance, >= 0; default: 2 % of the mean edge length of the surface [m]
     std::optional<Real> contact_distance{};
     bool self_contact = false;
-    BodyDynamics dynamics = BodyDynamics::explicit_elastic;
+    BodyDynamics dynamics = BodyDynamics::automatic;
     // Each object has a set of collision groups and a mask, both as bits. Two objects can touch only if each of the two
     // masks contains a group of the other object.
     std::uint32_t collision_group = 1;

@@ -77,7 +77,7 @@ public:
     /// follow `motion`. Constant angular velocities rotate the nodes about `pivot`. Keys of a motion are poses at
     /// absolute times; the nodes are attached to the pose that the keys have now. For a rigid or implicit body at least
     /// three nodes that are not on one line are required. They hold the whole rigid body, or the frame of the implicit
-    /// body.
+    /// body. A body that `automatic` made implicit first becomes explicit, as by set_dynamics().
     AttachmentHandle attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion = {},
                             const Vec3& pivot = Vec3::Zero());
     void remove(BodyHandle body);
@@ -151,7 +151,7 @@ public:
     bool asleep(BodyHandle body) const;            // true if the body is asleep, see Settings::sleep
     void wake(BodyHandle body);              // wakes a sleeping body; bodies that touch this body wake in later steps
     Real mean_edge(BodyHandle body) const;   // mean edge length of the surface of a body in its rest shape [m]
-    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added
+    std::vector<BodyHandle> bodies() const;  // all bodies, in the order added (but see set_dynamics)
     std::vector<ColliderHandle> colliders() const;
     /// Present pose of a collider: position and rotation vector (axis times angle). For a plane it is the point of the
     /// plane and a rotation that takes +z to its normal.

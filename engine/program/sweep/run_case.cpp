@@ -1,27 +1,15 @@
 #include "engine/program/sweep/run_case.h"
 
-#include <sys/resource.h>
-
 #include <csignal>
 #include <exception>
 #include <iostream>
 
+#include "engine/program/progress.h"
 #include "skerry/error.h"
 
 namespace skerry {
 
 namespace {
-
-double seconds_of(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-/// Returns the CPU time of this process since its start [s].
-double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-}
 
 RunOptions options_of(const CaseJob& job) {
     RunOptions options;

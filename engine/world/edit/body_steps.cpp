@@ -186,15 +186,19 @@ void take_steps(const KnownElements& known, Index row, Model& model) {
     model.bodies.rest_step[static_cast<std::size_t>(row)] = known.rest_step;
 }
 
+void remember_elements(Model& model, Index row, KnownElements known) {
+    // Largest number of entries, because each new mesh is compared with the meshes of all entries.
+    constexpr std::size_t most_known = 64;
+    if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
+    known.body = row;
+    model.known_elements.push_back(std::move(known));
+}
+
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places) {
     const auto b = static_cast<std::size_t>(row);
     const Range blocks = model.bodies.blocks[b];
     if (body.kind != BodyKind::deformable || body.has_frame()) return;
-    // Largest number of entries, because each new mesh is compared with the meshes of all entries.
-    constexpr std::size_t most_known = 64;
-    if (model.known_elements.size() == most_known) model.known_elements.erase(model.known_elements.begin());
-    KnownElements& known = model.known_elements.emplace_back();
-    known.body = row;
+    KnownElements known;
     known.element = body.element;
     known.places = std::move(places);
     KnownElements::for_each_column(known, model.elements, [&](auto& of_mesh, const auto& column) {
@@ -202,6 +206,7 @@ void remember_elements(Model& model, Index row, const NewBody& body, ElementPlac
         std::ranges::copy(rows_of(column, blocks), of_mesh.begin());
     });
     known.rest_step = model.bodies.rest_step[b];
+    remember_elements(model, row, std::move(known));
 }
 
 void restart_elements(Model& model, Index row, const NewBody& body, Column<Real>& stiffness_sum) {

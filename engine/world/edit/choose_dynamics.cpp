@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/step/step.h"
@@ -10,14 +11,19 @@ namespace skerry {
 
 namespace {
 
+constexpr Real ns = 1e-9;  // [s]
 // Cost of a step of an implicit body, as a power law of its number of nodes. The law was fitted to the output of
 // profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
 constexpr Real step_time = 2.5e6, step_power = 1.75;  // [ns]
-// Fraction of the cost of an implicit step that is spent on contacts. If an implicit body takes long steps, its
-// contacts still take part in every short step of the other bodies. For a cube on a face the fraction is a half or
-// more.
+// Fraction of the cost of such a step that is spent on contacts. If an implicit body takes long steps, its contacts
+// still take part in every short step of the other bodies. For a cube on a face the fraction is a half or more.
 constexpr Real contact_share = 0.5;
+// Cost of the contacts of a body in a pile, divided by that of a cube on a face. In piles of 27 cubes of 27 to 729
+// nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
+constexpr Real pile_contacts = 40;
+// Cost of the contacts of an explicit body in the same piles, in a step and by node [ns].
+constexpr Real node_contacts = 200;
 // Cost of factorising the matrix of an implicit body and of computing the matrix columns that contacts need [ns].
 constexpr Real factor_time = 150e6, factor_power = 2.7;
 // Assumed number of factorisations in a simulated second. A change of the step length requires a new factorisation.
@@ -30,10 +36,13 @@ constexpr Real fall = 10;           // assumed height of a fall, divided by the 
 
 /// Largest strain expected in the materials of a body, under its own weight or in an impact. The impact strain is v/c,
 /// as in a bar that is stopped. Here c is the wave speed, and the impact speed v combines the initial speed and a fall.
+/// Without gravity nothing is known about later speeds, so they are assumed to be those under the default gravity.
 Real largest_strain(const Model& model, const NewBody& body) {
     Vec3 lower = body.nodes.front(), upper = lower;
     for (const Vec3& x : body.nodes) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-    const Real size = (upper - lower).maxCoeff(), gravity = model.settings.gravity.norm();
+    const Vec3 default_gravity = Settings{}.gravity;
+    const Real size = (upper - lower).maxCoeff();
+    const Real gravity = (model.settings.gravity == Vec3::Zero() ? default_gravity : model.settings.gravity).norm();
     const Real moves = body.velocity.norm() + body.angular_velocity.norm() * size / 2;
     const Real speed = std::sqrt(moves * moves + 2 * gravity * fall * size);
     Real strain = 0;
@@ -46,52 +55,80 @@ Real largest_strain(const Model& model, const NewBody& body) {
     return strain;
 }
 
-struct ExplicitBody {
-    Real step;      // stable step [s]
-    Real elements;  // number of elements
-};
-
-/// Stable step and number of elements that a body would have if it were explicit. They are computed in a model that
-/// contains only this body.
-ExplicitBody as_explicit(const Model& model, const NewBody& body) {
+/// Computes the results that are stored for the elements of a body, in a model that contains only this body.
+KnownElements try_alone(const Model& model, const NewBody& body) {
     Model alone;
     alone.settings = model.settings;
     alone.tuning = model.tuning;
     alone.materials = model.materials;
     Column<Real> stiffness_sum;
     append_body(alone, stiffness_sum, body);
-    return {alone.bodies.rest_step[0] * model.tuning.step_safety,
-            static_cast<Real>(alone.elements.volume.size() * element_lanes)};
+    return std::move(alone.known_elements.back());
+}
+
+/// Cost of elements in a step [s]. `blocks`: number of element blocks.
+Real cost_of_elements(std::size_t blocks) {
+    return ns * element_cost * static_cast<Real>(blocks * element_lanes);
+}
+
+/// Fills in the steps and costs of an estimate.
+void compare_costs(const Model& model, const NewBody& body, const KnownElements& elements, DynamicsEstimate& estimate) {
+    const Real others = cost_of_elements(model.elements.volume.size());
+    const auto nodes = static_cast<Real>(body.nodes.size());
+    const Real own = cost_of_elements(elements.mass_share.size()) + ns * node_contacts * nodes;
+    const Real size = nodes / fitted_nodes, one_step = step_time * std::pow(size, step_power);
+    estimate.implicit_step = step_with_frame(model);
+    estimate.deforming_step = std::max(estimate.implicit_step, model.settings.implicit_step);
+    estimate.explicit_step = std::min(trusted_step(model), elements.rest_step * model.tuning.step_safety);
+    estimate.explicit_cost = (others + own) / estimate.explicit_step;
+    estimate.implicit_cost = (others + ns * pile_contacts * contact_share * one_step) / estimate.implicit_step +
+                             ns * (1 - contact_share) * one_step / estimate.deforming_step +
+                             ns * factors_a_second * factor_time * std::pow(size, factor_power);
+    const Real damps = 2 * model.settings.theta - 1;
+    if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
 }
 
 }  // namespace
 
-BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate) {
-    constexpr Real ns = 1e-9;
-    const ExplicitBody alone = as_explicit(model, body);
-    const Real others = static_cast<Real>(model.elements.volume.size() * element_lanes);
-    const Real nodes = static_cast<Real>(body.nodes.size()) / fitted_nodes;
+BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
+                             std::optional<KnownElements>& trial) {
     estimate = {};
-    estimate.implicit_step = step_with_frame(model);
-    estimate.deforming_step = std::max(estimate.implicit_step, model.settings.implicit_step);
-    estimate.explicit_step = std::min(trusted_step(model), alone.step);
-    estimate.explicit_cost = ns * element_cost * (others + alone.elements) / estimate.explicit_step;
-    const Real one_step = step_time * std::pow(nodes, step_power);
-    estimate.implicit_cost = ns * ((element_cost * others + contact_share * one_step) / estimate.implicit_step +
-                                   (1 - contact_share) * one_step / estimate.deforming_step +
-                                   factors_a_second * factor_time * std::pow(nodes, factor_power));
     estimate.strain = largest_strain(model, body);
-    const Real damps = 2 * model.settings.theta - 1;
-    if (damps > 0) estimate.damped_above = 1 / (4 * std::numbers::pi * estimate.deforming_step);
-    estimate.reason = DynamicsReason::cost;
-    if (body.self_contact) {
-        estimate.reason = DynamicsReason::self_contact;
-    } else if (!(estimate.strain <= most_strain)) {
-        estimate.reason = DynamicsReason::strain;
-    } else if (estimate.implicit_cost * least_saving < estimate.explicit_cost) {
-        return BodyDynamics::implicit_elastic;
+    estimate.reason = body.self_contact                   ? DynamicsReason::self_contact
+                      : !(estimate.strain <= most_strain) ? DynamicsReason::strain
+                                                          : DynamicsReason::cost;
+    if (estimate.reason != DynamicsReason::cost) return BodyDynamics::explicit_elastic;
+    const KnownElements* known = known_elements(model, body);
+    if (!known) known = &trial.emplace(try_alone(model, body));
+    // Without a valid stable step there is something wrong with mesh or material, and the explicit body is refused.
+    if (!(known->rest_step > 0) || !std::isfinite(known->rest_step)) return BodyDynamics::explicit_elastic;
+    compare_costs(model, body, *known, estimate);
+    return estimate.implicit_cost * least_saving < estimate.explicit_cost ? BodyDynamics::implicit_elastic
+                                                                          : BodyDynamics::explicit_elastic;
+}
+
+Index outdated_choice(const Model& model, DynamicsEstimate& now) {
+    // Least ratio of the step that was assumed to the present step. The costs that the choice compares change by it.
+    constexpr Real much_longer = 1.5;
+    if (model.implicit_nodes.size() == 0) return no_index;
+    const Real step = trusted_step(model), others = cost_of_elements(model.elements.volume.size());
+    for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
+        const DynamicsEstimate& before = model.body_records[b].choice;
+        if (before.reason != DynamicsReason::cost || model.dynamics_of(b) != BodyDynamics::implicit_elastic ||
+            !(before.implicit_step > much_longer * step))
+            continue;
+        now = before;
+        now.implicit_step = step;
+        now.deforming_step = std::max(step, model.settings.implicit_step);
+        now.explicit_step = std::min(before.explicit_step, step);
+        // The stored costs contain those of the bodies that were there at the time. These bodies count twice, more for
+        // the explicit steps, so the body changes only if this certainly saves time.
+        now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
+        now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
+        now.damped_above = 0;  // an explicit body is not damped by its steps
+        if (!(now.implicit_cost * least_saving < now.explicit_cost)) return static_cast<Index>(b);
     }
-    return BodyDynamics::explicit_elastic;
+    return no_index;
 }
 
 }  // namespace skerry

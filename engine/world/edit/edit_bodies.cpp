@@ -161,7 +161,7 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
     return covered;
 }
 
-Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body) {
+Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body, const KnownElements* trial) {
     BodyTable& bodies = model.bodies;
     const std::size_t b = bodies.slot.size();
     const auto row = static_cast<Index>(b);
@@ -180,7 +180,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     // same mesh. The elements are rotated at the end.
     ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
     add_guards({body.tetrahedra, body.nodes}, zones, list);
-    const KnownElements* const known = known_elements(model, body);
+    const KnownElements* const known = trial && !body.has_frame() ? trial : known_elements(model, body);
     rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, nodes));
     append_elements_of(model, list, rows);
     const Range blocks = rows.elements.blocks;

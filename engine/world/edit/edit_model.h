@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,14 +60,20 @@ Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index>
 
 /// Appends a body that consists of a surface, with or without tetrahedra. Returns its row. `stiffness_sum`: working
 /// memory with one entry per node. The caller keeps this memory between calls, so that the cost of a call depends only
-/// on the size of the new body.
-Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body);
+/// on the size of the new body. `trial`: results of a trial of this body; without it, stored results are used.
+Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body, const KnownElements* trial = nullptr);
 
 // choose_dynamics.cpp
 
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
-/// `estimate` and leaves the model unchanged. `body` must be explicit.
-BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate);
+/// `estimate`. If the costs depend on elements of which no results are stored, computes these and writes them to
+/// `trial`. `body` must be explicit.
+BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
+                             std::optional<KnownElements>& trial);
+
+/// Returns the row of a body that became implicit by choose_dynamics, but for which explicit steps now cost less
+/// because bodies were added that require short steps; no_index if there is none. Writes the present estimate to `now`.
+Index outdated_choice(const Model& model, DynamicsEstimate& now);
 
 // body_steps.cpp
 
@@ -104,6 +111,8 @@ void take_steps(const KnownElements& known, Index row, Model& model);
 /// Stores the results of find_steps for later bodies with the same mesh. `places`: lane of each element in the element
 /// blocks of the body.
 void remember_elements(Model& model, Index row, const NewBody& body, ElementPlaces places);
+/// Stores the results of a trial of the body `row` for later bodies with the same mesh.
+void remember_elements(Model& model, Index row, KnownElements trial);
 
 // In edit_colliders.cpp. The argument `now` is the time at which the row is added [s].
 

@@ -48,6 +48,21 @@ class ProgramInspectTest(ProgramCase):
         self.assertIn("tetrahedra (implicit)", self.skerry("inspect", scene).stdout)
         self.assertIn("steps", self.skerry("run", scene).stdout)
 
+    def test_kinds_of_bodies_have_their_own_dynamics_after_a_choice_was_changed(self):
+        # The first body becomes explicit when the last one is added, which moves it to the end of World::bodies().
+        block = {**SCENE["bodies"][0], "material": "firm"}
+        stiff = {**block, "name": "stiff", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}}}
+        rigid = {**block, "name": "stone", "dynamics": "rigid", "position": [0, 0, 3]}
+        soft = {**SCENE["bodies"][0], "name": "soft", "position": [0, 0, 5],
+                "mesh": {"box": {"size": [0.03, 0.03, 0.03], "cells": [4, 4, 4]}}}
+        scene = {**SCENE, "probes": [], "materials": {**SCENE["materials"], "firm": {"E": 1e8}}}
+        kinds = {}
+        for bodies in ([stiff, rigid], [stiff, rigid, soft]):
+            found = self.skerry("inspect", self.write("three.json", {**scene, "bodies": bodies}), "--json").stdout
+            kinds[len(bodies)] = {kind["name"]: kind["dynamics"] for kind in json.loads(found)["body_kinds"]}
+        self.assertEqual(kinds[2], {"stiff": "implicit", "stone": "rigid"})
+        self.assertEqual(kinds[3], {"stiff": "explicit", "stone": "rigid", "soft": "explicit"})
+
     def test_inspect_says_what_another_value_would_do(self):
         written = json.loads(self.skerry("inspect", self.scene, "--json").stdout)
         place = f"materials.{SCENE['bodies'][0]['material']}.E"

@@ -1,6 +1,8 @@
 // Resolution of scenes: meshes, copies, names, pins, probes, overrides.
 #include <catch2/catch.hpp>
+#include <map>
 #include <set>
+#include <string>
 
 #include "engine/scene/scene_plan.h"
 #include "skerry/joint.h"
@@ -254,6 +256,28 @@ TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
     CHECK_THROWS_WITH(plan_scene(scene(R"("dynamics": "rigid")")), Contains("mesh") && Contains("shape"));
     CHECK_THROWS_WITH(plan_scene(scene(sphere + R"(, "mesh": {"ball": {"radius": 1, "resolution": 3}})")),
                       Contains("mesh") && Contains("shape"));
+}
+
+TEST_CASE("the dynamics of a body in a scene do not depend on the order of the bodies", "[unit]") {
+    const TemporaryFolder folder;
+    const std::string stiff = R"({"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}}, "name": "stiff",
+        "material": "firm", "position": [0, 0, 2]})",
+                      soft = R"({"mesh": {"box": {"size": [0.03, 0.03, 0.03], "cells": [4, 4, 4]}}, "name": "soft",
+        "material": "rubber"})";
+    const auto dynamics = [&](const std::string& bodies) {
+        const Scene scene = build_scene(plan_scene(folder.write(
+            "s.json", R"({"materials": {"firm": {"E": 1e8}, "rubber": {"E": 1e5}}, "bodies": [)" + bodies + "]}")));
+        CHECK(!scene.world.settings().step_size);
+        std::map<std::string, BodyDynamics> found;
+        for (const BodyHandle body : scene.world.bodies()) found[scene.world.name(body)] = scene.world.dynamics(body);
+        return found;
+    };
+    using Found = std::map<std::string, BodyDynamics>;
+    CHECK(dynamics(stiff) == Found{{"stiff", BodyDynamics::implicit_elastic}});
+    // Beside a soft body that needs short steps, implicit steps of the stiff body save little.
+    const Found both{{"stiff", BodyDynamics::explicit_elastic}, {"soft", BodyDynamics::explicit_elastic}};
+    CHECK(dynamics(soft + ", " + stiff) == both);
+    CHECK(dynamics(stiff + ", " + soft) == both);
 }
 
 }  // namespace skerry::test::scene_plan_test
