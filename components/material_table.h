@@ -69,8 +69,9 @@ struct MaterialTable {
     Column<SurfaceProperties> surface;
     Column<Real> young_modulus;  // [Pa]
     Column<Real> poisson_ratio;
-    Column<Real> damping;        // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
-    Column<std::uint32_t> slot;  // handle slot
+    Column<Real> damping;              // decay rate of the velocities of deformation; rigid motion is not damped [1/s]
+    Column<std::uint8_t> sets_losses;  // 1 if the user has set a loss factor above 0
+    Column<std::uint32_t> slot;        // handle slot
 
     void for_each_column(auto&& visit) {
         visit("constants", constants, ColumnRole::state);
@@ -78,6 +79,7 @@ struct MaterialTable {
         visit("young_modulus", young_modulus, ColumnRole::state);
         visit("poisson_ratio", poisson_ratio, ColumnRole::state);
         visit("damping", damping, ColumnRole::state);
+        visit("sets_losses", sets_losses, ColumnRole::state);
         visit("slot", slot, ColumnRole::state);
     }
 };

@@ -55,6 +55,7 @@ inline std::string choices_text(const WorldReport& report) {
             return (a < written_out * b ? short_number(a / b, 2) : count_text(a / b)) + " times as much";
         };
         if (reason == DynamicsReason::self_contact) return "self-contact";
+        if (reason == DynamicsReason::losses) return "loss_factor";
         if (reason == DynamicsReason::strain) return "soft: strains of up to " + percent(kind.strain) + " expected";
         if (dynamics == BodyDynamics::implicit_elastic)
             return "stiff: explicit steps would cost " + times(kind.explicit_cost, kind.implicit_cost);

@@ -182,8 +182,9 @@ void validate(const MaterialSettings& material) {
     require(material.restitution >= 0 && material.restitution <= 1, object, "restitution", material.restitution,
             "a number from 0 to 1");
     require(material.damping >= 0, object, "damping", material.damping, "a rate >= 0 (1/s)");
-    require(material.loss_factor >= 0 && material.loss_factor <= largest_loss_factor, object, "loss_factor",
-            material.loss_factor, "a number from 0 to 0.3");
+    const Real loss_factor = material.loss_factor.value_or(default_loss_factor);
+    require(loss_factor >= 0 && loss_factor <= largest_loss_factor, object, "loss_factor", loss_factor,
+            "a number from 0 to 0.3");
     require(material.bulk_viscosity >= 0 && material.bulk_viscosity <= largest_bulk_viscosity, object, "bulk_viscosity",
             material.bulk_viscosity, "a number from 0 to 1");
 }

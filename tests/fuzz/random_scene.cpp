@@ -132,7 +132,9 @@ private:
             material["damping"] = random_.chance(0.5) ? 0 : random_.by_decade(1e-3, 1e2) / duration_;
             material["model"] = any_name<MaterialModel>();
             if (random_.chance(0.5)) {
-                material["loss_factor"] = random_.one_of<Real>({0, 0.3, random_.within(0, 0.3)});
+                const Real loss_factor = random_.one_of<Real>({0, 0.3, random_.within(0, 0.3)});
+                material["loss_factor"] = loss_factor;
+                any_losses_ |= loss_factor > 0;
                 material["bulk_viscosity"] = random_.one_of<Real>({0, 1, random_.within(0, 1)});
             }
             all["m" + std::to_string(m)] = material;
@@ -257,7 +259,9 @@ private:
             body["pin"] = pin;
         }
         if (!body.contains("pin") && !body.contains("self_contact") && of_frames_.chance(0.35))
-            body["dynamics"] = name_of(of_frames_.chance(0.5) ? BodyDynamics::rigid : BodyDynamics::implicit_elastic);
+            body["dynamics"] = name_of(of_frames_.chance(0.5) ? BodyDynamics::rigid
+                                       : any_losses_          ? BodyDynamics::explicit_elastic
+                                                              : BodyDynamics::implicit_elastic);
         if (!body.contains("dynamics") && of_meshes_.chance(0.1)) body["dynamics"] = name_of(BodyDynamics::automatic);
         if (!body.contains("pin") && !body.contains("self_contact") && of_spheres_.chance(0.25)) {
             body.erase("mesh");
@@ -332,6 +336,7 @@ private:
     RandomNumbers of_long_steps_{~seed_ * 13};
     RandomScene scene_;
     Real stiffness_ = 0, density_ = 0;  // of the first material [Pa, kg/m^3]
+    bool any_losses_ = false;           // a material sets a loss factor, which implicit bodies refuse
     Real wave_speed_ = 0;               // of the first material [m/s]
     Real duration_ = 0;                 // approximate length of the run [s]
     Real top_speed_ = 0;                // [m/s]

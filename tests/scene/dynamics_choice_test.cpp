@@ -49,6 +49,36 @@ TEST_CASE("what is stiff becomes implicit, what is soft stays explicit, and both
     CHECK(folded.estimate.reason == DynamicsReason::self_contact);
 }
 
+TEST_CASE("implicit bodies have no losses: a set loss_factor makes automatic explicit, and is refused else",
+          "[scene]") {
+    World world;
+    const auto steel = world.add_material({.young_modulus = 2e11}),
+               with_losses = world.add_material({.young_modulus = 2e11, .loss_factor = 0.01}),
+               without = world.add_material({.young_modulus = 2e11, .loss_factor = 0});
+    const Mesh cube = mesh::box(Vec3::Constant(0.1), {2, 2, 2});
+    const auto add = [&](MaterialHandle material, BodyDynamics dynamics) {
+        return world.add_body(cube, {.material = material, .dynamics = dynamics, .name = "cube"});
+    };
+    CHECK(world.dynamics(add(without, BodyDynamics::automatic)) == BodyDynamics::implicit_elastic);
+    const auto implicit = add(steel, BodyDynamics::implicit_elastic);
+    const auto chosen = add(with_losses, BodyDynamics::automatic);
+    CHECK(world.dynamics(chosen) == BodyDynamics::explicit_elastic);
+    CHECK(world.dynamics_choice(chosen).reason == DynamicsReason::losses);
+
+    const std::string refusal = "cube: loss_factor";
+    const std::uint64_t before = world.state_hash();
+    CHECK_THROWS_WITH(add(with_losses, BodyDynamics::implicit_elastic), Catch::Contains(refusal));
+    CHECK_THROWS_WITH(world.set_dynamics(chosen, BodyDynamics::implicit_elastic), Catch::Contains("loss_factor"));
+    MaterialSettings lossy = world.material(steel);
+    CHECK_FALSE(lossy.loss_factor.has_value());
+    lossy.loss_factor = 0.1;
+    CHECK_THROWS_WITH(world.set_material(steel, lossy), Catch::Contains("loss_factor"));
+    CHECK(world.state_hash() == before);
+    CHECK(world.dynamics(implicit) == BodyDynamics::implicit_elastic);
+    CHECK(world.material(with_losses).loss_factor == 0.01);
+    CHECK(world.material(without).loss_factor == 0.0);
+}
+
 TEST_CASE("a body that the world's step suits stays explicit, though it is stiff", "[scene]") {
     Settings settings;
     settings.step_size = 1e-6;

@@ -155,15 +155,17 @@ struct StepLimitReport {
 /// The reason why BodyDynamics::automatic made a body explicit or implicit.
 /// - given: no choice was made, because the caller gave the kind.
 /// - self_contact: explicit, because implicit bodies have no self-contact.
+/// - losses: explicit, because a material of the body sets a loss factor above 0.
 /// - strain: explicit, because the body may deform by more than the limit for implicit bodies.
 /// - cost: chosen by the predicted computing times. The body is implicit if implicit steps cost less than half as much
 ///   as explicit steps.
-enum class DynamicsReason : std::uint8_t { given, self_contact, strain, cost };
+enum class DynamicsReason : std::uint8_t { given, self_contact, losses, strain, cost };
 template <>
 struct EnumNames<DynamicsReason> {
-    static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 4> table{{
+    static constexpr std::array<std::pair<DynamicsReason, std::string_view>, 5> table{{
         {DynamicsReason::given, "given"},
         {DynamicsReason::self_contact, "self_contact"},
+        {DynamicsReason::losses, "losses"},
         {DynamicsReason::strain, "strain"},
         {DynamicsReason::cost, "cost"},
     }};

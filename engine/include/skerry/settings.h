@@ -20,7 +20,7 @@
 #pragma GCC visibility push(default)
 namespace skerry {
 
-inline constexpr Real largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
+inline constexpr Real default_loss_factor = 0.05, largest_loss_factor = 0.3, largest_bulk_viscosity = 1;
 
 struct MaterialSettings {
     Real young_modulus = 1e5;  // > 0 [Pa]
@@ -37,9 +37,11 @@ struct MaterialSettings {
     // Tangent of the phase angle between stress and strain, nearly constant over the natural frequencies of a body. In
     // each period a free vibration loses about the fraction 2 pi loss_factor of its energy. Typical values: rubber 0.05
     // to 0.2, soft tissue 0.1 to 0.3, wood 0.01, steel below 0.001. A positive value makes the stable step a few per
-    // cent shorter (docs/methods/elasticity.md 6).
-    Real loss_factor = 0.05;  // from 0 to 0.3
-    // Damping ratio of volume changes of an element, at the highest natural frequency of this element.
+    // cent shorter (docs/methods/elasticity.md 6). If not given, explicit bodies have default_loss_factor. Implicit
+    // bodies have no such losses: a value above 0 is refused for them, and `automatic` then makes a body explicit.
+    std::optional<Real> loss_factor{};  // from 0 to 0.3
+    // Damping ratio of volume changes of an element, at the highest natural frequency of this element. Implicit bodies
+    // do not use this value.
     Real bulk_viscosity = 0.06;  // from 0 to 1
     MaterialModel model = MaterialModel::stable_neo_hookean;
 };

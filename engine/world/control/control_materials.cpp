@@ -111,7 +111,9 @@ MaterialSettings World::material(MaterialHandle material) const {
                               .friction = now.surface.dynamic_friction,
                               .restitution = now.surface.restitution,
                               .damping = now.damping,
-                              .loss_factor = now.constants.loss_factor,
+                              .loss_factor = now.constants.loss_factor == default_loss_factor && !now.sets_losses
+                                                 ? std::optional<Real>()
+                                                 : now.constants.loss_factor,
                               .bulk_viscosity = now.constants.bulk_viscosity,
                               .model = now.constants.model};
     if (now.surface.static_friction != now.surface.dynamic_friction) {
@@ -132,6 +134,9 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     if (now.same_elements(next) && now.same_rest(next)) return;
     state_->settle();
     std::vector<std::size_t> bodies = bodies_of(model, row);
+    if (next.sets_losses)
+        for (const std::size_t body : bodies)
+            if (model.dynamics_of(body) == BodyDynamics::implicit_elastic) refuse_losses(model.body_records[body].name);
     // Rigid and implicit bodies come last, because any step is stable for them. If an explicit body has no stable step,
     // the error is thrown before they change.
     std::stable_partition(bodies.begin(), bodies.end(), [&](std::size_t body) { return !model.has_frame(body); });

@@ -6,6 +6,7 @@
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/step/step.h"
+#include "engine/world/validate.h"
 
 namespace skerry {
 
@@ -90,13 +91,24 @@ void compare_costs(const Model& model, const NewBody& body, const KnownElements&
 
 }  // namespace
 
+bool sets_losses(const Model& model, Index material, std::span<const Index> tetrahedron_material) {
+    const auto sets = [&](Index of) { return model.materials.sets_losses[static_cast<std::size_t>(of)] != 0; };
+    return tetrahedron_material.empty() ? sets(material) : std::ranges::any_of(tetrahedron_material, sets);
+}
+
+void refuse_losses(const std::string& object) {
+    refuse(object, "loss_factor", "a material of an implicit body that sets a loss factor above 0",
+           "no loss_factor, because implicit bodies have no such losses; remove it, or make the body explicit");
+}
+
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial) {
     estimate = {};
     estimate.strain = largest_strain(model, body);
-    estimate.reason = body.self_contact                   ? DynamicsReason::self_contact
-                      : !(estimate.strain <= most_strain) ? DynamicsReason::strain
-                                                          : DynamicsReason::cost;
+    estimate.reason = body.self_contact                                              ? DynamicsReason::self_contact
+                      : sets_losses(model, body.material, body.tetrahedron_material) ? DynamicsReason::losses
+                      : !(estimate.strain <= most_strain)                            ? DynamicsReason::strain
+                                                                                     : DynamicsReason::cost;
     if (estimate.reason != DynamicsReason::cost) return BodyDynamics::explicit_elastic;
     const KnownElements* known = known_elements(model, body);
     if (!known) known = &trial.emplace(try_alone(model, body));

@@ -11,18 +11,22 @@ struct MaterialRow {
     MaterialConstants constants;
     SurfaceProperties surface;
     Real young_modulus, poisson_ratio, damping;
+    bool sets_losses;  // true if the user has set a loss factor above 0
 
     static MaterialRow of(const MaterialTable& table, std::size_t row) {
-        return {table.constants[row], table.surface[row], table.young_modulus[row], table.poisson_ratio[row],
-                table.damping[row]};
+        return {table.constants[row],     table.surface[row], table.young_modulus[row],
+                table.poisson_ratio[row], table.damping[row], table.sets_losses[row] != 0};
     }
     static MaterialRow of(const MaterialSettings& material) {
         MaterialRow row{
             material_constants(material.model, material.young_modulus, material.poisson_ratio, material.density),
             surface_properties(
                 {material.friction, material.static_friction, material.dynamic_friction, material.restitution}),
-            material.young_modulus, material.poisson_ratio, material.damping};
-        row.constants.loss_factor = material.loss_factor;
+            material.young_modulus,
+            material.poisson_ratio,
+            material.damping,
+            material.loss_factor.value_or(0) > 0};
+        row.constants.loss_factor = material.loss_factor.value_or(default_loss_factor);
         row.constants.bulk_viscosity = material.bulk_viscosity;
         return row;
     }
@@ -32,6 +36,7 @@ struct MaterialRow {
         table.young_modulus[row] = young_modulus;
         table.poisson_ratio[row] = poisson_ratio;
         table.damping[row] = damping;
+        table.sets_losses[row] = sets_losses;
     }
     /// True if elements of both materials have the same forces, masses and losses.
     bool same_elements(const MaterialRow& other) const {
@@ -39,7 +44,9 @@ struct MaterialRow {
         return young_modulus == other.young_modulus && poisson_ratio == other.poisson_ratio && a.density == b.density &&
                a.loss_factor == b.loss_factor && a.bulk_viscosity == b.bulk_viscosity;
     }
-    bool same_rest(const MaterialRow& other) const { return surface == other.surface && damping == other.damping; }
+    bool same_rest(const MaterialRow& other) const {
+        return surface == other.surface && damping == other.damping && sets_losses == other.sets_losses;
+    }
 };
 
 }  // namespace skerry
