@@ -356,7 +356,7 @@ TEST_CASE("a change searches the pairs of what changed, as many in a large world
             const Searches searches = searches_of(world, change);
             CHECK(searches.broad == (is_new ? 1 : 0));
             CHECK((searches.pairs > 0) == is_new);
-            CHECK(searches.pairs <= 10);
+            CHECK(searches.pairs <= 12);
             of_side.push_back(searches.pairs);
         };
         look(true, [&] { ball = world.add_collider(Sphere{0.02}, {.position = on_top}); });

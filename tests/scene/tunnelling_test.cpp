@@ -19,8 +19,8 @@ void check_all_stopped(const Count& count, int touching, int stopped, std::uint6
     CHECK(count.wrong == "");
     CHECK(count.crossed <= crossed);
     CHECK(static_cast<int>(count.touching) > draws(touching));
-    // A tenth of the draws has a large scatter, so only half of its share is required.
-    CHECK(static_cast<int>(count.stopped) >= (full_tests() ? stopped + 1 : stopped / 20));
+    // A tenth of the draws has a large scatter (45 to 63 of 2,100), so only a third of its share is required.
+    CHECK(static_cast<int>(count.stopped) >= (full_tests() ? stopped + 1 : stopped / 30));
 }
 
 /// A cylinder that turns by a tenth of a radian or more in a step is not always kept off the rim of a bucket with a
