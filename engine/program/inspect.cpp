@@ -435,7 +435,7 @@ int inspect_scene(const InspectOptions& options) {
               << "  cost          about " << duration_text(cost.seconds) << " of wall time for the whole run, "
               << duration_text(cost.seconds / scene.seconds) << " per simulated second, "
               << (cost.whole ? "measured in a trial of the whole run"
-                             : "estimated from a trial of the first " + with_unit(cost.simulated, "s"))
+                             : "estimated from a trial of the first " + short_number(cost.simulated) + " s")
               << "\n"
               << "  contacts      " << cost.contacts << " at the start\n";
     for (const std::string& choice : choice_texts(report)) std::cout << "  dynamics      " << choice << "\n";

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-constexpr Real ns = 1e-9;  // [s]
+constexpr Real ns = 1e-9;  // a nanosecond [s]
 // Cost of a step of an implicit body, as a power law of its number of nodes. The law was fitted to the output of
 // profile_implicit_factor --steps for cubes of 125 to 2,197 nodes that lie on a face.
 constexpr Real fitted_nodes = 729;
@@ -123,7 +123,7 @@ Index outdated_choice(const Model& model, DynamicsEstimate& now) {
     // Least ratio of the step that was assumed to the present step. The costs that the choice compares change by it.
     constexpr Real much_longer = 1.5;
     if (model.implicit_nodes.size() == 0) return no_index;
-    const Real step = trusted_step(model), others = cost_of_elements(model.elements.volume.size());
+    const Real step = step_with_frame(model), others = cost_of_elements(model.elements.volume.size());
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         const DynamicsEstimate& before = model.body_records[b].choice;
         if (before.reason != DynamicsReason::cost || model.dynamics_of(b) != BodyDynamics::implicit_elastic ||
