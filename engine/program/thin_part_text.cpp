@@ -29,6 +29,12 @@ struct BodyElements {
     }
 };
 
+/// A coordinate of the place of a part. Rounding errors are printed as 0.
+std::string coordinate(Real value, const mesh::ThinPart& part) {
+    constexpr Real rounding = 1e-6;  // share of the length of the part
+    return short_number(std::abs(value) < rounding * part.length ? 0 : value);
+}
+
 BodyElements elements_of_body(const Mesh& mesh, const StepCase& of) {
     BodyElements elements;
     elements.add(of.material, of.body.element);
@@ -56,13 +62,13 @@ std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3
     // The excess of stiffness falls with the square of the size of the cells.
     const Real finer = std::sqrt((part.stiffness - 1) / accepted_excess);
     return "a part " + with_unit(part.thickness, "m") + " thick and " + with_unit(part.length, "m") + " long around (" +
-           short_number(part.place.x()) + ", " + short_number(part.place.y()) + ", " + short_number(part.place.z()) +
-           ") m has " + short_number(layers) + (layers > 1 ? " layers" : " layer") + " of cells and is about " +
-           short_number(part.stiffness, 2) + " times as stiff in bending as its material" +
-           (parts.size() > 1 ? ", and " + grouped(parts.size() - 1) + " more such parts are too stiff" : "") +
-           ": make the cells there " + short_number(finer, 2) +
-           " times smaller in all directions, which leaves about " + percent(accepted_excess) +
-           (of.body.element == ElementKind::linear ? ", or set \"element\" of the body to \"smoothed\"" : "");
+           coordinate(part.place.x(), part) + ", " + coordinate(part.place.y(), part) + ", " +
+           coordinate(part.place.z(), part) + ") m has " + short_number(layers) + (layers > 1 ? " layers" : " layer") +
+           " of cells and is about " + short_number(part.stiffness, 2) + " times as stiff in bending as its material" +
+           (parts.size() > 1 ? ", and " + grouped(parts.size() - 1) + " more parts are too stiff" : "") +
+           ": to reduce the excess to about " + percent(accepted_excess) + ", make the cells there " +
+           short_number(finer, 2) + " times smaller in all directions" +
+           (of.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\"" : "");
 }
 
 }  // namespace skerry

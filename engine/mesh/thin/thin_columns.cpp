@@ -14,9 +14,9 @@ namespace {
 // Greatest thickness of a thin column, as a multiple of the mean edge length of its tetrahedra. Three layers of cubic
 // cells with six tetrahedra each have a ratio of 2.4, two layers of 1.6.
 constexpr Real thickest = 2;
-// Least cosine of the angle between the ray and the outer normal of the triangle through which the ray leaves (18
-// degrees), and least number of layers. Otherwise the column is at the rim of a wedge, such as a fin.
-constexpr Real opposite = 0.95, flattest = 0.75;
+// Least cosine of the angle between the ray and the outer normal of the triangle through which the ray leaves: 18
+// degrees. At a larger angle the part is a wedge, such as the rim of a fin.
+constexpr Real opposite = 0.95;
 
 /// A face of a tetrahedron, opposite to one of its corners.
 struct Face {
@@ -97,8 +97,7 @@ public:
             if (is_boundary(exit->first)) {
                 column.last = nodes_of(exit->first);
                 column.layers = end / mean_extent(column);
-                const bool thin =
-                    column.layers > flattest && outer_normal(exit->first).normalized().dot(column.direction) > opposite;
+                const bool thin = outer_normal(exit->first).normalized().dot(column.direction) > opposite;
                 return thin ? std::optional(std::move(column)) : std::nullopt;
             }
             face = beyond(exit->first);
