@@ -11,8 +11,11 @@
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
+#include "engine/program/step_bound_text.h"
+#include "engine/program/thin_part_text.h"
 #include "engine/program/trial.h"
 #include "engine/scene/scene_plan.h"
+#include "systems/collision/build_surface.h"
 
 namespace skerry {
 
@@ -24,7 +27,6 @@ using Problems = std::vector<std::string>;
 constexpr Real poor_quality = 0.1;
 // Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
-constexpr Real hardly_longer = 1.03;       // a ratio of step lengths between 1 and this value counts as a small gain
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
 Problems problems_of(const MeshReport& r) {
@@ -40,6 +42,11 @@ Problems problems_of(const MeshReport& r) {
                            " (1: regular tetrahedron), which shortens the stable step");
     if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
     return problems;
+}
+
+void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
+                   Problems& problems) {
+    if (std::string text = thin_part_text(mesh, boundary, of); !text.empty()) problems.push_back(std::move(text));
 }
 
 Json mesh_json(const MeshReport& r) {
@@ -64,41 +71,6 @@ Json mesh_json(const MeshReport& r) {
 void print_problems(const Problems& problems) {
     if (problems.empty()) std::cout << "  problems      none found\n";
     for (const std::string& problem : problems) std::cout << "  problem       " << problem << "\n";
-}
-
-Json bound_json(const StepBound& bound) {
-    Json worst = Json::array(), without = Json::array();
-    for (const CostlyTetrahedron& t : bound.worst)
-        worst.push_back({{"tetrahedron", t.tetrahedron},
-                         {"place", vector_json(t.place)},
-                         {"altitude", t.altitude},
-                         {"mean_edge", t.mean_edge},
-                         {"dt", t.step}});
-    for (const StepWithout& w : bound.without)
-        without.push_back({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}});
-    return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
-}
-
-/// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
-/// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
-/// the neighbouring tetrahedra.
-std::string compared(Real ratio) {
-    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter, because neighbours lose mass";
-    if (ratio < 1) return "slightly shorter";
-    return ratio < hardly_longer ? "slightly longer" : short_number(ratio) + " times as long";
-}
-
-/// Prints the tetrahedra that limit the stable step, and the stable step of the mesh without its worst tetrahedra.
-void print_bound(const StepBound& bound, const char* indent) {
-    for (const CostlyTetrahedron& t : bound.worst)
-        std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
-                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows a step of "
-                  << with_unit(t.step, "s") << ": smallest altitude " << with_unit(t.altitude, "m") << ", mean edge "
-                  << with_unit(t.mean_edge, "m") << "\n";
-    for (const StepWithout& w : bound.without)
-        std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
-                  << short_number(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
-                  << ", " << compared(w.step / bound.step) << "\n";
 }
 
 /// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
@@ -133,11 +105,16 @@ int inspect_mesh(const InspectOptions& options) {
                                .scaled = false},
                               options);
     const MeshReport report = inspect(mesh);
-    const Problems problems = problems_of(report);
+    Problems problems = problems_of(report);
     // A mesh without tetrahedra, or with inverted or flat tetrahedra, cannot be added to a world and has no stable
     // step.
     const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
     const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
+    if (is_body) {
+        std::vector<std::array<Index, 3>> boundary;
+        for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) boundary.push_back(triangle.node);
+        add_thin_part(mesh, boundary, {}, problems);
+    }
     if (options.json) {
         Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
         json.update(mesh_json(report));
@@ -182,18 +159,6 @@ struct BodyKindReport {
 
     bool sets_step() const { return dynamics != BodyDynamics::rigid && dynamics != BodyDynamics::implicit_elastic; }
 };
-
-/// Returns the input of step_bound for a body. The body is treated as explicit and elastic, so that its mesh has a
-/// stable step even if its dynamics are rigid or implicit.
-StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
-    StepCase of{.settings = plan.settings,
-                .material = plan.materials[body.material].second,
-                .body = body.settings,
-                .labelled = {}};
-    of.body.dynamics = BodyDynamics::explicit_elastic;
-    for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
-    return of;
-}
 
 /// Returns the number of tetrahedra of each material of a body: first the body's own material, then the materials of
 /// its labels.
@@ -293,11 +258,18 @@ SceneStart start_of(const ScenePlan& plan) {
     return start;
 }
 
-Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart& start, const SceneCost& cost) {
+Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& kinds, const SceneStart& start,
+                     const SceneCost& cost) {
     Problems problems;
-    for (const BodyKindReport& kind : kinds)
-        for (const std::string& problem : problems_of(kind.mesh))
-            problems.push_back("body \"" + kind.first_name + "\": " + problem);
+    const World& world = start.scene.world;
+    const std::vector<BodyHandle> bodies = bodies_in_order(world);
+    for (const BodyKindReport& kind : kinds) {
+        Problems of_kind = problems_of(kind.mesh);
+        if (kind.dynamics != BodyDynamics::rigid)
+            add_thin_part(plan.meshes[plan.bodies[kind.body].mesh], world.surface(bodies[kind.body]),
+                          step_case(plan, plan.bodies[kind.body]), of_kind);
+        for (const std::string& problem : of_kind) problems.push_back("body \"" + kind.first_name + "\": " + problem);
+    }
     std::vector<BodyKindReport> by_step = kinds;
     std::erase_if(by_step, [](const BodyKindReport& kind) { return !kind.sets_step(); });
     std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
@@ -373,7 +345,7 @@ int inspect_scene(const InspectOptions& options) {
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
     const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
-    const Problems problems = problems_of(kinds, start, cost);
+    const Problems problems = problems_of(plan, kinds, start, cost);
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds) {

@@ -41,9 +41,10 @@ inline std::string with_unit(double value, const char* unit) {
         const char* name;
     };
     constexpr Prefix prefixes[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
+    constexpr double rounds_up = 0.9995;  // with three digits this share of a unit is printed as 1
     const double size = value < 0 ? -value : value;
     for (const Prefix& prefix : prefixes)
-        if (size >= prefix.factor) return short_number(value / prefix.factor) + " " + prefix.name + unit;
+        if (size >= rounds_up * prefix.factor) return short_number(value / prefix.factor) + " " + prefix.name + unit;
     return short_number(value) + " " + unit;
 }
 

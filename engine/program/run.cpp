@@ -4,6 +4,8 @@
 #include <iostream>
 #include <optional>
 #include <ostream>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "engine/mesh/manifold_fault.h"
@@ -14,6 +16,7 @@
 #include "engine/program/run_outputs.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/run_result.h"
+#include "engine/program/thin_part_text.h"
 #include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
 
@@ -162,6 +165,24 @@ void count_bodies(const World& world, RunResult& result) {
     }
 }
 
+/// Returns one text for each mesh, material and kind of element with parts that are too stiff in bending. The text
+/// names one body with them. Rigid bodies do not bend.
+std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world) {
+    std::vector<std::string> found;
+    std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
+    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
+    for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
+        const BodyPlan& body = plan.bodies[b];
+        if (world.dynamics(bodies[b]) == BodyDynamics::rigid ||
+            !seen.emplace(body.mesh, body.material, body.materials, body.settings.element).second)
+            continue;
+        const std::string text =
+            thin_part_text(plan.meshes[body.mesh], world.surface(bodies[b]), step_case(plan, body));
+        if (!text.empty()) found.push_back("body '" + body.settings.name + "': " + text);
+    }
+    return found;
+}
+
 /// Returns one text for each mesh whose boundary is not a closed manifold. The text names one body with this mesh.
 /// Where the boundary is not a manifold, a contact cannot tell the inside of a body from the outside.
 std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& world) {
@@ -206,6 +227,7 @@ RunResult simulate(const RunOptions& asked) {
     memory.scene = std::filesystem::absolute(options.scene);
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
+    result.thin_parts = thin_parts(plan, world);
     result.seconds_load = loading.seconds();
     result.scene = scene.name;
     result.scene_file = options.scene.string();

@@ -37,6 +37,7 @@ struct RunResult {
     // option and error message of each output that failed
     std::vector<std::pair<std::string, std::string>> outputs_failed;
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
+    std::vector<std::string> thin_parts;      // one sentence for each mesh with a part that is too stiff in bending
     std::vector<std::string> written;         // description of each written output
 };
 

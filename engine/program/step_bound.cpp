@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/mesh/tetrahedron.h"
+#include "engine/scene/scene_plan.h"
 
 namespace skerry {
 
@@ -118,6 +119,16 @@ std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std
 }
 
 }  // namespace
+
+StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
+    StepCase of{.settings = plan.settings,
+                .material = plan.materials[body.material].second,
+                .body = body.settings,
+                .labelled = {}};
+    of.body.dynamics = BodyDynamics::explicit_elastic;
+    for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
+    return of;
+}
 
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
     const Body body = body_of(mesh, of);

@@ -8,6 +8,9 @@
 
 namespace skerry {
 
+struct BodyPlan;
+struct ScenePlan;
+
 /// All data on which the stable step of a single body depends, apart from the mesh. The initial values stand for the
 /// default material and elements. The dynamics of the body are ignored; it is explicit.
 struct StepCase {
@@ -16,6 +19,10 @@ struct StepCase {
     BodySettings body;
     std::map<int, MaterialSettings> labelled;  // material of the tetrahedra with each label
 };
+
+/// Returns the StepCase of a body. The body is treated as explicit and elastic, so that its mesh has a stable step even
+/// if its dynamics are rigid or implicit.
+StepCase step_case(const ScenePlan& plan, const BodyPlan& body);
 
 struct CostlyTetrahedron {
     Index tetrahedron = 0;      // index of the tetrahedron in the mesh

@@ -1,6 +1,7 @@
 """`skerry inspect`: contents of a scene or mesh, bounds of its step, repairs. Called as: TEST PROGRAM SOURCE_FOLDER"""
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -88,6 +89,33 @@ class ProgramInspectTest(ProgramCase):
         of_body = json.loads(self.skerry("inspect", scene, "--json").stdout)["body_kinds"][0]["step_bound"]
         self.assertAlmostEqual(of_body["worst"][0]["altitude"], 0.2 * worst["altitude"], places=9)
         self.assertIn(f"tetrahedron {worst['tetrahedron']} at (", self.skerry("inspect", scene).stdout)
+
+    def test_a_part_that_is_too_stiff_in_bending_is_a_problem_and_a_warning(self):
+        strip = {"name": "strip", "mesh": {"box": {"size": [0.05, 0.01, 0.001], "cells": [20, 4, 1]}}, "material": "m"}
+        stone = {**strip, "name": "stone", "position": [0, 0.1, 0], "dynamics": "rigid"}  # does not bend
+        scene = self.write("strip.json", {"seconds": 1e-4, "materials": {"m": {"E": 3e7, "nu": 0, "rho": 1000}},
+                                          "bodies": [strip, stone]})
+
+        def found(*assignments):
+            values = [argument for assignment in assignments for argument in ("--set", f"bodies[0].{assignment}")]
+            problems = json.loads(self.skerry("inspect", scene, "--json", *values).stdout)["problems"]
+            self.skerry("run", scene, "--quiet", "--stats", self.folder / "stats.json", *values)
+            warnings = json.loads((self.folder / "stats.json").read_text())["trust"]["warnings"]
+            self.assertEqual([text.replace("'", '"') for text in warnings], problems)
+            return problems
+
+        # Deflections under the own weight of 0.88, 0.32 and 0.26 mm instead of 3.07 mm.
+        for assignments, right in (([], 3.49), (["mesh.box.cells=[10,2,1]"], 9.46), (["element=linear"], 11.8)):
+            [problem] = found(*assignments)
+            self.assertIn('body "strip": a part 1 mm thick and 50 mm long around (0, 0, 0) m has 1 layer of cells',
+                          problem)
+            self.assertEqual('"element" of the body to "smoothed"' in problem, "element=linear" in assignments)
+            stiffness = float(re.search(r"about ([0-9.]+) times as stiff in bending", problem)[1])
+            self.assertLess(right / 1.5, stiffness)
+            self.assertLess(stiffness, 1.5 * right)
+        self.assertEqual(found("mesh.box.size=[0.05,0.01,0.005]", "mesh.box.cells=[20,4,2]"), [])
+        plate = self.bad_box("plate.msh", cells=8, kept={(x, y, 0) for x in range(8) for y in range(8)})
+        self.assertIn("problem       a part 125 mm thick", self.skerry("inspect", plate).stdout)
 
     def bad_box(self, name, cells=4, flat=1e-3, needle=False, kept=None):
         """A unit box with an inner node close to another one; with `needle` the same on its surface. `kept`: cells."""

@@ -1,0 +1,24 @@
+// Stiffness of elements in bending, compared with the material.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/mesh/thin/column.h"
+#include "engine/mesh/thin/thin_parts.h"
+
+namespace skerry::mesh {
+
+/// A column of a part, and the direction in which the part is bent there: along `tangent`, a unit vector across the
+/// direction of the column.
+struct BentColumn {
+    const ThinColumn* column;
+    Vec3 tangent;
+    std::size_t part;
+};
+
+/// Returns the stiffness of each part in bending, as a multiple of the exact one (see ThinPart::stiffness).
+std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn> columns, std::size_t part_count,
+                                    std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials);
+
+}  // namespace skerry::mesh

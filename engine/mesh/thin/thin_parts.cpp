@@ -1,0 +1,127 @@
+#include "engine/mesh/thin/thin_parts.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
+
+#include "components/union_find.h"
+#include "engine/mesh/tetrahedron.h"
+#include "engine/mesh/thin/bending.h"
+#include "engine/mesh/thin/column.h"
+
+namespace skerry::mesh {
+
+namespace {
+
+// Least ratio of length to thickness of a part. Shorter parts carry loads by shear and compression more than by
+// bending.
+constexpr Real slender = 4;
+// Least volume of a part, as a fraction of the volume of the mesh. Fins and tails of animal meshes have up to 2 %, a
+// leg of a table 5 %.
+constexpr Real noticeable_volume = 0.03;
+// Least cosine of the angle between neighbouring triangles of a part. At sharper edges another side begins.
+constexpr Real smooth_edge = 0.7;
+// Largest number of columns of a part whose energy is computed. They are spread evenly over the part.
+constexpr std::size_t most_columns = 500;
+
+/// Groups columns by part: columns are connected if they begin at neighbouring triangles, or if one begins where the
+/// other ends.
+std::vector<std::vector<const ThinColumn*>> connected(std::span<const ThinColumn> columns) {
+    UnionFind parts;
+    parts.start(columns.size());
+    std::vector<std::pair<std::array<Index, 2>, Index>> sides;
+    std::vector<std::pair<std::array<Index, 3>, Index>> triangles;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto& [a, b, d] = columns[c].first;  // ascending
+        for (const std::array<Index, 2>& side : {std::array{a, b}, std::array{a, d}, std::array{b, d}})
+            sides.emplace_back(side, static_cast<Index>(c));
+        triangles.emplace_back(columns[c].first, static_cast<Index>(c));
+    }
+    std::ranges::sort(sides);
+    for (std::size_t s = 1; s < sides.size(); ++s) {
+        if (sides[s].first != sides[s - 1].first) continue;
+        const ThinColumn &one = columns[static_cast<std::size_t>(sides[s - 1].second)],
+                         &other = columns[static_cast<std::size_t>(sides[s].second)];
+        if (one.direction.dot(other.direction) > smooth_edge) parts.join(sides[s - 1].second, sides[s].second);
+    }
+    std::ranges::sort(triangles);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto end =
+            std::ranges::lower_bound(triangles, columns[c].last, {}, [](const auto& t) { return t.first; });
+        if (end != triangles.end() && end->first == columns[c].last) parts.join(static_cast<Index>(c), end->second);
+    }
+    std::vector<std::vector<const ThinColumn*>> grouped;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const auto part = static_cast<std::size_t>(parts.number(static_cast<Index>(c)));
+        if (part == grouped.size()) grouped.emplace_back();
+        grouped[part].push_back(&columns[c]);
+    }
+    return grouped;
+}
+
+/// Measures a part. `axis` becomes the direction of its longest extent.
+ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, Vec3& axis) {
+    ThinPart part;
+    Real area = 0;
+    for (const ThinColumn* column : columns) {
+        area += column->area;
+        part.place += column->area * column->start;
+        part.thickness += column->area * column->thickness();
+        part.layers += column->area * column->layers;
+    }
+    part.place /= area;
+    part.volume = part.thickness / 2;  // opposite triangles have columns in the same place
+    part.thickness /= area;
+    part.layers /= area;
+    Mat3 spread = Mat3::Zero();
+    for (const ThinColumn* column : columns) {
+        const Vec3 d = column->start - part.place;
+        spread += column->area * d * d.transpose();
+    }
+    axis = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
+    Real low = infinity, high = -infinity;
+    for (const ThinColumn* column : columns)
+        for (const Index n : column->first) {
+            const Real s = mesh.nodes[static_cast<std::size_t>(n)].dot(axis);
+            low = std::min(low, s);
+            high = std::max(high, s);
+        }
+    part.length = high - low;
+    return part;
+}
+
+/// The direction in which a column is bent: along the axis of its part.
+Vec3 tangent_of(const ThinColumn& column, const Vec3& axis) {
+    constexpr Real too_steep = 0.1;  // sine of the angle between the column and the axis
+    const Vec3 along = axis - axis.dot(column.direction) * column.direction;
+    return along.norm() > too_steep ? Vec3(along.normalized()) : Vec3(column.direction.unitOrthogonal());
+}
+
+}  // namespace
+
+std::vector<ThinPart> thin_parts(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary,
+                                 std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials) {
+    const std::vector<ThinColumn> columns = thin_columns(mesh, boundary);
+    if (columns.empty()) return {};
+    Real volume = 0;  // [m^3]
+    for (const std::array<Index, 4>& tetrahedron : mesh.tetrahedra) volume += six_volumes(mesh, tetrahedron) / 6;
+    std::vector<ThinPart> parts;
+    std::vector<BentColumn> bent;
+    for (const std::vector<const ThinColumn*>& members : connected(columns)) {
+        Vec3 axis;
+        const ThinPart part = measure(mesh, members, axis);
+        if (part.length < slender * part.thickness || part.volume < noticeable_volume * volume) continue;
+        const std::size_t stride = (members.size() + most_columns - 1) / most_columns;
+        for (std::size_t c = 0; c < members.size(); c += stride)
+            bent.push_back({members[c], tangent_of(*members[c], axis), parts.size()});
+        parts.push_back(part);
+    }
+    if (parts.empty()) return parts;
+    const std::vector<Real> stiffness = bending_stiffness(mesh, bent, parts.size(), zones, materials);
+    for (std::size_t p = 0; p < parts.size(); ++p) parts[p].stiffness = stiffness[p];
+    std::ranges::stable_sort(parts, std::greater{}, &ThinPart::stiffness);
+    return parts;
+}
+
+}  // namespace skerry::mesh

@@ -1,0 +1,39 @@
+// Finds the parts of a mesh that are only a few cells thick, and estimates how much too stiff they are in bending.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "skerry/mesh.h"
+#include "systems/dynamics/kinds/element_list.h"
+
+namespace skerry::mesh {
+
+/// Elastic constants of a material.
+struct ElasticConstants {
+    Real young_modulus;  // Young's modulus [Pa]
+    Real poisson_ratio;  // Poisson's ratio
+};
+
+/// A part of a mesh that is a few cells thick, several times longer than it is thick, and not a small fraction of it.
+struct ThinPart {
+    Vec3 place = Vec3::Zero();  // mean of the centroids of its boundary triangles [m]
+    Real thickness = 0;         // mean thickness [m]
+    Real length = 0;            // longest extent [m]
+    Real layers = 0;            // mean number of layers of cells through the thickness
+    Real volume = 0;            // estimate of its volume [m^3]
+    // Estimate of the bending stiffness of the elements, as a multiple of the bending stiffness of the material.
+    Real stiffness = 1;
+};
+
+/// Returns the thin parts of a mesh of positive tetrahedra. `boundary` lists its boundary triangles. `zones` lists the
+/// elements of the body; MaterialZone::material is an index of `materials`.
+///
+/// A ray is followed from each boundary triangle along its inner normal. The mesh is thin there if the ray soon leaves
+/// it again through an opposite triangle. Connected thin triangles form a part. The stiffness is the elastic energy of
+/// the elements in pure bending of the part, divided by the exact energy (docs/methods/elasticity.md 7.8).
+std::vector<ThinPart> thin_parts(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary,
+                                 std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials);
+
+}  // namespace skerry::mesh

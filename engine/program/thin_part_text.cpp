@@ -1,0 +1,74 @@
+#include "engine/program/thin_part_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/mesh/thin/thin_parts.h"
+#include "engine/program/number_text.h"
+
+namespace skerry {
+
+namespace {
+
+// A part is reported if its bending stiffness exceeds the stiffness of the material by this factor. Two layers of cubic
+// cells of smoothed elements exceed it by 1.08 to 1.17, one layer by 1.3 to 1.5.
+constexpr Real reported_stiffness = 1.25;
+// Excess of bending stiffness that the recommended cells leave.
+constexpr Real accepted_excess = 0.1;
+
+/// Elements of a body: tetrahedra by material, and the constants of these materials.
+struct BodyElements {
+    std::vector<MaterialZone> zones;
+    std::vector<mesh::ElasticConstants> materials;
+
+    void add(const MaterialSettings& material, ElementKind kind) {
+        const auto row = static_cast<Index>(materials.size());
+        materials.push_back({material.young_modulus, material.poisson_ratio});
+        zones.push_back({row, resolved(kind, material.poisson_ratio), {}});
+    }
+};
+
+/// A coordinate of the place of a part. Rounding errors are printed as 0.
+std::string coordinate(Real value, const mesh::ThinPart& part) {
+    constexpr Real rounding = 1e-6;  // share of the length of the part
+    return short_number(std::abs(value) < rounding * part.length ? 0 : value);
+}
+
+BodyElements elements_of_body(const Mesh& mesh, const StepCase& of) {
+    BodyElements elements;
+    elements.add(of.material, of.body.element);
+    std::map<int, std::size_t> zone_of;
+    for (const auto& [label, material] : of.labelled) {
+        zone_of.emplace(label, elements.zones.size());
+        elements.add(material, of.body.element);
+    }
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        const auto zone = mesh.label.empty() ? zone_of.end() : zone_of.find(mesh.label[t]);
+        elements.zones[zone == zone_of.end() ? 0 : zone->second].tetrahedra.push_back(static_cast<Index>(t));
+    }
+    return elements;
+}
+
+}  // namespace
+
+std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of) {
+    const BodyElements elements = elements_of_body(mesh, of);
+    std::vector<mesh::ThinPart> parts = mesh::thin_parts(mesh, boundary, elements.zones, elements.materials);
+    std::erase_if(parts, [](const mesh::ThinPart& part) { return part.stiffness < reported_stiffness; });
+    if (parts.empty()) return {};
+    const mesh::ThinPart& part = parts.front();
+    const Real layers = std::round(part.layers);
+    // The excess of stiffness falls with the square of the size of the cells.
+    const Real finer = std::sqrt((part.stiffness - 1) / accepted_excess);
+    return "a part " + with_unit(part.thickness, "m") + " thick and " + with_unit(part.length, "m") + " long around (" +
+           coordinate(part.place.x(), part) + ", " + coordinate(part.place.y(), part) + ", " +
+           coordinate(part.place.z(), part) + ") m has " + short_number(layers) + (layers > 1 ? " layers" : " layer") +
+           " of cells and is about " + short_number(part.stiffness, 2) + " times as stiff in bending as its material" +
+           (parts.size() > 1 ? ", and " + grouped(parts.size() - 1) + " more parts are too stiff" : "") +
+           ": to reduce the excess to about " + percent(accepted_excess) + ", make the cells there " +
+           short_number(finer, 2) + " times smaller in all directions" +
+           (of.body.element == ElementKind::linear ? ", or first set \"element\" of the body to \"smoothed\"" : "");
+}
+
+}  // namespace skerry

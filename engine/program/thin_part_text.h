@@ -1,0 +1,16 @@
+// Text about parts of a body that are too stiff in bending, because few cells lie across their thickness.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "engine/program/step_bound.h"
+
+namespace skerry {
+
+/// Describes the thin part of a body that is stiffest compared with its material, counts the others and gives a remedy.
+/// Returns an empty text if no part is too stiff. `boundary` lists the boundary triangles of the mesh.
+std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of);
+
+}  // namespace skerry
