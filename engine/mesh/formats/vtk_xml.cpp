@@ -249,8 +249,8 @@ std::string_view bytes_of(const FileReader& reader) {
 }
 
 std::string_view XmlTag::value_of(std::string_view attribute, std::string_view otherwise) const {
-    for (const auto& [name, value] : attributes)
-        if (name == attribute) return value;
+    for (const auto& [key, value] : attributes)
+        if (key == attribute) return value;
     return otherwise;
 }
 
