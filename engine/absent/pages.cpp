@@ -1,5 +1,7 @@
-// Replacement for engine/output/page if SKERRY_PAGES=OFF. Creating a PageWriter then throws SceneError.
+// Replacement for engine/output/page and zlib if SKERRY_PAGES=OFF. Creating a PageWriter, or reading a compressed VTK
+// file, then throws SceneError.
 #include "engine/absent/refuse_absent.h"
+#include "engine/mesh/formats/inflate.h"
 #include "skerry/output.h"
 
 namespace skerry {
@@ -12,5 +14,9 @@ PageWriter::PageWriter(const std::filesystem::path&, const std::string&) {
 PageWriter::~PageWriter() = default;
 void PageWriter::add_frame(const World&) {}
 void PageWriter::close(const World&) {}
+
+std::optional<std::string> mesh::inflated(std::string_view, std::size_t) {
+    refuse_absent("compressed VTK files", "SKERRY_PAGES");
+}
 
 }  // namespace skerry

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include "components/counting_sort.h"
 #include "engine/mesh/labels.h"
 #include "engine/mesh/manifold_fault.h"
 #include "engine/mesh/tetrahedron.h"
@@ -20,7 +21,10 @@ std::vector<Edge> unique_edges(const Mesh& mesh) {
     for (const std::array<Index, 4>& t : mesh.tetrahedra)
         for (std::size_t a = 0; a < 4; ++a)
             for (std::size_t b = a + 1; b < 4; ++b) edges.emplace_back(std::minmax(t[a], t[b]));
-    std::sort(edges.begin(), edges.end());
+    std::vector<Edge> spare;
+    const auto node_count = static_cast<Index>(mesh.nodes.size());
+    counting_sort(edges, spare, node_count, [](const Edge& edge) { return edge.second; });
+    counting_sort(edges, spare, node_count, [](const Edge& edge) { return edge.first; });
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
 }

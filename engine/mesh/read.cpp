@@ -21,20 +21,21 @@ std::string lower_extension(const std::string& path) {
 RawMesh read_raw(const std::string& path, bool surface) {
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele") return read_tetgen(path);
-    const bool known =
-        extension == ".msh" || extension == ".vtk" || (surface && (extension == ".obj" || extension == ".stl"));
+    const bool known = extension == ".msh" || extension == ".vtk" || extension == ".vtu" ||
+                       (surface && (extension == ".obj" || extension == ".stl"));
     if (!known)
-        Complaint{
-            path,
-            {},
-            "file name",
-            extension.empty() ? "no extension" : "the extension " + extension,
-            surface ? "the extension .msh, .vtk, .node, .ele, .obj or .stl" : "the extension .msh, .vtk, .node or .ele",
-            "export the mesh in one of these formats"}
+        Complaint{path,
+                  {},
+                  "file name",
+                  extension.empty() ? "no extension" : "the extension " + extension,
+                  surface ? "the extension .msh, .vtk, .vtu, .node, .ele, .obj or .stl"
+                          : "the extension .msh, .vtk, .vtu, .node or .ele",
+                  "export the mesh in one of these formats"}
             .raise();
     FileReader reader(path);
     if (extension == ".msh") return read_gmsh(reader);
     if (extension == ".vtk") return read_vtk(reader);
+    if (extension == ".vtu") return read_vtu(reader);
     return extension == ".obj" ? read_obj(reader) : read_stl(reader);
 }
 
@@ -84,8 +85,7 @@ Mesh read(const std::string& path) {
                   {},
                   "no tetrahedra",
                   "at least one tetrahedron",
-                  "the file has " + std::to_string(raw.triangles.size()) + " triangles and " +
-                      std::to_string(raw.others) + " other elements; export the mesh with its tetrahedra"}
+                  "the file has " + elements_text(raw) + "; export the mesh with tetrahedra"}
             .raise();
     return take_tetrahedra(raw);
 }
@@ -102,13 +102,12 @@ SurfaceMesh read_surface(const std::string& path) {
                   "export the surface with linear elements"}
             .raise();
     if (raw.triangles.empty())
-        Complaint{
-            path,
-            {},
-            {},
-            "no triangles",
-            "at least one triangle",
-            "the file has " + std::to_string(raw.others) + " elements of other types; export the surface as triangles"}
+        Complaint{path,
+                  {},
+                  {},
+                  "no triangles",
+                  "at least one triangle",
+                  "the file has " + elements_text(raw) + "; export the surface as triangles"}
             .raise();
     SurfaceMesh surface;
     surface.nodes = drop_unused(raw.nodes, raw.triangles);

@@ -71,10 +71,9 @@ void require_valid(const Mesh& mesh, const std::string& what) {
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
         const std::array<Index, 4>& t = mesh.tetrahedra[e];
         for (std::size_t a = 0; a < 4; ++a) {
-            const std::string object = "tetrahedron " + std::to_string(e);
             if (t[a] < 0 || t[a] >= node_count)
                 Complaint{what,
-                          object,
+                          "tetrahedron " + std::to_string(e),
                           "node",
                           std::to_string(t[a]),
                           "a node index from 0 to " + std::to_string(node_count - 1),
@@ -82,7 +81,13 @@ void require_valid(const Mesh& mesh, const std::string& what) {
                     .raise();
             if (std::find(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(a), t[a]) !=
                 t.begin() + static_cast<std::ptrdiff_t>(a))
-                Complaint{what, object, "node", std::to_string(t[a]) + " twice", "four different nodes", {}}.raise();
+                Complaint{what,
+                          "tetrahedron " + std::to_string(e),
+                          "node",
+                          std::to_string(t[a]) + " twice",
+                          "four different nodes",
+                          {}}
+                    .raise();
         }
     }
 }

@@ -6,145 +6,22 @@
 #include "engine/program/cluster_text.h"
 #include "engine/program/commands.h"
 #include "engine/program/dynamics_text.h"
+#include "engine/program/inspect_mesh.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
-#include "engine/program/step_bound_text.h"
-#include "engine/program/thin_part_text.h"
 #include "engine/program/trial.h"
 #include "engine/scene/scene_plan.h"
-#include "systems/collision/build_surface.h"
 
 namespace skerry {
 
 namespace {
 
-using Problems = std::vector<std::string>;
-
-// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
-constexpr Real poor_quality = 0.1;
 // Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
-
-Problems problems_of(const MeshReport& r) {
-    Problems problems;
-    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
-    if (r.inverted > 0)
-        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
-    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
-    if (r.components > 1)
-        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
-    if (r.tetrahedra > 0 && r.min_quality < poor_quality)
-        problems.push_back("the worst tetrahedron is a sliver of quality " + short_number(r.min_quality) +
-                           " (1: regular tetrahedron), which shortens the stable step");
-    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
-    return problems;
-}
-
-void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
-                   Problems& problems) {
-    if (std::string text = thin_part_text(mesh, boundary, of); !text.empty()) problems.push_back(std::move(text));
-}
-
-Json mesh_json(const MeshReport& r) {
-    Json labels = Json::object();
-    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
-    return {{"nodes", r.nodes},
-            {"tetrahedra", r.tetrahedra},
-            {"boundary_triangles", r.boundary_triangles},
-            {"components", r.components},
-            {"lower", vector_json(r.lower)},
-            {"upper", vector_json(r.upper)},
-            {"volume", r.volume},
-            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
-            {"min_altitude", r.min_altitude},
-            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
-            {"inverted", r.inverted},
-            {"flat", r.flat},
-            {"closed_manifold", r.closed_manifold},
-            {"labels", labels}};
-}
-
-void print_problems(const Problems& problems) {
-    if (problems.empty()) std::cout << "  problems      none found\n";
-    for (const std::string& problem : problems) std::cout << "  problem       " << problem << "\n";
-}
-
-/// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
-/// first 20 labels are listed.
-std::string labels_text(const MeshReport& report) {
-    constexpr std::size_t most = 20;
-    std::string text;
-    std::size_t listed = 0;
-    for (const auto& [label, tetrahedra] : report.labels) {
-        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
-        text +=
-            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
-    }
-    return text;
-}
-
-int inspect_mesh(const InspectOptions& options) {
-    if (!options.body.empty())
-        Complaint{.file = options.file.string(),
-                  .object = "--body",
-                  .field = {},
-                  .found = "a mesh file, which has no bodies or settings",
-                  .expected = "a scene file (.json)",
-                  .hint = "omit the option, or give the scene"}
-            .raise();
-    const Mesh mesh = mesh::read(options.file.string());
-    if (!options.repair.empty())
-        return inspect_repair({.mesh = mesh,
-                               .what = options.file.string(),
-                               .of = {},
-                               .step_of = "the default material, 1e5 Pa and 1000 kg/m^3",
-                               .scaled = false},
-                              options);
-    const MeshReport report = inspect(mesh);
-    Problems problems = problems_of(report);
-    // A mesh without tetrahedra, or with inverted or flat tetrahedra, cannot be added to a world and has no stable
-    // step.
-    const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
-    const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
-    if (is_body) {
-        std::vector<std::array<Index, 3>> boundary;
-        for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) boundary.push_back(triangle.node);
-        add_thin_part(mesh, boundary, {}, problems);
-    }
-    if (options.json) {
-        Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
-        json.update(mesh_json(report));
-        if (is_body) json["step_bound"] = bound_json(bound);
-        json["problems"] = problems;
-        std::cout << json.dump(1) << std::endl;
-        return exit_ok;
-    }
-    const Vec3 size = report.upper - report.lower;
-    std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
-              << " nodes, " << grouped(report.boundary_triangles) << " boundary triangles\n"
-              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
-              << short_number(size.z()) << " m, volume " << short_number(report.volume) << " m^3\n"
-              << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
-              << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
-              << with_unit(report.min_altitude, "m") << "\n"
-              << "  quality       mean " << short_number(report.mean_quality) << ", worst "
-              << short_number(report.min_quality) << " (1: regular tetrahedron)\n"
-              << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
-              << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
-    if (is_body) {
-        std::cout << "  step          " << with_unit(bound.step, "s")
-                  << " is stable with the default material, 1e5 Pa and 1000 kg/m^3 (elements: "
-                  << name_of(bound.element) << ")\n";
-        print_bound(bound, "                ");
-    }
-    if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
-    print_problems(problems);
-    return exit_ok;
-}
 
 /// Report on all bodies that have the same mesh, materials, elements and dynamics, and therefore the same stable step.
 struct BodyKindReport {
@@ -181,19 +58,22 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Groups the bodies by mesh, materials, elements and dynamics. The stable step of each explicit group is computed in a
-/// separate world. `became`: dynamics of each body in the world; if empty, the dynamics of the plan are used.
-std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std::span<const BodyDynamics> became = {}) {
+/// Groups the bodies by mesh, materials, elements and dynamics. `built`: world of the plan in which no step was planned
+/// yet; the result contains the dynamics that the bodies have there, and details of their steps. Without `built` the
+/// dynamics of the plan are used, and the stable step of each explicit group is computed in a separate world.
+std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, World* built = nullptr) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;
     std::vector<BodyKindReport> kinds;
+    const std::vector<BodyHandle> handles = built == nullptr ? std::vector<BodyHandle>() : bodies_in_order(*built);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
-        const BodyDynamics dynamics = became.empty() ? body.settings.dynamics : became[b];
+        const BodyDynamics dynamics = built == nullptr ? body.settings.dynamics : built->dynamics(handles[b]);
         const auto [at, is_new] =
             row.try_emplace({body.mesh, body.material, body.materials, body.settings.element, dynamics}, kinds.size());
         if (is_new) {
-            const MeshReport mesh = inspect(plan.meshes[body.mesh]);
+            const Mesh& mesh_of_body = plan.meshes[body.mesh];
+            const MeshReport mesh = inspect(mesh_of_body);
             kinds.push_back({body.settings.name,
                              count_materials(plan, body, mesh),
                              0,
@@ -202,7 +82,9 @@ std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, bool details, std:
                              dynamics,
                              {.step = infinity, .element = {}, .worst = {}, .without = {}}});
             if (kinds.back().sets_step())
-                kinds.back().bound = step_bound(plan.meshes[body.mesh], step_case(plan, body), details);
+                kinds.back().bound = built == nullptr
+                                         ? step_bound(mesh_of_body, step_case(plan, body), false)
+                                         : step_bound(*built, handles[b], mesh_of_body, step_case(plan, body));
         }
         ++kinds[at->second].count;
     }
@@ -241,10 +123,9 @@ struct SceneStart {
     std::string outcome;     // how a run resolves the overlaps, as text; empty if there are none
 };
 
-SceneStart start_of(const ScenePlan& plan) {
-    ScenePlan as_written = plan;
-    as_written.settings.start_overlaps = StartOverlaps::ignore;
-    SceneStart start{build_scene(as_written), {}, {}};
+/// `as_written`: scene of the plan, built without resolving the overlaps at the start.
+SceneStart start_of(const ScenePlan& plan, Scene as_written) {
+    SceneStart start{std::move(as_written), {}, {}};
     start.as_written = start.scene.world.report();
     if (start.as_written.start_overlaps.empty()) return start;
     start.outcome = "a run starts with these overlaps, because settings.start_overlaps is \"ignore\"";
@@ -305,7 +186,7 @@ const BodyPlan& body_to_mend(const ScenePlan& plan, const InspectOptions& option
     };
     if (plan.bodies.empty()) refuse("bodies", "no bodies", "at least one body, whose mesh --repair can improve");
     if (options.body.empty()) {
-        const std::vector<BodyKindReport> kinds = body_kinds(plan, false);
+        const std::vector<BodyKindReport> kinds = body_kinds(plan);
         const auto least = std::min_element(kinds.begin(), kinds.end(),
                                             [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
         return plan.bodies[least->body];
@@ -335,15 +216,20 @@ int inspect_scene(const InspectOptions& options) {
                                .scaled = true},
                               options);
     }
-    SceneStart start = start_of(plan);
+    ScenePlan as_written = plan;
+    as_written.settings.start_overlaps = StartOverlaps::ignore;
+    SetupProgress progress(true, plan);
+    Scene built = build_scene(as_written, [&](std::size_t bodies) { progress.added(bodies); });
+    progress.begin("measuring the meshes");
+    const std::vector<BodyKindReport> kinds = body_kinds(plan, &built.world);
+    progress.begin("choosing the step length");
+    SceneStart start = start_of(plan, std::move(built));
     Scene& scene = start.scene;
-    std::vector<BodyDynamics> became;
-    for (const BodyHandle body : bodies_in_order(scene.world)) became.push_back(scene.world.dynamics(body));
-    const std::vector<BodyKindReport> kinds = body_kinds(plan, true, became);
     const WorldReport report = scene.world.report();
     const Real stable_step = scene.world.stable_step();
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
+    progress.begin("timing the first steps");
     const SceneCost cost = try_run(scene.world, plan_run(scene, run), overlap);
     const Problems problems = problems_of(plan, kinds, start, cost);
     if (options.json) {

@@ -277,7 +277,10 @@ void add_solve(CLI::App& app, SolveOptions& options) {
 void add_inspect(CLI::App& app, InspectOptions& options) {
     CLI::App& command = *app.add_subcommand("inspect", "Show the content and likely problems of a mesh or scene");
     command.footer(inspect_examples);
-    command.add_option("FILE", options.file, "mesh file (.msh, .vtk, .node, .ele) or scene file (.json)")->required();
+    command
+        .add_option("FILE", options.file,
+                    "mesh file (.msh, .vtk, .vtu, .node, .ele), surface (.obj, .stl) or scene file (.json)")
+        ->required();
     add_set(command, options.assignments);
     command.add_flag("--json", options.json, "print the result as JSON");
     CLI::Option* repair = command.add_option("--repair", options.repair,

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "engine/program/number_text.h"
+#include "engine/scene/scene_plan.h"
 
 namespace skerry {
 
@@ -16,8 +17,9 @@ namespace {
 constexpr double refresh_interval = 0.1;  // time between two updates of the bar [s]
 // wall time after which the first line is printed, when the time left can be estimated [s]
 constexpr double first_line = 1;
-constexpr double longest_silence = 600;  // longest time between two lines [s]
-constexpr int bar_width = 24;            // [characters]
+constexpr double longest_silence = 600;       // longest time between two lines [s]
+constexpr int bar_width = 24;                 // [characters]
+constexpr std::size_t large_scene = 100'000;  // number of tetrahedra from which the set-up of a scene is reported
 
 double seconds_of(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -98,6 +100,28 @@ void Progress::show_line(double wall, double time, std::uint64_t steps) {
 std::string Progress::left_text() const {
     const double seconds = left_.estimate();
     return std::isfinite(seconds) ? duration_text(seconds) : "";
+}
+
+SetupProgress::SetupProgress(bool wanted, const ScenePlan& plan) : wanted_(wanted), bodies_(plan.bodies.size()) {
+    std::size_t tetrahedra = 0;
+    for (const BodyPlan& body : plan.bodies) tetrahedra += plan.meshes[body.mesh].tetrahedra.size();
+    wanted_ = wanted && tetrahedra >= large_scene;
+    if (wanted_)
+        std::fprintf(stderr, "skerry: set-up of %s tetrahedra: adding %s\n", grouped(tetrahedra).c_str(),
+                     bodies_ == 1 ? "the body" : (grouped(bodies_) + " bodies").c_str());
+}
+
+void SetupProgress::added(std::size_t bodies) {
+    if (!wanted_ || bodies == bodies_ || watch_.seconds() < last_ + first_line) return;
+    last_ = watch_.seconds();
+    std::fprintf(stderr, "skerry: set-up after %s: %s of %s bodies\n", duration_text(last_).c_str(),
+                 grouped(bodies).c_str(), grouped(bodies_).c_str());
+}
+
+void SetupProgress::begin(const char* work) {
+    if (!wanted_) return;
+    last_ = watch_.seconds();
+    std::fprintf(stderr, "skerry: set-up after %s: %s\n", duration_text(last_).c_str(), work);
 }
 
 }  // namespace skerry

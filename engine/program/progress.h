@@ -10,6 +10,8 @@
 
 namespace skerry {
 
+struct ScenePlan;
+
 /// Measures the wall time since the construction of the object [s].
 class Stopwatch {
 public:
@@ -56,6 +58,23 @@ private:
     Stopwatch watch_;
     TimeLeft left_;
     double next_;  // wall time of the next display [s]
+};
+
+/// Reports the set-up of a large scene on standard error. A small scene is set up within a second and is not reported.
+class SetupProgress {
+public:
+    /// With `wanted` false nothing is reported.
+    SetupProgress(bool wanted, const ScenePlan& plan);
+    /// Reports the number of bodies that were added, at most once a second.
+    void added(std::size_t bodies);
+    /// Reports that the given work begins.
+    void begin(const char* work);
+
+private:
+    bool wanted_;
+    std::size_t bodies_;
+    double last_ = 0;  // time of the last line [s]
+    Stopwatch watch_;
 };
 
 }  // namespace skerry

@@ -213,11 +213,14 @@ RunResult simulate(const RunOptions& asked) {
         if (options.scene.empty()) options.scene = restart->memory.scene;
         options.overrides.assignments = restart->memory.assignments;
     }
+    RunResult result;
     const ScenePlan plan = plan_scene(options.scene, options.overrides);
-    Scene scene = build_scene(plan);
+    result.seconds_load = loading.seconds();
+    const Stopwatch setting_up;
+    SetupProgress setup(!options.quiet, plan);
+    Scene scene = build_scene(plan, [&](std::size_t bodies) { setup.added(bodies); });
     World& world = scene.world;
     RunMemory memory;
-    RunResult result;
     if (restart) {
         put_in_place(options.restart, std::move(restart->world), scene);
         memory = std::move(restart->memory);
@@ -228,13 +231,13 @@ RunResult simulate(const RunOptions& asked) {
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
     result.thin_parts = thin_parts(plan, world);
-    result.seconds_load = loading.seconds();
     result.scene = scene.name;
     result.scene_file = options.scene.string();
     result.settings = world.settings();
     result.threads = make_executor(world.settings().backend, world.settings().threads)->worker_count();
     count_bodies(world, result);
 
+    setup.begin("choosing the step length");
     const RunPlan run_plan = restart ? plan_run(options, memory, world.time()) : plan_run(scene, options);
     memory.frame_step = run_plan.frame_step;
     memory.samples = run_plan.samples;
@@ -244,6 +247,7 @@ RunResult simulate(const RunOptions& asked) {
     RunOutputs outputs(options, scene, start, result);
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
+    result.seconds_setup = setting_up.seconds();
     {
         Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world),
                           world.time());

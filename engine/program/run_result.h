@@ -23,7 +23,8 @@ struct RunResult {
     int threads = 0;  // number of threads that the run used
     double seconds_simulated = 0;
     double seconds_wall = 0;    // wall time of the steps, without outputs [s]
-    double seconds_load = 0;    // wall time for reading and building the scene [s]
+    double seconds_load = 0;    // wall time for reading the scene and its meshes [s]
+    double seconds_setup = 0;   // wall time from then on until the first frame: adding bodies, choosing the step [s]
     double seconds_output = 0;  // wall time for writing outputs and checkpoints [s]
     int frames = 0;
     std::optional<double> restarted_at;           // time of the checkpoint from which the run resumed [s]

@@ -89,6 +89,7 @@ Json statistics_of(const RunResult& result) {
         {"step_limits", limits},
         {"seconds_wall", wall},
         {"seconds_load", result.seconds_load},
+        {"seconds_setup", result.seconds_setup},
         {"seconds_output", result.seconds_output},
         {"real_time_factor", wall > 0 ? simulated / wall : 0},
         {"frames", result.frames},

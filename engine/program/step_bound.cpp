@@ -8,6 +8,8 @@
 
 #include "engine/mesh/tetrahedron.h"
 #include "engine/scene/scene_plan.h"
+#include "engine/world/step/step.h"
+#include "engine/world/world_state.h"
 
 namespace skerry {
 
@@ -92,30 +94,63 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
+// number of tetrahedra above which a mesh counts as large, so that another world of it takes seconds
+constexpr std::size_t many = 100'000;
+
+/// Returns the ratio of two steps: the longest step that one of the `count` worst tetrahedra allows, and the shortest
+/// step.
+Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
+    std::vector<Real> sorted(step.begin(), step.end());
+    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(count - 1);
+    std::nth_element(sorted.begin(), last, sorted.end());
+    return *last / *std::min_element(sorted.begin(), last + 1);
+}
+
 /// Computes the stable step of the mesh without its worst tetrahedra. Tetrahedra are removed in several rounds, because
-/// each removal changes the nodal masses and so the ranking of the remaining tetrahedra. `order` lists all tetrahedra
-/// of the mesh, worst first.
-std::vector<StepWithout> steps_without(const Mesh& mesh, const StepCase& of, std::vector<Index> order) {
-    constexpr std::size_t rounds = 3;  // number of rounds in which each fraction in `shares` is removed
-    std::vector<StepWithout> without;
+/// each removal changes the nodal masses and so the ranking of the remaining tetrahedra. `step`: step that each
+/// tetrahedron allows [s].
+void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Real> step, std::vector<Index> order,
+                        StepBound& bound) {
+    constexpr Real least_ratio = 1.5;  // least ratio within the worst tetrahedra for which a large mesh is tried
+    const bool large = mesh.tetrahedra.size() > many;
+    // number of rounds in which each fraction in `shares` is removed
+    const std::size_t rounds = large ? 1 : 3;
     Mesh rest = mesh;
     std::size_t gone = 0;
     for (const Real share : shares) {
         const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<Real>(mesh.tetrahedra.size())));
         if (count >= mesh.tetrahedra.size() || count == gone) continue;
+        if (large) {
+            const Real ratio = ratio_within_worst(step, count);
+            if (ratio < least_ratio) {
+                bound.alike_share = share;
+                bound.alike_ratio = ratio;
+                continue;
+            }
+        }
         const std::size_t at_once = (count - gone + rounds - 1) / rounds;
-        Real step = 0;
+        Real longer = 0;
         while (gone < count) {
             const std::size_t taken = std::min(at_once, count - gone);
             rest = taken_out(rest, std::span(order).first(taken));
             gone += taken;
             const Body body = body_of(rest, of);
-            step = body.world.stable_step();
+            longer = body.world.stable_step();
             order = worst_first(rest, body.world.tetrahedron_steps(body.handle));
         }
-        without.push_back({share, count, step});
+        bound.without.push_back({share, count, longer});
     }
-    return without;
+}
+
+void add_details(const Mesh& mesh, const StepCase& of, std::span<const Real> step, StepBound& bound) {
+    const std::vector<Index> order = worst_first(mesh, step);
+    const auto least = static_cast<Index>(std::min_element(step.begin(), step.end()) - step.begin());
+    bound.worst.push_back(describe(mesh, least, step[static_cast<std::size_t>(least)]));
+    for (const Index t : order) {
+        if (bound.worst.size() == listed_count) break;
+        if (t != least) bound.worst.push_back(describe(mesh, t, step[static_cast<std::size_t>(t)]));
+    }
+    find_steps_without(mesh, of, step, order, bound);
 }
 
 }  // namespace
@@ -134,15 +169,17 @@ StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details) {
     const Body body = body_of(mesh, of);
     StepBound bound{
         .step = body.world.stable_step(), .element = body.world.element(body.handle), .worst = {}, .without = {}};
-    if (!details) return bound;
-    const std::vector<Real> step = body.world.tetrahedron_steps(body.handle);
-    const std::vector<Index> order = worst_first(mesh, step);
-    const auto least = static_cast<Index>(std::min_element(step.begin(), step.end()) - step.begin());
-    bound.worst.push_back(describe(mesh, least, step[static_cast<std::size_t>(least)]));
-    for (const Index t : order)
-        if (t != least && bound.worst.size() < listed_count)
-            bound.worst.push_back(describe(mesh, t, step[static_cast<std::size_t>(t)]));
-    bound.without = steps_without(mesh, of, order);
+    if (details) add_details(mesh, of, body.world.tetrahedron_steps(body.handle), bound);
+    return bound;
+}
+
+StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const StepCase& of) {
+    const Model& model = WorldAccess::state_of(world).model;
+    StepBound bound{.step = step_of_body(model, static_cast<std::size_t>(model.row(body, "step_bound"))),
+                    .element = world.element(body),
+                    .worst = {},
+                    .without = {}};
+    add_details(mesh, of, world.tetrahedron_steps(body), bound);
     return bound;
 }
 

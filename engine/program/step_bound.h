@@ -46,11 +46,19 @@ struct StepBound {
     // small.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
+    // Fraction of the tetrahedra for which `without` was not computed, because the mesh is large and even the best of
+    // these worst tetrahedra allows a step that is only `alike_ratio` times as long; 0 if there is no such fraction.
+    Real alike_share = 0;
+    Real alike_ratio = 0;
 };
 
 /// Computes the stable step of a body with this mesh. With `details` it also finds the few worst tetrahedra, and the
 /// stable step of the mesh without its worst 0.1 % and 1 % of the tetrahedra. Throws SceneError if the mesh cannot be a
 /// body.
 StepBound step_bound(const Mesh& mesh, const StepCase& of, bool details);
+
+/// Computes the stable step, with details, of a body of a world in which no step was planned or made since the body was
+/// added. `mesh` and `of` describe the body.
+StepBound step_bound(World& world, BodyHandle body, const Mesh& mesh, const StepCase& of);
 
 }  // namespace skerry

@@ -30,9 +30,14 @@ std::string bodies_text(const RunResult& result) {
 std::string time_text(const RunResult& result) {
     constexpr double least = 1e-3;  // a shorter computing time for output is not mentioned [s]
     return with_unit(result.seconds_wall, "s") + " for the steps on " +
-           count_of(static_cast<std::size_t>(result.threads), "thread", "threads") + ", " +
-           with_unit(result.seconds_load, "s") + " to load the scene" +
+           count_of(static_cast<std::size_t>(result.threads), "thread", "threads") +
            (result.seconds_output < least ? "" : ", " + with_unit(result.seconds_output, "s") + " for output");
+}
+
+std::string start_lines(const RunResult& result) {
+    return summary_line("loading", with_unit(result.seconds_load, "s") + " to read the scene and its meshes") +
+           summary_line("set-up", with_unit(result.seconds_setup, "s") +
+                                      " to add the bodies, find overlaps and choose the step length");
 }
 
 std::string penetration_text(const RunResult& result) {
@@ -100,6 +105,8 @@ std::string summary_of(const RunResult& result) {
     const WorldReport& r = result.report;
     const double simulated = result.seconds_simulated, wall = result.seconds_wall;
     std::string text = result.scene + ": " + short_number(simulated, 4) + " s simulated in " + with_unit(wall, "s");
+    if (const double start = result.seconds_load + result.seconds_setup; start > wall)
+        text += ", after " + with_unit(start, "s") + " of loading and set-up";
     if (wall > 0) text += ", " + short_number(simulated / wall) + " times real time";
     text += "\n" + summary_line("scene", result.scene_file);
     if (result.status != "ok") text += summary_line("ENDED EARLY", result.status);
@@ -108,7 +115,8 @@ std::string summary_of(const RunResult& result) {
     if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);
     text += summary_line("elements",
                          count_of(r.elements, "tetrahedron", "tetrahedra") + ", " + count_of(r.nodes, "node", "nodes"));
-    return text + step_lines(result) + warning_lines(result) + probe_lines(result) + file_lines(result);
+    return text + start_lines(result) + step_lines(result) + warning_lines(result) + probe_lines(result) +
+           file_lines(result);
 }
 
 }  // namespace skerry

@@ -54,7 +54,7 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
 
 }  // namespace
 
-Scene build_scene(const ScenePlan& plan) {
+Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added) {
     const Place top(plan.file);
     Scene scene{.name = plan.name,
                 .description = plan.description,
@@ -85,6 +85,7 @@ Scene build_scene(const ScenePlan& plan) {
             if (body.shape.cylinder) return world.add_body(*body.shape.cylinder, settings);
             return world.add_body(plan.meshes[body.mesh], settings);
         }));
+        if (added) added(bodies.size());
         pins.emplace_back();
         for (const PinPlan& pin : body.pins)
             pins.back().push_back(

@@ -1,6 +1,7 @@
 // A scene in which meshes are read, copies placed and names resolved. It is ready to be added to a world.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,7 +87,8 @@ std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Plac
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.
-Scene build_scene(const ScenePlan& plan);
+/// Calls added(count), if given, after each body with the number of bodies that were added so far.
+Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added = {});
 
 /// Returns the bodies of a scene that was just built, in the order of ScenePlan::bodies. World::bodies() returns bodies
 /// last whose dynamics have changed.

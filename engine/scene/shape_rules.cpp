@@ -98,7 +98,7 @@ const Rule<MeshEntry>& rule_of<MeshEntry>() {
             .key("skittle", &MeshEntry::skittle, {.meaning = "a skittle"})
             .key("table", &MeshEntry::table, {.meaning = "a table"})
             .key("file", &MeshEntry::file,
-                 {.meaning = "path of a Gmsh .msh, legacy VTK .vtk or TetGen .node/.ele file, relative to the folder "
+                 {.meaning = "path of a Gmsh .msh, VTK .vtk or .vtu, or TetGen .node/.ele file, relative to the folder "
                              "of the scene; colliders also take .obj and .stl"})
             .key("scale", &MeshEntry::scale,
                  {.meaning = "factor for all coordinates of the mesh; default: 1", .limits = positive})

@@ -60,6 +60,10 @@ void read_vtk_bytes(FileBytes bytes) {
     use_file("mesh.vtk", bytes);
 }
 
+void read_vtu_bytes(FileBytes bytes) {
+    use_file("mesh.vtu", bytes);
+}
+
 void read_obj_bytes(FileBytes bytes) {
     use_surface(folder().write("mesh.obj", text_of(bytes)).string());
 }

@@ -5,8 +5,9 @@
 namespace skerry::test {
 
 std::span<const FileReaderCase> all_readers() {
-    static constexpr std::array<FileReaderCase, 12> readers{{{"gmsh", read_gmsh_bytes},
+    static constexpr std::array<FileReaderCase, 13> readers{{{"gmsh", read_gmsh_bytes},
                                                              {"vtk", read_vtk_bytes},
+                                                             {"vtu", read_vtu_bytes},
                                                              {"obj", read_obj_bytes},
                                                              {"stl", read_stl_bytes},
                                                              {"tetgen", read_tetgen_bytes},

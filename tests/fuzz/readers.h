@@ -22,8 +22,8 @@ struct FileReaderCase {
     std::string_view name;  // also the name of its folder of found cases
     ReadBytes read;
 };
-/// gmsh, vtk, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj), scene,
-/// problem (FCLIB as bytes of HDF5), problem_values (FCLIB in valid HDF5 files with changed values), saved
+/// gmsh, vtk, vtu, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj),
+/// scene, problem (FCLIB as bytes of HDF5), problem_values (FCLIB in valid HDF5 files with changed values), saved
 /// (World::load), saved_values (valid saved worlds with changed values, moved by a step).
 std::span<const FileReaderCase> all_readers();
 
@@ -37,6 +37,7 @@ inline void expect_valid(bool good, const char* what) {
 // Readers by their names in all_readers.
 void read_gmsh_bytes(FileBytes bytes);
 void read_vtk_bytes(FileBytes bytes);
+void read_vtu_bytes(FileBytes bytes);
 void read_obj_bytes(FileBytes bytes);
 void read_stl_bytes(FileBytes bytes);
 /// Reads the .node file, a zero byte and the .ele file. Without a zero byte each file gets half of the bytes.

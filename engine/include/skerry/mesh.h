@@ -83,11 +83,12 @@ struct TableShape {
 };
 Mesh table(const TableShape& shape);
 
-/// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary) or TetGen .node/.ele
-/// (`path` may name either file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of
-/// elements and unused nodes are dropped. If no tetrahedron is positive, the file is assumed to have the opposite node
-/// order, and all tetrahedra are reoriented. If some tetrahedra are positive and others are not, the mesh is left as in
-/// the file, and `inspect` counts the faults.
+/// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
+/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib) or TetGen .node/.ele (`path` may name either
+/// file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused nodes are
+/// dropped. If no tetrahedron is positive, the file is assumed to have the opposite node order, and all tetrahedra are
+/// reoriented. If some tetrahedra are positive and others are not, the mesh is left as in the file, and `inspect`
+/// counts the faults.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.

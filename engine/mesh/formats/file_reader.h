@@ -21,6 +21,13 @@ public:
     const std::string& path() const { return path_; }
     std::size_t remaining() const { return data_.size() - position_; }
     std::string_view rest() const { return std::string_view(data_).substr(position_); }
+    /// Position in the file, counted from its start [bytes].
+    std::size_t position() const { return position_; }
+    /// Continues at a position. Error messages then name the line of this position.
+    void go_to(std::size_t position) {
+        position_ = start_ = position < data_.size() ? position : data_.size();
+        last_was_binary_ = false;
+    }
 
     /// Sets the name of the file's section, for example "$Nodes". Later error messages contain it.
     void set_section(std::string section) {

@@ -19,6 +19,12 @@ Index NodeNumbers::row(std::int64_t number, const FileReader& reader) const {
     return place->second;
 }
 
+std::string elements_text(const RawMesh& mesh) {
+    std::string text = std::to_string(mesh.triangles.size()) + " triangles";
+    for (const auto& [kind, count] : mesh.others) text += ", " + std::to_string(count) + " " + kind;
+    return text;
+}
+
 std::optional<int> as_label(Real number) {
     constexpr Real largest = std::numeric_limits<int>::max();
     if (!(std::abs(number) <= largest) || number != std::floor(number)) return {};

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -19,8 +21,12 @@ struct RawMesh {
     std::vector<int> label;  // label of each tetrahedron; empty: no labels
     std::vector<std::array<Index, 3>> triangles;
     std::size_t curved_triangles = 0;  // number of triangles of second or higher order
-    std::size_t others = 0;            // number of elements of kinds that are ignored
+    // number of ignored elements of each kind, for example "hexahedra"
+    std::map<std::string, std::size_t> others;
 };
+
+/// Describes the triangles and the ignored elements of a mesh, for example "12 triangles, 603 hexahedra".
+std::string elements_text(const RawMesh& mesh);
 
 /// Maps the node numbers in a file to indices into RawMesh::nodes.
 class NodeNumbers {
@@ -52,6 +58,7 @@ void require_different(const std::array<Index, N>& nodes, const FileReader& read
 // Readers of the mesh file formats. All of them throw SceneError for invalid files.
 RawMesh read_gmsh(FileReader& reader);  // reads Gmsh file versions 1, 2 and 4.1
 RawMesh read_vtk(FileReader& reader);   // reads legacy VTK files with unstructured grids or polygons
+RawMesh read_vtu(FileReader& reader);   // reads VTK XML files with unstructured grids
 // reads TetGen files .node and .ele of the same name; `path` may name either file
 RawMesh read_tetgen(const std::string& path);
 RawMesh read_obj(FileReader& reader);

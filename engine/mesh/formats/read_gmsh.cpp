@@ -20,6 +20,20 @@ bool is_curved_triangle(std::int64_t type) {
     return type == 9 || (type >= 20 && type <= 25);
 }
 
+std::string kind_of(std::int64_t type) {
+    constexpr std::array<std::int64_t, 5> lines{1, 8, 26, 27, 28}, hexahedra{5, 12, 17, 92, 93};
+    constexpr std::array<std::int64_t, 3> quadrilaterals{3, 10, 16}, prisms{6, 13, 18}, pyramids{7, 14, 19};
+    const auto is_in = [&](const auto& types) { return std::ranges::find(types, type) != types.end(); };
+    if (is_curved_triangle(type)) return "triangles of second or higher order";
+    if (type == 15) return "points";
+    if (is_in(lines)) return "lines";
+    if (is_in(quadrilaterals)) return "quadrilaterals";
+    if (is_in(hexahedra)) return "hexahedra";
+    if (is_in(prisms)) return "prisms";
+    if (is_in(pyramids)) return "pyramids";
+    return "elements of type " + std::to_string(type);
+}
+
 }  // namespace
 
 std::size_t gmsh_node_count(std::int64_t type, const FileReader& reader) {
@@ -52,7 +66,7 @@ void take_gmsh_element(std::int64_t type, const std::vector<std::int64_t>& node_
         mesh.triangles.push_back(nodes);
     } else {
         mesh.curved_triangles += is_curved_triangle(type);
-        mesh.others += 1;
+        mesh.others[kind_of(type)] += 1;
     }
 }
 

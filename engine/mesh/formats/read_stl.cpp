@@ -17,7 +17,7 @@ public:
         if (nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0])
             mesh_.triangles.push_back(nodes);
         else
-            mesh_.others += 1;
+            mesh_.others["flat triangles"] += 1;
     }
 
 private:

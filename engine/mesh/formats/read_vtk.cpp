@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/mesh/formats/raw_mesh.h"
+#include "engine/mesh/formats/vtk_cells.h"
 
 // Reader of legacy VTK files. Format: "VTK File Formats", VTK user's guide. File version 5.1 introduced OFFSETS and
 // CONNECTIVITY.
@@ -32,7 +32,8 @@ public:
         if (dataset_ == "UNSTRUCTURED_GRID") {
             if (!has_cells_) reader_.complain({}, "no section of cells", "a section CELLS");
             if (!has_types_) reader_.complain({}, "no section of cell types", "a section CELL_TYPES");
-            take_cells();
+            reader_.set_section("CELLS");
+            take_vtk_cells(cells_, reader_, mesh_);
         }
         return std::move(mesh_);
     }
@@ -69,7 +70,7 @@ private:
         else if (name == "POLYGONS" && dataset_ == "POLYDATA")
             read_polygons();
         else if ((name == "VERTICES" || name == "LINES" || name == "TRIANGLE_STRIPS") && dataset_ == "POLYDATA")
-            skip_polydata();
+            skip_polydata(name == "VERTICES" ? "points" : name == "LINES" ? "lines" : "triangle strips");
         else if (name == "FIELD")
             skip_field();
         else if (name == "METADATA")
@@ -198,23 +199,23 @@ private:
         constexpr NumberType type{Kind::int32, 4};
         reader_.checked_count(static_cast<std::int64_t>(size), binary_ ? 4 : 2, "size");
         begin_rows();
-        offsets_.assign(1, 0);
+        cells_.offset.assign(1, 0);
         for (std::size_t c = 0; c < cells; ++c) {
             reader_.set_row("cell", c + 1, cells);
             const std::int64_t nodes = read_integer(type, "node count");
             // Number of integers of the section that follow the counts and nodes read so far.
-            const std::size_t left = size - std::min(size, offsets_.back() + c + 1);
+            const std::size_t left = size - std::min(size, cells_.offset.back() + c + 1);
             if (nodes < 0 || static_cast<std::uint64_t>(nodes) > left)
                 reader_.complain(
                     "node count", std::to_string(nodes), "at most " + std::to_string(left),
                     "only that many entries remain of the size in the header of this section; correct this size or the "
                     "node count of the cell");
-            for (std::int64_t a = 0; a < nodes; ++a) cell_nodes_.push_back(read_node(type));
-            offsets_.push_back(offsets_.back() + static_cast<std::size_t>(nodes));
+            for (std::int64_t a = 0; a < nodes; ++a) cells_.node.push_back(read_node(type));
+            cells_.offset.push_back(cells_.offset.back() + static_cast<std::size_t>(nodes));
         }
-        if (offsets_.back() + cells != size)
+        if (cells_.offset.back() + cells != size)
             reader_.complain(
-                "size", std::to_string(size) + " in the header", std::to_string(offsets_.back() + cells),
+                "size", std::to_string(size) + " in the header", std::to_string(cells_.offset.back() + cells),
                 "the cells have that many entries: a node count and the nodes of each; correct the header");
     }
 
@@ -223,22 +224,22 @@ private:
         const NumberType offset_type = read_type("type of OFFSETS");
         begin_rows();
         reader_.checked_count(static_cast<std::int64_t>(offsets), binary_ ? offset_type.size : 2, "count");
-        offsets_.clear();
+        cells_.offset.clear();
         for (std::size_t i = 0; i < offsets; ++i) {
             reader_.set_row("offset", i + 1, offsets);
             const std::int64_t offset = read_integer(offset_type, "offset");
-            const std::int64_t least = offsets_.empty() ? 0 : static_cast<std::int64_t>(offsets_.back());
-            if (offset < least || offset > static_cast<std::int64_t>(size) || (offsets_.empty() && offset != 0))
+            const std::int64_t least = cells_.offset.empty() ? 0 : static_cast<std::int64_t>(cells_.offset.back());
+            if (offset < least || offset > static_cast<std::int64_t>(size) || (cells_.offset.empty() && offset != 0))
                 reader_.complain("offset", std::to_string(offset),
-                                 offsets_.empty() ? "0"
-                                                  : std::to_string(least) + " to " + std::to_string(size) +
-                                                        ", because offsets ascend to the size of CONNECTIVITY");
-            offsets_.push_back(static_cast<std::size_t>(offset));
+                                 cells_.offset.empty() ? "0"
+                                                       : std::to_string(least) + " to " + std::to_string(size) +
+                                                             ", because offsets ascend to the size of CONNECTIVITY");
+            cells_.offset.push_back(static_cast<std::size_t>(offset));
         }
-        if (offsets_.empty()) offsets_.push_back(0);
+        if (cells_.offset.empty()) cells_.offset.push_back(0);
         reader_.set_section("CONNECTIVITY");
-        if (offsets_.back() != size)
-            reader_.complain("last offset", std::to_string(offsets_.back()),
+        if (cells_.offset.back() != size)
+            reader_.complain("last offset", std::to_string(cells_.offset.back()),
                              std::to_string(size) + ", the size of CONNECTIVITY");
         if (const std::string_view key = reader_.word("CONNECTIVITY"); key != "CONNECTIVITY")
             reader_.complain({}, in_quotes(key), "CONNECTIVITY");
@@ -246,7 +247,7 @@ private:
         begin_rows();
         for (std::size_t i = 0; i < size; ++i) {
             reader_.set_row("entry", i + 1, size);
-            cell_nodes_.push_back(read_node(node_type));
+            cells_.node.push_back(read_node(node_type));
         }
     }
 
@@ -255,76 +256,40 @@ private:
         if (std::exchange(has_types_, true))
             reader_.complain({}, "a second section CELL_TYPES", "only one section CELL_TYPES");
         const std::size_t count = read_count("count", binary_ ? 4 : 2);
-        if (count + 1 != offsets_.size())
+        if (count + 1 != cells_.offset.size())
             reader_.complain("count", std::to_string(count),
-                             std::to_string(offsets_.size() - 1) + ", the number of cells");
+                             std::to_string(cells_.offset.size() - 1) + ", the number of cells");
         begin_rows();
         for (std::size_t i = 0; i < count; ++i) {
             reader_.set_row("cell", i + 1, count);
-            types_.push_back(read_integer({Kind::int32, 4}, "type"));
+            cells_.type.push_back(read_integer({Kind::int32, 4}, "type"));
         }
     }
 
     void read_polygons() {
         read_cells(has_cells_);
-        for (std::size_t c = 0; c + 1 < offsets_.size(); ++c) {
-            reader_.set_row("polygon", c + 1, offsets_.size() - 1);
-            take_polygon(offsets_[c], offsets_[c + 1]);
+        for (std::size_t c = 0; c + 1 < cells_.offset.size(); ++c) {
+            reader_.set_row("polygon", c + 1, cells_.offset.size() - 1);
+            take_vtk_polygon(std::span(cells_.node).subspan(cells_.offset[c], cells_.offset[c + 1] - cells_.offset[c]),
+                             reader_, mesh_);
         }
-        cell_nodes_.clear();
-        offsets_.assign(1, 0);
+        cells_.node.clear();
+        cells_.offset.assign(1, 0);
     }
 
-    void skip_polydata() {
+    void skip_polydata(const char* kind) {
         bool ignored = false;
         read_cells(ignored);
-        mesh_.others += offsets_.size() - 1;
-        cell_nodes_.clear();
-        offsets_.assign(1, 0);
-    }
-
-    /// Divides a polygon into triangles that share the polygon's first corner.
-    void take_polygon(std::size_t begin, std::size_t end) {
-        if (end - begin < 3)
-            reader_.complain("node count", std::to_string(end - begin), "at least 3 nodes per polygon");
-        for (std::size_t a = begin + 1; a + 1 < end; ++a) {
-            const std::array<Index, 3> nodes{cell_nodes_[begin], cell_nodes_[a], cell_nodes_[a + 1]};
-            require_different(nodes, reader_);
-            mesh_.triangles.push_back(nodes);
-        }
-    }
-
-    void take_cells() {
-        reader_.set_section("CELLS");
-        for (std::size_t c = 0; c < types_.size(); ++c) {
-            reader_.set_row("cell", c + 1, types_.size());
-            const std::size_t begin = offsets_[c], nodes = offsets_[c + 1] - begin;
-            const std::int64_t type = types_[c];
-            if (type == 24 || type == 71 || type == 78)
-                reader_.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
-                                 "type 10, a linear tetrahedron", "export the mesh with linear elements");
-            if (type == 10) {
-                if (nodes != 4) reader_.complain("node count", std::to_string(nodes), "4 for a tetrahedron");
-                const std::array<Index, 4> t{cell_nodes_[begin], cell_nodes_[begin + 1], cell_nodes_[begin + 2],
-                                             cell_nodes_[begin + 3]};
-                require_different(t, reader_);
-                mesh_.tetrahedra.push_back(t);
-                if (!cell_label_.empty()) mesh_.label.push_back(cell_label_[c]);
-            } else if (type == 5) {
-                if (nodes != 3) reader_.complain("node count", std::to_string(nodes), "3 for a triangle");
-                take_polygon(begin, begin + 3);
-            } else {
-                mesh_.curved_triangles += type == 22 || type == 34 || type == 69 || type == 76;
-                mesh_.others += 1;
-            }
-        }
+        mesh_.others[kind] += cells_.offset.size() - 1;
+        cells_.node.clear();
+        cells_.offset.assign(1, 0);
     }
 
     /// Reads the data arrays of points or cells, and stores only labels. Returns false at the end of the file and at
     /// unknown content; the rest of the file is not needed for a mesh.
     bool read_data(bool of_cells) {
         if (dataset_ == "POLYDATA") return false;
-        const std::size_t rows = of_cells ? types_.size() : mesh_.nodes.size();
+        const std::size_t rows = of_cells ? cells_.type.size() : mesh_.nodes.size();
         if (const std::int64_t count = reader_.parse_integer(reader_.word("count"), "count");
             count != static_cast<std::int64_t>(rows))
             reader_.complain("count", std::to_string(count),
@@ -402,9 +367,7 @@ private:
     /// Stores the array if it is the first array with labels; otherwise skips it.
     bool read_array(const std::string& name, std::size_t rows, std::size_t components, bool of_cells,
                     const NumberType& type) {
-        constexpr std::array<std::string_view, 4> known{"region", "gmsh:physical", "medit:ref", "CellEntityIds"};
-        const bool wanted = of_cells && components == 1 && cell_label_.empty() &&
-                            std::find(known.begin(), known.end(), name) != known.end();
+        const bool wanted = of_cells && components == 1 && cells_.label.empty() && is_vtk_label(name);
         if (!wanted) return skip_rows(rows, components, type);
         std::vector<int> labels;
         bool whole = true;
@@ -414,7 +377,7 @@ private:
             whole = whole && label;
             labels.push_back(label.value_or(0));
         }
-        if (whole) cell_label_ = std::move(labels);
+        if (whole) cells_.label = std::move(labels);
         return true;
     }
 
@@ -449,10 +412,7 @@ private:
     FileReader& reader_;
     std::string dataset_;
     bool binary_ = false, has_points_ = false, has_cells_ = false, has_types_ = false;
-    std::vector<std::size_t> offsets_{0};
-    std::vector<Index> cell_nodes_;
-    std::vector<std::int64_t> types_;
-    std::vector<int> cell_label_;  // label of each cell; empty: no labels
+    VtkCells cells_;
     RawMesh mesh_;
 };
 

@@ -57,7 +57,9 @@ void VtkFile::check_size([[maybe_unused]] std::size_t expected) const {
 void VtkFile::write(const std::filesystem::path& file) {
     close(kind_);
     tags_ += "<AppendedData encoding=\"raw\">_";
-    write_file(file, [&](std::ostream& out) { out << tags_ << data_ << "</AppendedData>\n</VTKFile>\n"; });
+    write_file(file, [&](std::ostream& out) {
+        out << tags_ << data_ << "\n</AppendedData>\n</VTKFile>\n";
+    });  // meshio expects this line end
 }
 
 }  // namespace skerry

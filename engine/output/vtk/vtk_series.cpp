@@ -241,7 +241,7 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
         };
     };
 
-    VtkFile file("UnstructuredGrid", frame.time, {{"body_names", body_names_}, {"material_names", material_names_}});
+    VtkFile file("UnstructuredGrid", frame.time);  // without texts, which meshio does not read
     file.open("Piece", count_attribute("Points", points) + count_attribute("Cells", cells));
     // Positions are doubles, because users compute small differences of them (gaps, travel, strain), for which floats
     // have too few digits. All other real numbers are floats, whose rounding errors are below the errors of the
@@ -300,7 +300,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
 
 void VtkSeries::write_contacts(const Frame& frame, const std::string& name) const {
     const std::span<const Contact> rows = frame.contacts;
-    VtkFile file("PolyData", frame.time, {{"body_names", body_names_}, {"collider_names", collider_names_}});
+    VtkFile file(
+        "PolyData", frame.time,
+        {{"body_names", body_names_}, {"material_names", material_names_}, {"collider_names", collider_names_}});
     file.open("Piece", count_attribute("Points", rows.size()) + count_attribute("Verts", rows.size()) +
                            count_attribute("Polys", 0));
     file.open("Points");

@@ -37,6 +37,10 @@ constexpr std::size_t largest_cluster = 1024;
 /// Factor by which the elements of clusters are assumed to be stiffer than at rest when cluster matrices are computed.
 /// Steps then stay stable while strain stiffens these elements.
 constexpr Real headroom = 4;
+/// In a body with more nodes than this, clusters that fill more than most_volume_of_large of the volume are taken to be
+/// connected, and so to be larger than largest_cluster. The search for implicit elements is then left out.
+constexpr Index nodes_of_large = 8 * static_cast<Index>(largest_cluster);
+constexpr Real most_volume_of_large = 0.25;
 // largest ratio of the stable step with clusters to the stable step without clusters
 constexpr Real most_lengthening = 32;
 /// Least ratio of the stable step with clusters to the stable step without clusters. With a smaller ratio the cost
@@ -134,7 +138,7 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// Finds the implicit elements of a body for a step length [s]. Writes the element columns of the body even if
+    /// Finds the implicit elements of a body for a step length [s]. May write the element columns of the body even if
     /// `possible` of the result is false.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
@@ -150,6 +154,9 @@ public:
             twins.searched = b;
             twins.most_moment = most_moment_of(model_, b);
         }
+        if (model_.bodies.nodes[b].size() > nodes_of_large &&
+            twins.search->estimate_volume(step / gain_of_forms) > most_volume_of_large)
+            return {};
         const Kept kept(model_, twins.searched);
         const ImplicitShare share = twins.search->find({step, step / gain_of_forms, headroom, twins.most_moment});
         const Found found = judged(model_, twins.searched, share, twins.most_moment);

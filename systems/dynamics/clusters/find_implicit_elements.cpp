@@ -209,6 +209,35 @@ ImplicitShare ImplicitSearch::added(const ImplicitGoal& goal) const {
     return {.moment = added > 0 ? added / least_moment_ : 0, .too_many = given_up > most_volume * volume};
 }
 
+Real ImplicitSearch::estimate_volume(Real stable) const {
+    struct Demand {
+        Real mass, volume;  // mass that an element needs [kg], and its volume [m^3]
+    };
+    std::vector<Demand> demands;
+    Demand sum{0, 0};
+    for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
+        const BlockNodes nodes = elements_.nodes_of(b);
+        Real mass = 0;
+        for (Index k = 0; k < nodes.count; ++k) {
+            const Index node = nodes.node[k][l];
+            if (k == 0 || node != nodes.node[0][l]) mass += mass_[static_cast<std::size_t>(node)];  // no padding
+        }
+        demands.push_back({need(b, l, stable) * mass, elements_.volume[b][l]});
+        sum.mass += demands.back().mass;
+        sum.volume += demands.back().volume;
+    });
+    Real excess = sum.mass, implicit = 0;  // kg; m^3
+    for (const Index n : nodes_) excess -= mass_[static_cast<std::size_t>(n)];
+    if (!(excess > 0)) return 0;
+    // The elements that need the most mass for their volume become implicit first.
+    std::ranges::sort(demands, [](const Demand& a, const Demand& b) { return a.mass * b.volume > b.mass * a.volume; });
+    for (std::size_t i = 0; i < demands.size() && excess > 0; ++i) {
+        excess -= demands[i].mass;
+        implicit += demands[i].volume;
+    }
+    return implicit / sum.volume;
+}
+
 ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     // Every fourth round also makes elements implicit, after mass shares have adapted.
     constexpr int rounds_of_sharing = 4;

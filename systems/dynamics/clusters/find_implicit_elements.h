@@ -51,6 +51,10 @@ public:
     /// inertia. The outputs are then invalid.
     ImplicitShare find(const ImplicitGoal& goal);
 
+    /// Estimate of the fraction of the volume that must be implicit, so that the masses of the nodes suffice for all
+    /// other elements at a stable step of `stable` [s]. It takes a small fraction of the time of find().
+    Real estimate_volume(Real stable) const;
+
 private:
     /// Pair of an element and one of its nodes. Pairs are listed by block, node of the block and lane, so that sums
     /// have a fixed order.

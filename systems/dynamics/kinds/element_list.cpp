@@ -54,6 +54,8 @@ ElementList elements_of(const RestMesh& mesh, ElementKind kind, Index material) 
 }
 
 ElementList elements_of(const RestMesh& mesh, std::span<const MaterialZone> zones) {
+    if (zones.size() == 1 && zones.front().tetrahedra.size() == mesh.tetrahedra.size())
+        return elements_of(mesh, zones.front().kind, zones.front().material);
     ElementList list;
     std::vector<std::array<Index, 4>> tetrahedra;
     for (const MaterialZone& zone : zones) {

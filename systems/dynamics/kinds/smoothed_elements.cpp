@@ -2,15 +2,37 @@
 // element. The element then has the volume W = sum_e w V_e, and its node k has the gradient g_k = sum_e (w V_e / W)
 // g_ek, with the gradient g_ek of tetrahedron e at node k (docs/methods/elasticity.md 7).
 #include <algorithm>
-#include <unordered_map>
+#include <array>
 
+#include "components/counting_sort.h"
+#include "components/ragged.h"
 #include "systems/dynamics/kinds/element_list.h"
 
 namespace skerry {
 
 namespace {
 
-using Group = std::vector<Index>;  // tetrahedra that one element covers
+/// Collects the groups of tetrahedra that the elements cover. `first_alike`: for each item, the first item of the
+/// same group, where item i belongs to tetrahedron i / items_of_tetrahedron. Groups are ordered by their first items,
+/// so that neighbouring elements stay close in memory. The tetrahedra of a group ascend.
+Ragged<Index> groups_of(std::span<const Index> first_alike, Index items_of_tetrahedron) {
+    std::vector<Index> group(first_alike.size());
+    Ragged<Index> groups;
+    groups.offset.push_back(0);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        const auto first = static_cast<std::size_t>(first_alike[i]);
+        group[i] = first == i ? static_cast<Index>(groups.size()) : group[first];
+        if (first == i) groups.offset.push_back(0);
+        ++groups.offset[static_cast<std::size_t>(group[i]) + 1];
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) groups.offset[g + 1] += groups.offset[g];
+    groups.item.resize(group.size());
+    std::vector<Index> next(groups.offset.begin(), groups.offset.end());
+    for (std::size_t i = 0; i < group.size(); ++i)
+        groups.item[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] =
+            static_cast<Index>(i) / items_of_tetrahedron;
+    return groups;
+}
 
 /// Nodes and gradients of an element under construction.
 struct Gradients {
@@ -45,12 +67,18 @@ struct Gradients {
     }
 };
 
-void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share, ElementPart part, ElementList& list) {
+void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, ElementPart part, ElementList& list) {
     std::vector<TetrahedronGradients> rest;
     rest.reserve(mesh.tetrahedra.size());
     for (const auto& tetrahedron : mesh.tetrahedra) rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position));
+    list.first_node.reserve(list.first_node.size() + groups.size());
+    list.first_tetrahedron.reserve(list.first_tetrahedron.size() + groups.size());
+    list.volume.reserve(list.volume.size() + groups.size());
+    list.part.reserve(list.part.size() + groups.size());
+    list.tetrahedron.reserve(list.tetrahedron.size() + groups.item.size());
     Gradients element;
-    for (const Group& group : groups) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const std::span<const Index> group = groups[g];
         Real volume = 0;
         for (const Index t : group) volume += share * rest[static_cast<std::size_t>(t)].volume;
         element.node.clear();
@@ -78,37 +106,39 @@ void add_groups(const RestMesh& mesh, std::span<const Group> groups, Real share,
 }  // namespace
 
 void add_edge_elements(const RestMesh& mesh, ElementPart part, ElementList& list) {
-    // Edges are ordered by their first tetrahedra, so that neighbouring edges stay close in memory.
-    std::vector<Group> groups;
-    std::unordered_map<std::uint64_t, std::size_t> group_of;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const auto& node = mesh.tetrahedra[t];
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t b = a + 1; b < 4; ++b) {
-                const auto [low, high] = std::minmax(node[a], node[b]);
-                const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 |
-                                          static_cast<std::uint64_t>(static_cast<std::uint32_t>(high));
-                const auto [known, fresh] = group_of.try_emplace(key, groups.size());
-                if (fresh) groups.emplace_back();
-                groups[known->second].push_back(static_cast<Index>(t));
-            }
+    constexpr std::array<std::array<std::size_t, 2>, 6> corners{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+    struct Side {
+        Index low, high, item;
+    };
+    std::vector<Side> sides, spare;
+    sides.reserve(corners.size() * mesh.tetrahedra.size());
+    for (const std::array<Index, 4>& node : mesh.tetrahedra)
+        for (const auto& [a, b] : corners)
+            sides.push_back({std::min(node[a], node[b]), std::max(node[a], node[b]), static_cast<Index>(sides.size())});
+    const auto node_count = static_cast<Index>(mesh.position.size());
+    counting_sort(sides, spare, node_count, [](const Side& side) { return side.low; });
+    // Edges with the same lower node follow each other. Among them, `seen` finds the first one with the same upper
+    // node.
+    std::vector<Index> first_alike(sides.size());
+    std::vector<Side> seen(mesh.position.size(), {no_index, no_index, no_index});
+    for (const Side& side : sides) {
+        Side& first = seen[static_cast<std::size_t>(side.high)];
+        if (first.low != side.low) first = side;
+        first_alike[static_cast<std::size_t>(side.item)] = first.item;
     }
-    add_groups(mesh, groups, Real{1} / 6, part, list);
+    add_groups(mesh, groups_of(first_alike, corners.size()), Real{1} / 6, part, list);
 }
 
 void add_node_elements(const RestMesh& mesh, ElementPart part, ElementList& list) {
-    std::vector<Group> groups;
-    std::vector<std::size_t> group_of(mesh.position.size(), static_cast<std::size_t>(-1));
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (const Index node : mesh.tetrahedra[t]) {
-            std::size_t& group = group_of[static_cast<std::size_t>(node)];
-            if (group == static_cast<std::size_t>(-1)) {
-                group = groups.size();
-                groups.emplace_back();
-            }
-            groups[group].push_back(static_cast<Index>(t));
+    std::vector<Index> first_alike, first_at(mesh.position.size(), no_index);
+    first_alike.reserve(4 * mesh.tetrahedra.size());
+    for (const std::array<Index, 4>& tetrahedron : mesh.tetrahedra)
+        for (const Index node : tetrahedron) {
+            Index& first = first_at[static_cast<std::size_t>(node)];
+            if (first == no_index) first = static_cast<Index>(first_alike.size());
+            first_alike.push_back(first);
         }
-    add_groups(mesh, groups, Real{1} / 4, part, list);
+    add_groups(mesh, groups_of(first_alike, 4), Real{1} / 4, part, list);
 }
 
 }  // namespace skerry

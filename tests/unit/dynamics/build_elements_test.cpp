@@ -1,7 +1,9 @@
 #include "systems/dynamics/elements/build_elements.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "components/check.h"
@@ -26,6 +28,38 @@ TEST_CASE("a body's elements are undeformed where it is put, turned or not", "[u
     const Mat3 turn = Eigen::AngleAxis<Real>(2.0, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     const ElasticBody body(jittered_box({2, 3, 2}, 0.1, 0.2, 1), rubber(), turn);
     for (std::size_t e = 0; e < 72; ++e) CHECK((body.deformation(e) - Mat3::Identity()).norm() <= 1e-13);
+}
+
+TEST_CASE("smoothed elements come in the order of their first tetrahedra, and cover all around", "[unit]") {
+    const test::TetMesh mesh = jittered_box({2, 3, 2}, 0.1, 0.2, 1);
+    std::vector<std::pair<std::array<Index, 2>, std::vector<Index>>> edges;
+    std::vector<std::pair<Index, std::vector<Index>>> nodes;
+    const auto note = [](auto& groups, const auto& key, Index tetrahedron) {
+        auto found = std::ranges::find_if(groups, [&](const auto& group) { return group.first == key; });
+        if (found == groups.end()) found = groups.insert(groups.end(), {key, {}});
+        found->second.push_back(tetrahedron);
+    };
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        for (std::size_t a = 0; a < 4; ++a) {
+            const std::array<Index, 4>& node = mesh.tetrahedra[t];
+            note(nodes, node[a], static_cast<Index>(t));
+            for (std::size_t b = a + 1; b < 4; ++b)
+                note(edges, std::array{std::min(node[a], node[b]), std::max(node[a], node[b])}, static_cast<Index>(t));
+        }
+    const auto expect = [](const ElementList& list, const auto& groups) {
+        REQUIRE(list.size() == groups.size());
+        for (std::size_t e = 0; e < list.size(); ++e) {
+            const std::vector<Index> covered(
+                list.tetrahedron.begin() + static_cast<std::ptrdiff_t>(list.first_tetrahedron[e]),
+                list.tetrahedron.begin() + static_cast<std::ptrdiff_t>(list.first_tetrahedron[e + 1]));
+            CHECK(covered == groups[e].second);
+        }
+    };
+    ElementList of_edges, of_nodes;
+    add_edge_elements({mesh.tetrahedra, mesh.nodes}, ElementPart::whole, of_edges);
+    add_node_elements({mesh.tetrahedra, mesh.nodes}, ElementPart::volume, of_nodes);
+    expect(of_edges, edges);
+    expect(of_nodes, nodes);
 }
 
 TEST_CASE("volumes and masses add up to those of the box", "[unit]") {

@@ -378,6 +378,14 @@ TEST_CASE("the search gives up the same elements as a simple one, however many s
     }
 }
 
+TEST_CASE("the volume that must be implicit is small for slivers, and large in an even mesh", "[unit][clusters]") {
+    SliverBox even(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 2, test::mirrored_box(0.2, 6));
+    CHECK(even.search().estimate_volume(even.plain_step / 4) == 0);
+    CHECK(even.search().estimate_volume(2 * even.plain_step) > 0.25);
+    SliverBox slivers(MaterialModel::stable_neo_hookean, ElementKind::edge_node_smoothed, 2);
+    CHECK(slivers.search().estimate_volume(2 * slivers.plain_step) < 0.05);
+}
+
 TEST_CASE("masses at the nodes add to a moment of inertia as the square of an edge", "[unit][clusters]") {
     const auto of = [](const test::TetMesh& mesh) {
         const test::ElasticBody body(mesh, material_constants(MaterialModel::linear, 1e5, 0.4, 1000));

@@ -24,8 +24,8 @@ class CheckpointTest(ProgramCase):
 
     def same_run(self, found, expected):
         """All that does not tell of clocks, of threads, or of how the run was cut into parts."""
-        own = {"seconds_wall", "seconds_load", "seconds_output", "real_time_factor", "stages", "restarted_at",
-               "threads", "backend", "checkpoints"}
+        own = {"seconds_wall", "seconds_load", "seconds_setup", "seconds_output", "real_time_factor", "stages",
+               "restarted_at", "threads", "backend", "checkpoints"}
         for key in expected.keys() - own:
             self.assertEqual(found[key], expected[key], key)
 

@@ -219,6 +219,133 @@ std::string vtk_file(const Mesh& mesh, bool offsets, bool binary) {
     return file + "\n";
 }
 
+namespace {
+
+/// A zlib stream (RFC 1950) with one stored block.
+std::string stored(const std::string& bytes) {
+    std::string stream = "\x78\x01\x01";
+    const auto size = static_cast<std::uint16_t>(bytes.size());
+    const bool swap = std::endian::native == std::endian::big;
+    put<std::uint16_t>(stream, size, swap);
+    put<std::uint16_t>(stream, static_cast<std::uint16_t>(~size), swap);
+    stream += bytes;
+    std::uint32_t a = 1, b = 0;  // checksum Adler-32
+    for (const char c : bytes) {
+        a = (a + static_cast<unsigned char>(c)) % 65521;
+        b = (b + a) % 65521;
+    }
+    put<std::uint32_t>(stream, b << 16 | a, !swap);
+    return stream;
+}
+
+std::string in_base64(const std::string& bytes) {
+    static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+    }
+    return text;
+}
+
+/// Writes the arrays of a VTK XML file.
+class VtuArrays {
+public:
+    explicit VtuArrays(const VtuForm& form) : form_(form) {}
+
+    /// Returns the tag of an array with its numbers, or adds the numbers to the appended data. An array of real numbers
+    /// is of a floating-point type, any other of an integer type.
+    std::string array(const std::string& name, const std::vector<double>& numbers, bool real, const char* more = "") {
+        const std::string type = std::string(real ? "Float" : "Int") + (form_.wide_numbers ? "64" : "32");
+        std::string tag = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" " + more + "format=\"";
+        if (form_.place == VtuForm::Place::ascii) {
+            std::ostringstream text;
+            text.precision(17);
+            for (const double number : numbers) text << number << ' ';
+            return tag + "ascii\">\n" + text.str() + "\n</DataArray>\n";
+        }
+        std::string bytes;
+        for (const double number : numbers) {
+            if (form_.wide_numbers)
+                real ? put<double>(bytes, number, swap()) : put(bytes, static_cast<std::int64_t>(number), swap());
+            else
+                real ? put(bytes, static_cast<float>(number), swap())
+                     : put(bytes, static_cast<std::int32_t>(number), swap());
+        }
+        const std::string data = encoded(bytes);
+        if (form_.place == VtuForm::Place::base64) return tag + "binary\">\n  " + data + "\n</DataArray>\n";
+        tag += "appended\" offset=\"" + std::to_string(appended_.size()) + "\"/>\n";
+        appended_ += data;
+        return tag;
+    }
+    std::string appended() const {
+        if (form_.place == VtuForm::Place::ascii || form_.place == VtuForm::Place::base64) return {};
+        const bool raw = form_.place == VtuForm::Place::appended_raw;
+        return std::string("<AppendedData encoding=\"") + (raw ? "raw" : "base64") + "\">\n _" + appended_ +
+               "\n</AppendedData>\n";
+    }
+
+private:
+    bool swap() const { return form_.foreign_bytes; }
+    std::string header(const std::vector<std::size_t>& numbers) const {
+        std::string bytes;
+        for (const std::size_t number : numbers)
+            form_.wide_header ? put<std::uint64_t>(bytes, number, swap())
+                              : put(bytes, static_cast<std::uint32_t>(number), swap());
+        return bytes;
+    }
+    std::string encoded(const std::string& bytes) const {
+        const bool raw = form_.place == VtuForm::Place::appended_raw;
+        if (!form_.compressed) return raw ? header({bytes.size()}) + bytes : in_base64(header({bytes.size()}) + bytes);
+        constexpr std::size_t block = 64;  // size of a block, small enough for several per array [bytes]
+        std::vector<std::size_t> sizes{(bytes.size() + block - 1) / block, block, bytes.size() % block};
+        std::string packed;
+        for (std::size_t first = 0; first < bytes.size(); first += block) {
+            const std::string part = bytes.substr(first, block);
+            const std::string own = form_.pack == nullptr ? stored(part) : form_.pack(part);
+            sizes.push_back(own.size());
+            packed += own;
+        }
+        return raw ? header(sizes) + packed : in_base64(header(sizes)) + in_base64(packed);
+    }
+
+    const VtuForm& form_;
+    std::string appended_;
+};
+
+}  // namespace
+
+std::string vtu_file(const Mesh& mesh, const VtuForm& form) {
+    const bool little = (std::endian::native == std::endian::little) != form.foreign_bytes;
+    VtuArrays arrays(form);
+    std::vector<double> points, nodes{0, 1, 2}, offsets{3}, types{5}, labels{78};
+    for (const Vec3& x : mesh.nodes) points.insert(points.end(), x.begin(), x.end());
+    points.insert(points.end(), {9, 9, 9});
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+        nodes.insert(nodes.end(), mesh.tetrahedra[e].begin(), mesh.tetrahedra[e].end());
+        offsets.push_back(static_cast<double>(nodes.size()));
+        types.push_back(10);
+        labels.push_back(label_of(mesh, e));
+    }
+    std::string file = std::string("<?xml version=\"1.0\"?>\n<!-- a mesh > -->\n<VTKFile type=\"UnstructuredGrid\" ") +
+                       "version=\"1.0\" byte_order=\"" + (little ? "LittleEndian" : "BigEndian") + "\"" +
+                       (form.wide_header ? " header_type=\"UInt64\"" : "") +
+                       (form.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+                       ">\n<UnstructuredGrid>\n<FieldData>\n" +
+                       "<Array type=\"String\" Name=\"names\" NumberOfTuples=\"1\" format=\"ascii\">98 0</Array>\n" +
+                       "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(mesh.nodes.size() + 1) +
+                       "\" NumberOfCells=\"" + std::to_string(types.size()) + "\">\n";
+    file += "<PointData>\n" + arrays.array("region", std::vector<double>(mesh.nodes.size() + 1, 7), false) +
+            "</PointData>\n";
+    if (!mesh.label.empty()) file += "<CellData>\n" + arrays.array("region", labels, false) + "</CellData>\n";
+    file += "<Points>\n" + arrays.array("Points", points, true, "NumberOfComponents=\"3\" ") + "</Points>\n<Cells>\n" +
+            arrays.array("connectivity", nodes, false) + arrays.array("offsets", offsets, false) +
+            arrays.array("types", types, false) + "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+    return file + arrays.appended() + "</VTKFile>\n";
+}
+
 std::string node_file(const Mesh& mesh, int first_number) {
     std::string file = "# nodes\n" + std::to_string(mesh.nodes.size() + 1) + " 3 1 1\n";
     for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
@@ -269,6 +396,7 @@ std::string stl_file(const SurfaceMesh& surface, bool binary) {
 }
 
 std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
+    using Place = VtuForm::Place;
     const SurfaceMesh surface = mesh::boundary(mesh);
     return {{"1.msh", gmsh1_file(mesh)},
             {"22.msh", gmsh2_file(mesh, Bytes::text)},
@@ -281,6 +409,11 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"oldb.vtk", vtk_file(mesh, false, true)},
             {"new.vtk", vtk_file(mesh, true, false)},
             {"newb.vtk", vtk_file(mesh, true, true)},
+            {"text.vtu", vtu_file(mesh, {})},
+            {"base64.vtu", vtu_file(mesh, {.place = Place::base64})},
+            {"raw.vtu", vtu_file(mesh, {.place = Place::appended_raw, .wide_header = true})},
+            {"zip.vtu", vtu_file(mesh, {.place = Place::appended_raw, .compressed = true})},
+            {"zip64.vtu", vtu_file(mesh, {.place = Place::base64, .compressed = true})},
             {"zero.node", node_file(mesh, 0)},
             {"zero.ele", ele_file(mesh, 0)},
             {"one.node", node_file(mesh, 1)},

@@ -20,6 +20,20 @@ std::string gmsh41_file(const Mesh& mesh, Bytes bytes);
 /// VTK file with cells as counts and nodes (before version 5), or as offsets and connectivity. Binary is big-endian.
 std::string vtk_file(const Mesh& mesh, bool offsets, bool binary);
 
+/// Form of a VTK XML file.
+struct VtuForm {
+    enum class Place { ascii, base64, appended_raw, appended_base64 };
+    Place place = Place::ascii;
+    bool compressed = false;   // in blocks of zlib, several per array
+    bool wide_header = false;  // UInt64 instead of UInt32
+    bool wide_numbers = true;  // Float64 and Int64 instead of Float32 and Int32
+    bool foreign_bytes = false;
+    // compresses a block; empty: a zlib stream that stores the bytes as they are
+    std::string (*pack)(const std::string&) = nullptr;
+};
+/// VTK XML file with an unused node and a triangle.
+std::string vtu_file(const Mesh& mesh, const VtuForm& form);
+
 std::string node_file(const Mesh& mesh, int first_number);
 std::string ele_file(const Mesh& mesh, int first_number);
 

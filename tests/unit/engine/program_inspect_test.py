@@ -73,6 +73,51 @@ class ProgramInspectTest(ProgramCase):
         mesh = ROOT / "scenes/meshes/torus.msh"
         self.assert_refused("inspect", mesh, "--set", f"{place}=1e9", said=["torus.msh", "--set", "a mesh", "a scene"])
 
+    def test_inspect_reads_the_surfaces_of_colliders(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+        solid = self.folder / "solid.obj"
+        solid.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        found = json.loads(self.skerry("inspect", solid, "--json").stdout)
+        self.assertEqual((found["triangles"], found["nodes"], found["closed_manifold"]), (4, 4, True))
+        self.assertAlmostEqual(found["volume"], 1 / 6)
+        self.assertAlmostEqual(found["area"], 1.5 + 3 ** 0.5 / 2)
+        self.assertEqual(found["problems"], [])
+        self.assertIn("a surface of 4 triangles", self.skerry("inspect", solid).stdout)
+        room = self.folder / "room.obj"
+        room.write_text(corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
+        self.assertIn("clockwise as seen from outside", self.skerry("inspect", room).stdout)
+        sheet = self.folder / "sheet.stl"
+        sheet.write_text("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                         "endloop\nendfacet\nendsolid s\n")
+        self.assertIn("not a closed manifold: an edge between nodes", self.skerry("inspect", sheet).stdout)
+        in_gmsh = self.folder / "surface.msh"
+        in_gmsh.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+                           "$Elements\n1\n1 2 0 1 2 3\n$EndElements\n")
+        self.assertEqual(json.loads(self.skerry("inspect", in_gmsh, "--json").stdout)["triangles"], 1)
+        (self.folder / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
+        self.assert_refused("inspect", self.folder / "bad.obj", said=["bad.obj", "face", "line 2"])
+        self.assert_refused("inspect", solid, "--repair", self.folder / "new.msh", said=["solid.obj", ".obj", ".vtu"])
+
+    def test_a_large_scene_reports_its_set_up(self):
+        block = dict(SCENE["bodies"][0], name="block", position=[0, 0, 1],
+                     mesh={"box": {"size": [0.5, 0.5, 0.5], "cells": [26, 26, 26]}})
+        scene = self.write("large.json", {**SCENE, "probes": [], "bodies": [block]})
+        said = self.skerry("inspect", scene)
+        for line in ("skerry: set-up of 105,456 tetrahedra: adding the body", "s: measuring the meshes",
+                     "s: choosing the step length", "s: timing the first steps"):
+            self.assertIn(line, said.stderr)
+        self.assertRegex(said.stdout,
+                         "even the best of the worst 1 % of the tetrahedra allows a step only 1[.0-9]* times")
+        stats = self.folder / "stats.json"
+        said = self.skerry("run", scene, "--seconds", 1e-6, "--stats", stats)
+        self.assertIn("skerry: set-up of 105,456 tetrahedra: adding the body", said.stderr)
+        self.assertRegex(said.stdout,
+                         "(?s)simulated in .*, after .* of loading and set-up.*\\n  loading .*\\n  set-up ")
+        numbers = json.loads(stats.read_text())
+        self.assertGreater(numbers["seconds_setup"], numbers["seconds_load"])
+        self.assertGreater(numbers["seconds_setup"], numbers["seconds_wall"])
+        self.assertNotIn("set-up of", self.skerry("run", scene, "--seconds", 1e-6, "--quiet").stderr)
+
     def test_inspect_says_which_tetrahedra_bound_the_step(self):
         mesh = self.bad_box("bad.msh", cells=6)
         found = json.loads(self.skerry("inspect", mesh, "--json").stdout)["step_bound"]

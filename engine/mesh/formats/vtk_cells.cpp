@@ -1,0 +1,65 @@
+#include "engine/mesh/formats/vtk_cells.h"
+
+#include <algorithm>
+
+namespace skerry::mesh {
+
+namespace {
+
+struct CellKind {
+    std::int64_t type;
+    const char* name;
+};
+// Kinds of cells of VTK that are neither tetrahedra nor linear triangles.
+constexpr const char* curved_triangle = "triangles of second or higher order";
+constexpr CellKind other_kinds[] = {
+    {1, "points"},         {2, "points"},         {3, "lines"},          {4, "lines"},           {6, "triangle strips"},
+    {7, "polygons"},       {8, "quadrilaterals"}, {9, "quadrilaterals"}, {11, "hexahedra"},      {12, "hexahedra"},
+    {13, "prisms"},        {14, "pyramids"},      {21, "lines"},         {22, curved_triangle},  {23, "quadrilaterals"},
+    {25, "hexahedra"},     {26, "prisms"},        {27, "pyramids"},      {28, "quadrilaterals"}, {29, "hexahedra"},
+    {34, curved_triangle}, {42, "polyhedra"},     {68, "lines"},         {69, curved_triangle},  {70, "quadrilaterals"},
+    {72, "hexahedra"},     {73, "prisms"},        {74, "pyramids"},      {76, curved_triangle}};
+
+}  // namespace
+
+bool is_vtk_label(std::string_view name) {
+    return name == "region" || name == "gmsh:physical" || name == "medit:ref" || name == "CellEntityIds";
+}
+
+void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh) {
+    if (nodes.size() < 3) reader.complain("node count", std::to_string(nodes.size()), "at least 3 nodes per polygon");
+    for (std::size_t a = 1; a + 1 < nodes.size(); ++a) {
+        const std::array<Index, 3> triangle{nodes[0], nodes[a], nodes[a + 1]};
+        require_different(triangle, reader);
+        mesh.triangles.push_back(triangle);
+    }
+}
+
+void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh) {
+    for (std::size_t c = 0; c < cells.type.size(); ++c) {
+        reader.set_row("cell", c + 1, cells.type.size());
+        const std::span<const Index> nodes =
+            std::span(cells.node).subspan(cells.offset[c], cells.offset[c + 1] - cells.offset[c]);
+        const std::int64_t type = cells.type[c];
+        if (type == 24 || type == 71 || type == 78)
+            reader.complain("type", std::to_string(type) + ", a tetrahedron of second or higher order",
+                            "type 10, a linear tetrahedron", "export the mesh with linear elements");
+        if (type == 10) {
+            if (nodes.size() != 4) reader.complain("node count", std::to_string(nodes.size()), "4 for a tetrahedron");
+            const std::array<Index, 4> t{nodes[0], nodes[1], nodes[2], nodes[3]};
+            require_different(t, reader);
+            mesh.tetrahedra.push_back(t);
+            if (!cells.label.empty()) mesh.label.push_back(cells.label[c]);
+        } else if (type == 5) {
+            if (nodes.size() != 3) reader.complain("node count", std::to_string(nodes.size()), "3 for a triangle");
+            take_vtk_polygon(nodes, reader, mesh);
+        } else {
+            const auto* const kind = std::ranges::find(other_kinds, type, &CellKind::type);
+            const bool known = kind != std::end(other_kinds);
+            mesh.others[known ? kind->name : "cells of type " + std::to_string(type)] += 1;
+            mesh.curved_triangles += known && kind->name == curved_triangle;
+        }
+    }
+}
+
+}  // namespace skerry::mesh

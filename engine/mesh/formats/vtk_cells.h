@@ -1,0 +1,29 @@
+// Cells of VTK files: rules that legacy files and XML files have in common.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/mesh/formats/raw_mesh.h"
+
+namespace skerry::mesh {
+
+/// Cells of an unstructured grid as in a file. Cell c has the nodes node[offset[c]] to node[offset[c + 1] - 1].
+struct VtkCells {
+    std::vector<std::size_t> offset{0};
+    std::vector<Index> node;  // indices into RawMesh::nodes
+    std::vector<std::int64_t> type;
+    std::vector<int> label;  // label of each cell; empty: no labels
+};
+
+/// True if cell data of this name are labels.
+bool is_vtk_label(std::string_view name);
+
+/// Divides a polygon into triangles that share the polygon's first corner, and adds them to the mesh.
+void take_vtk_polygon(std::span<const Index> nodes, const FileReader& reader, RawMesh& mesh);
+
+/// Adds the tetrahedra and triangles to the mesh, and counts the cells of other kinds.
+void take_vtk_cells(const VtkCells& cells, FileReader& reader, RawMesh& mesh);
+
+}  // namespace skerry::mesh

@@ -1,0 +1,56 @@
+// VTK XML files: tags, and the arrays of numbers that they describe. Format: "VTK File Formats", XML file formats.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/mesh/formats/file_reader.h"
+
+namespace skerry::mesh {
+
+/// A tag of an XML file: <name>, </name> (closes) or <name/> (opens and closes).
+struct XmlTag {
+    std::string_view name;
+    bool opens = true, closes = false;
+    std::vector<std::pair<std::string_view, std::string_view>> attributes;
+    std::size_t place = 0;  // position of the tag in the file [bytes]
+    std::size_t end = 0;    // position after the tag [bytes]
+
+    /// Returns the value of an attribute, or `otherwise` if the tag does not have the attribute.
+    std::string_view value_of(std::string_view attribute, std::string_view otherwise = {}) const;
+};
+
+/// Returns the next tag and continues after it. Skips text, comments and processing instructions. Throws SceneError at
+/// the end of the file.
+XmlTag next_tag(FileReader& reader);
+
+/// Bytes of the whole file, independent of the position of the reader.
+std::string_view bytes_of(const FileReader& reader);
+
+/// An array of a VTK XML file.
+struct VtkXmlArray {
+    XmlTag tag;
+    std::string_view text;  // text between the tags; empty if the data are appended
+    std::string section;    // description of the array for error messages
+};
+
+/// Properties of the file that all its arrays share.
+struct VtkXmlForm {
+    bool wide_header = false;    // headers have 64 instead of 32 bits
+    bool foreign_bytes = false;  // byte order of the file differs from the order of this machine
+    bool compressed = false;
+    bool has_appended = false, appended_base64 = false;
+    std::string_view appended;  // appended data, up to the end of the file
+};
+
+/// Reads the numbers of an array. Throws SceneError unless the array has exactly `count` numbers. `field` names the
+/// numbers in error messages.
+std::vector<Real> reals_of(const VtkXmlArray& array, const VtkXmlForm& form, std::size_t count, const char* field,
+                           FileReader& reader);
+std::vector<std::int64_t> integers_of(const VtkXmlArray& array, const VtkXmlForm& form, std::size_t count,
+                                      const char* field, FileReader& reader);
+
+}  // namespace skerry::mesh

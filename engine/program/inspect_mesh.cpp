@@ -1,0 +1,291 @@
+#include "engine/program/inspect_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+#include <optional>
+
+#include "engine/mesh/manifold_fault.h"
+#include "engine/program/inspect_repair.h"
+#include "engine/program/number_text.h"
+#include "engine/program/start_text.h"
+#include "engine/program/thin_part_text.h"
+#include "skerry/error.h"
+#include "systems/collision/build_surface.h"
+
+namespace skerry {
+
+namespace {
+
+// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
+constexpr Real poor_quality = 0.1;
+constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
+
+/// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
+/// The ratio may be below 1, because removing tetrahedra reduces the mass of their nodes. This shortens the steps of
+/// the neighbouring tetrahedra.
+std::string compared(Real ratio) {
+    if (ratio < 1 / hardly_longer) return short_number(ratio) + " times as long: shorter, because neighbours lose mass";
+    if (ratio < 1) return "slightly shorter";
+    return ratio < hardly_longer ? "slightly longer" : short_number(ratio) + " times as long";
+}
+
+}  // namespace
+
+Problems problems_of(const MeshReport& r) {
+    Problems problems;
+    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
+    if (r.inverted > 0)
+        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
+    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
+    if (r.components > 1)
+        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
+    if (r.tetrahedra > 0 && r.min_quality < poor_quality)
+        problems.push_back("the worst tetrahedron is a sliver of quality " + short_number(r.min_quality) +
+                           " (1: regular tetrahedron), which shortens the stable step");
+    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
+    return problems;
+}
+
+void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
+                   Problems& problems) {
+    if (std::string text = thin_part_text(mesh, boundary, of); !text.empty()) problems.push_back(std::move(text));
+}
+
+Json mesh_json(const MeshReport& r) {
+    Json labels = Json::object();
+    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
+    return {{"nodes", r.nodes},
+            {"tetrahedra", r.tetrahedra},
+            {"boundary_triangles", r.boundary_triangles},
+            {"components", r.components},
+            {"lower", vector_json(r.lower)},
+            {"upper", vector_json(r.upper)},
+            {"volume", r.volume},
+            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
+            {"min_altitude", r.min_altitude},
+            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
+            {"inverted", r.inverted},
+            {"flat", r.flat},
+            {"closed_manifold", r.closed_manifold},
+            {"labels", labels}};
+}
+
+void print_problems(const Problems& problems) {
+    if (problems.empty()) std::cout << "  problems      none found\n";
+    for (const std::string& problem : problems) std::cout << "  problem       " << problem << "\n";
+}
+
+Json bound_json(const StepBound& bound) {
+    Json worst = Json::array(), without = Json::array();
+    for (const CostlyTetrahedron& t : bound.worst)
+        worst.push_back({{"tetrahedron", t.tetrahedron},
+                         {"place", vector_json(t.place)},
+                         {"altitude", t.altitude},
+                         {"mean_edge", t.mean_edge},
+                         {"dt", t.step}});
+    for (const StepWithout& w : bound.without)
+        without.push_back({{"share", w.share}, {"tetrahedra", w.count}, {"stable_dt", w.step}});
+    return {{"stable_dt", bound.step}, {"element", name_of(bound.element)}, {"worst", worst}, {"without", without}};
+}
+
+void print_bound(const StepBound& bound, const char* indent) {
+    for (const CostlyTetrahedron& t : bound.worst)
+        std::cout << indent << "tetrahedron " << t.tetrahedron << " at (" << short_number(t.place.x()) << ", "
+                  << short_number(t.place.y()) << ", " << short_number(t.place.z()) << ") m allows a step of "
+                  << with_unit(t.step, "s") << ": smallest altitude " << with_unit(t.altitude, "m") << ", mean edge "
+                  << with_unit(t.mean_edge, "m") << "\n";
+    for (const StepWithout& w : bound.without)
+        std::cout << indent << "without the worst " << (w.count == 1 ? "one" : grouped(w.count)) << " ("
+                  << short_number(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
+                  << ", " << compared(w.step / bound.step) << "\n";
+    if (bound.alike_share > 0)
+        std::cout << indent << "even the best of the worst " << short_number(100 * bound.alike_share)
+                  << " % of the tetrahedra allows a step only " << short_number(bound.alike_ratio)
+                  << " times as long: their removal was not tried\n";
+}
+
+namespace {
+
+/// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
+/// first 20 labels are listed.
+std::string labels_text(const MeshReport& report) {
+    constexpr std::size_t most = 20;
+    std::string text;
+    std::size_t listed = 0;
+    for (const auto& [label, tetrahedra] : report.labels) {
+        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
+        text +=
+            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
+    }
+    return text;
+}
+
+/// Reports a mesh of tetrahedra.
+int report_mesh(const InspectOptions& options, const Mesh& mesh) {
+    if (!options.repair.empty())
+        return inspect_repair({.mesh = mesh,
+                               .what = options.file.string(),
+                               .of = {},
+                               .step_of = "the default material, 1e5 Pa and 1000 kg/m^3",
+                               .scaled = false},
+                              options);
+    const MeshReport report = inspect(mesh);
+    Problems problems = problems_of(report);
+    // A mesh without tetrahedra, or with inverted or flat tetrahedra, cannot be added to a world and has no stable
+    // step.
+    const bool is_body = report.tetrahedra > 0 && report.inverted + report.flat == 0;
+    const StepBound bound = is_body ? step_bound(mesh, {}, true) : StepBound{};
+    if (is_body) {
+        std::vector<std::array<Index, 3>> boundary;
+        for (const BoundaryTriangle& triangle : boundary_triangles(mesh.tetrahedra)) boundary.push_back(triangle.node);
+        add_thin_part(mesh, boundary, {}, problems);
+    }
+    if (options.json) {
+        Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
+        json.update(mesh_json(report));
+        if (is_body) json["step_bound"] = bound_json(bound);
+        json["problems"] = problems;
+        std::cout << json.dump(1) << std::endl;
+        return exit_ok;
+    }
+    const Vec3 size = report.upper - report.lower;
+    std::cout << options.file.string() << ": " << grouped(report.tetrahedra) << " tetrahedra, " << grouped(report.nodes)
+              << " nodes, " << grouped(report.boundary_triangles) << " boundary triangles\n"
+              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
+              << short_number(size.z()) << " m, volume " << short_number(report.volume) << " m^3\n"
+              << "  edges         mean " << with_unit(report.mean_edge, "m") << ", " << with_unit(report.min_edge, "m")
+              << " to " << with_unit(report.max_edge, "m") << "; smallest altitude "
+              << with_unit(report.min_altitude, "m") << "\n"
+              << "  quality       mean " << short_number(report.mean_quality) << ", worst "
+              << short_number(report.min_quality) << " (1: regular tetrahedron)\n"
+              << "  boundary      " << (report.closed_manifold ? "a closed manifold" : "not a closed manifold") << ", "
+              << grouped(report.components) << (report.components == 1 ? " part\n" : " parts\n");
+    if (is_body) {
+        std::cout << "  step          " << with_unit(bound.step, "s")
+                  << " is stable with the default material, 1e5 Pa and 1000 kg/m^3 (elements: "
+                  << name_of(bound.element) << ")\n";
+        print_bound(bound, "                ");
+    }
+    if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
+    print_problems(problems);
+    return exit_ok;
+}
+
+/// Statistics of a triangle surface.
+struct SurfaceReport {
+    Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // bounding box [m]
+    Real area = 0;                                    // [m^2]
+    Real volume = 0;  // enclosed volume, negative if the triangles are clockwise as seen from outside [m^3]
+    Real shortest = 0, longest = 0;  // lengths of the sides of the triangles [m]
+    std::string fault;               // first violation of a closed manifold; empty if there is none
+};
+
+SurfaceReport report_of(const SurfaceMesh& surface) {
+    SurfaceReport report;
+    report.lower = report.upper = surface.nodes.front();
+    for (const Vec3& node : surface.nodes) {
+        report.lower = report.lower.cwiseMin(node);
+        report.upper = report.upper.cwiseMax(node);
+    }
+    report.shortest = infinity;
+    std::vector<BoundaryTriangle> triangles;
+    for (const std::array<Index, 3>& triangle : surface.triangles) {
+        triangles.push_back({triangle, no_index});
+        std::array<Vec3, 3> x;
+        for (std::size_t k = 0; k < 3; ++k)
+            x[k] = surface.nodes[static_cast<std::size_t>(triangle[k])] - surface.nodes.front();
+        report.area += (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+        report.volume += x[0].dot(x[1].cross(x[2])) / 6;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Real side = (x[(k + 1) % 3] - x[k]).norm();
+            report.shortest = std::min(report.shortest, side);
+            report.longest = std::max(report.longest, side);
+        }
+    }
+    report.fault = mesh::manifold_fault(triangles);
+    return report;
+}
+
+/// Reports a surface of triangles, from which a collider can be made.
+int report_surface(const InspectOptions& options, const SurfaceMesh& surface) {
+    const SurfaceReport report = report_of(surface);
+    Problems problems;
+    if (!report.fault.empty())
+        problems.push_back("the surface is not a closed manifold: " + report.fault +
+                           "; contacts may fail there, and the surface cannot be filled with tetrahedra");
+    else if (report.volume < 0)
+        problems.push_back(
+            "the triangles are clockwise as seen from outside: a collider of this surface holds bodies inside, as a "
+            "container; for a solid collider reverse the order of their nodes");
+    if (options.json) {
+        const Json json = {{"schema", "skerry.surface/1"},
+                           {"file", options.file.string()},
+                           {"nodes", surface.nodes.size()},
+                           {"triangles", surface.triangles.size()},
+                           {"lower", vector_json(report.lower)},
+                           {"upper", vector_json(report.upper)},
+                           {"area", report.area},
+                           {"volume", report.fault.empty() ? Json(report.volume) : Json()},
+                           {"edge", {{"min", report.shortest}, {"max", report.longest}}},
+                           {"closed_manifold", report.fault.empty()},
+                           {"problems", problems}};
+        std::cout << json.dump(1) << std::endl;
+        return exit_ok;
+    }
+    const Vec3 size = report.upper - report.lower;
+    std::cout << options.file.string() << ": a surface of " << grouped(surface.triangles.size()) << " triangles, "
+              << grouped(surface.nodes.size()) << " nodes (for colliders; a body needs tetrahedra)\n"
+              << "  size          " << short_number(size.x()) << " x " << short_number(size.y()) << " x "
+              << short_number(size.z()) << " m, area " << short_number(report.area) << " m^2"
+              << (report.fault.empty() ? ", volume " + short_number(report.volume) + " m^3" : "") << "\n"
+              << "  edges         " << with_unit(report.shortest, "m") << " to " << with_unit(report.longest, "m")
+              << "\n"
+              << "  boundary      " << (report.fault.empty() ? "a closed manifold" : "not a closed manifold") << "\n";
+    print_problems(problems);
+    return exit_ok;
+}
+
+/// True if the format of the file has no tetrahedra.
+bool is_surface_file(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending == ".obj" || ending == ".stl";
+}
+
+/// Reads the surface of a file whose tetrahedra cannot be read. Returns nothing if the file has no surface either.
+std::optional<SurfaceMesh> surface_instead(const InspectOptions& options) {
+    try {
+        return mesh::read_surface(options.file.string());
+    } catch (const SceneError&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+int inspect_mesh(const InspectOptions& options) {
+    if (!options.body.empty())
+        Complaint{.file = options.file.string(),
+                  .object = "--body",
+                  .field = {},
+                  .found = "a mesh file, which has no bodies or settings",
+                  .expected = "a scene file (.json)",
+                  .hint = "omit the option, or give the scene"}
+            .raise();
+    const bool repairs = !options.repair.empty();  // only a mesh of tetrahedra can be repaired
+    if (!repairs && is_surface_file(options.file))
+        return report_surface(options, mesh::read_surface(options.file.string()));
+    std::optional<Mesh> mesh;
+    try {
+        mesh = mesh::read(options.file.string());
+    } catch (const SceneError&) {
+        const std::optional<SurfaceMesh> surface = repairs ? std::nullopt : surface_instead(options);
+        if (!surface) throw;
+        return report_surface(options, *surface);
+    }
+    return report_mesh(options, *mesh);
+}
+
+}  // namespace skerry

@@ -1,0 +1,33 @@
+// Reports on mesh files, and the parts of these reports that reports on scenes contain as well.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/program/commands.h"
+#include "engine/program/step_bound.h"
+#include "engine/scene/place.h"
+#include "skerry/mesh.h"
+
+namespace skerry {
+
+using Problems = std::vector<std::string>;
+
+/// Returns the problems of a mesh, one sentence each.
+Problems problems_of(const MeshReport& report);
+/// Adds a problem if a part of the mesh is too thin to bend as its material. `boundary`: boundary triangles of the mesh.
+void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
+                   Problems& problems);
+void print_problems(const Problems& problems);
+Json mesh_json(const MeshReport& report);
+Json bound_json(const StepBound& bound);
+
+/// Prints the tetrahedra that limit the stable step, and the stable step of the mesh without its worst tetrahedra.
+void print_bound(const StepBound& bound, const char* indent);
+
+/// Reports a mesh file, or the surface of a file that has no tetrahedra. Returns the exit code of the program.
+int inspect_mesh(const InspectOptions& options);
+
+}  // namespace skerry
