@@ -7,6 +7,7 @@
 #include "engine/program/commands.h"
 #include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_repair.h"
+#include "engine/program/mesh_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
@@ -17,48 +18,14 @@ namespace skerry {
 
 namespace {
 
-using Problems = std::vector<std::string>;
-
-// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
-constexpr Real poor_quality = 0.1;
 // Ratio of the two smallest stable steps of bodies above which a problem is reported.
 constexpr Real expensive_step_ratio = 4;
 constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
 constexpr int timed_steps = 20;
 constexpr std::size_t longest_list = 300;  // maximum length of a list of names in a message [characters]
 
-Problems problems_of(const MeshReport& r) {
-    Problems problems;
-    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
-    if (r.inverted > 0)
-        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
-    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
-    if (r.components > 1)
-        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
-    if (r.tetrahedra > 0 && r.min_quality < poor_quality)
-        problems.push_back("the worst tetrahedron is a sliver of quality " + short_number(r.min_quality) +
-                           " (1: regular tetrahedron), which shortens the stable step");
-    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
-    return problems;
-}
-
-Json mesh_json(const MeshReport& r) {
-    Json labels = Json::object();
-    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
-    return {{"nodes", r.nodes},
-            {"tetrahedra", r.tetrahedra},
-            {"boundary_triangles", r.boundary_triangles},
-            {"components", r.components},
-            {"lower", vector_json(r.lower)},
-            {"upper", vector_json(r.upper)},
-            {"volume", r.volume},
-            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
-            {"min_altitude", r.min_altitude},
-            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
-            {"inverted", r.inverted},
-            {"flat", r.flat},
-            {"closed_manifold", r.closed_manifold},
-            {"labels", labels}};
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) std::cout << "  note          " << note << "\n";
 }
 
 void print_problems(const Problems& problems) {
@@ -101,20 +68,6 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << ", " << compared(w.step / bound.step) << "\n";
 }
 
-/// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
-/// first 20 labels are listed.
-std::string labels_text(const MeshReport& report) {
-    constexpr std::size_t most = 20;
-    std::string text;
-    std::size_t listed = 0;
-    for (const auto& [label, tetrahedra] : report.labels) {
-        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
-        text +=
-            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
-    }
-    return text;
-}
-
 int inspect_mesh(const InspectOptions& options) {
     if (!options.body.empty())
         Complaint{.file = options.file.string(),
@@ -124,7 +77,8 @@ int inspect_mesh(const InspectOptions& options) {
                   .expected = "a scene file (.json)",
                   .hint = "omit the option, or give the scene"}
             .raise();
-    const Mesh mesh = mesh::read(options.file.string());
+    std::vector<std::string> notes;
+    const Mesh mesh = mesh::read(options.file.string(), &notes);
     if (!options.repair.empty())
         return inspect_repair({.mesh = mesh,
                                .what = options.file.string(),
@@ -142,6 +96,7 @@ int inspect_mesh(const InspectOptions& options) {
         Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
         json.update(mesh_json(report));
         if (is_body) json["step_bound"] = bound_json(bound);
+        json["notes"] = notes;
         json["problems"] = problems;
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
@@ -165,6 +120,7 @@ int inspect_mesh(const InspectOptions& options) {
         print_bound(bound, "                ");
     }
     if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
+    print_notes(notes);
     print_problems(problems);
     return exit_ok;
 }
@@ -322,11 +278,12 @@ SceneCost try_steps(World& world, Real overlap) {
     return cost;
 }
 
-Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart& start, const SceneCost& cost) {
+Problems problems_of(const std::vector<BodyKindReport>& kinds, const ScenePlan& plan, const SceneStart& start,
+                     const SceneCost& cost) {
     Problems problems;
     for (const BodyKindReport& kind : kinds)
         for (const std::string& problem : problems_of(kind.mesh))
-            problems.push_back("body \"" + kind.first_name + "\": " + problem);
+            problems.push_back(mesh_of_body_text(plan, kind.body) + ": " + problem);
     std::vector<BodyKindReport> by_step = kinds;
     std::erase_if(by_step, [](const BodyKindReport& kind) { return !kind.sets_step(); });
     std::sort(by_step.begin(), by_step.end(), [](const auto& a, const auto& b) { return a.bound.step < b.bound.step; });
@@ -403,7 +360,7 @@ int inspect_scene(const InspectOptions& options) {
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
     const SceneCost cost = try_steps(scene.world, overlap);
-    const Problems problems = problems_of(kinds, start, cost);
+    const Problems problems = problems_of(kinds, plan, start, cost);
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds) {
@@ -449,6 +406,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"wall_seconds_per_second", cost.seconds_per_second},
                            {"wall_seconds", cost.seconds_per_second * scene.seconds},
                            {"body_kinds", bodies},
+                           {"notes", plan.notes},
                            {"problems", problems}};
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
@@ -476,6 +434,7 @@ int inspect_scene(const InspectOptions& options) {
                   << materials_text(kind) << "\n";
         if (kind.sets_step()) print_bound(kind.bound, "                ");
     }
+    print_notes(plan.notes);
     print_problems(problems);
     return exit_ok;
 }
