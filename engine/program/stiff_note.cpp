@@ -18,17 +18,17 @@ constexpr double few_steps = 1e5;
 constexpr Real much_longer = 4;
 
 /// Explicit bodies whose stable steps are close to the shortest one, and the longest step without them.
-struct StiffBodies {
+struct ShortSteps {
     std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
     std::size_t count = 0;
     Real step = infinity, others = infinity;  // [s]
 };
 
-StiffBodies stiff_bodies(const ScenePlan& plan, const World& world) {
+ShortSteps short_steps(const ScenePlan& plan, const World& world) {
     const Model& model = WorldAccess::state_of(world).model;
     const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
     std::vector<Real> step(bodies.size(), infinity);
-    StiffBodies stiff;
+    ShortSteps stiff;
     for (std::size_t b = 0; b < step.size(); ++b) {
         if (world.dynamics(bodies[b]) != BodyDynamics::explicit_elastic) continue;
         step[b] = model.bodies.stable_step[static_cast<std::size_t>(model.row(bodies[b], "stable_step"))];
@@ -59,7 +59,7 @@ std::size_t count_bad(std::vector<Real> step) {
 
 std::string stiff_note(const ScenePlan& plan, const World& world, double steps, double sample) {
     if (steps < few_steps || plan.bodies.empty()) return {};
-    const StiffBodies stiff = stiff_bodies(plan, world);
+    const ShortSteps stiff = short_steps(plan, world);
     const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(infinity)});
     if (stiff.count == 0 || !(others > much_longer * stiff.step)) return {};
     const BodyPlan& body = plan.bodies[stiff.first];

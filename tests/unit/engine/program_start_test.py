@@ -80,7 +80,7 @@ class ProgramStartTest(ProgramCase):
         self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of", said)
         self.assertRegex(said, "without a common edge in .*m.ele; contacts may fail")
         said = self.skerry("inspect", scene).stdout
-        self.assertRegex(said, 'body "pair" \\(mesh .*m.ele\\): the boundary is not a closed manifold \\(node 0, at which')
+        self.assertRegex(said, r'body "pair" \(mesh .*m.ele\): the boundary is not a closed manifold \(node 0, at')
 
     def two_tetrahedra(self, name, second, apex=-1):
         """A scene with a mesh of two tetrahedra on a shared face; `second` lists the nodes of the second one."""
@@ -105,7 +105,8 @@ class ProgramStartTest(ProgramCase):
     def test_a_mesh_with_a_node_in_a_wrong_place_is_refused_with_its_file_and_its_faults(self):
         # The apex of the second tetrahedron lies on the wrong side: turned, it would lie in the first tetrahedron.
         scene = self.two_tetrahedra("tangled", "1 3 2 5", apex=0.5)
-        self.assert_refused("run", scene, said=["tangled.json", "tangled.ele: tetrahedron 1", "inverted: 1, flat: 0 of 2"])
+        self.assert_refused("run", scene,
+                            said=["tangled.json", "tangled.ele: tetrahedron 1", "inverted: 1, flat: 0 of 2"])
         self.assertIn("1 inverted tetrahedra", self.skerry("inspect", self.folder / "tangled.ele").stdout)
 
     def test_a_stiff_explicit_body_is_named_with_its_remedy_before_a_long_run(self):
@@ -117,7 +118,8 @@ class ProgramStartTest(ProgramCase):
         scene["settings"] = {"gravity": [0, 0, 0]}  # the bodies fall asleep, and the run is short
         slow = self.skerry("run", self.write("anvil.json", scene), "--seconds", 1000)
         note = next(line for line in slow.stderr.splitlines() if "NOTE" in line)
-        for part in ('body "anvil" is explicit, of material "steel"', "steps, ", 'set "dynamics" of the body to "implicit"'):
+        for part in ('body "anvil" is explicit, of material "steel"', "steps, ",
+                     'set "dynamics" of the body to "implicit"'):
             self.assertIn(part, note)
         self.assertNotIn("NOTE", self.skerry("run", self.folder / "anvil.json", "--seconds", 0.001).stderr)
         scene["bodies"][1]["dynamics"] = "implicit"
@@ -127,8 +129,8 @@ class ProgramStartTest(ProgramCase):
         scene = {**SCENE, "settings": {"gravity": [0, 0, 0]}}
         scene["bodies"] = [{**SCENE["bodies"][0], "position": [0, 0, 0.6]}]
         said = self.skerry("run", self.write("far.json", scene)).stdout
-        self.assertIn('no contact in the whole run: the shortest distance at the end is 500 mm between body "block" and '
-                      'collider "floor"', said)
+        self.assertIn('no contact in the whole run: the shortest distance at the end is 500 mm between body "block" '
+                      'and collider "floor"', said)
         self.assertNotIn("no contact in the whole run", self.skerry("run", self.scene).stdout)
         del scene["colliders"]
         self.assertNotIn("no contact in the whole run", self.skerry("run", self.write("alone.json", scene)).stdout)

@@ -79,7 +79,8 @@ class SweepTest(ProgramCase):
                   {"name": "squeeze", "quantity": "volume", "body": "block"}]
         self.scene.write_text(json.dumps({**SCENE, "probes": probes}))
         done = self.sweep(self.cases, "--out", self.out, "--probes")
-        for name in ("weight.largest_force_max_N", "bend.largest_von_mises_max_Pa", "squeeze.smallest_volume_ratio_min"):
+        for name in ("weight.largest_force_max_N", "bend.largest_von_mises_max_Pa",
+                     "squeeze.smallest_volume_ratio_min"):
             self.assertIn(name, done.stdout.splitlines()[0])
         for row in self.table():
             with open(self.out / f"case_{int(row['case']):06d}.csv", newline="") as file:
@@ -105,7 +106,8 @@ class SweepTest(ProgramCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertTrue((self.folder / "out" / name / "sweep.csv").exists(), name)
         for name in ("../elsewhere", ".."):
-            self.assert_refused("sweep", self.write("bad.json", {"name": name, **cases}), said=["bad.json", "name", name])
+            self.assert_refused("sweep", self.write("bad.json", {"name": name, **cases}),
+                                said=["bad.json", "name", name])
 
     def test_what_is_done_is_not_done_again(self):
         self.sweep(self.cases, "--out", self.out)
