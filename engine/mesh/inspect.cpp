@@ -13,6 +13,9 @@
 namespace skerry {
 namespace {
 
+// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
+constexpr Real poor_quality = 0.1;
+
 using Edge = std::pair<Index, Index>;  // nodes of an edge, the lower number first
 
 std::vector<Edge> unique_edges(const Mesh& mesh) {
@@ -92,6 +95,7 @@ void measure_tetrahedra(const Mesh& mesh, MeshReport& report) {
         const mesh::Orientation side = mesh::orientation(mesh, t);
         report.inverted += side == mesh::Orientation::inverted;
         report.flat += side == mesh::Orientation::flat;
+        report.slivers += side == mesh::Orientation::positive && shape < poor_quality;
     }
 }
 
@@ -110,7 +114,8 @@ MeshReport inspect(const Mesh& mesh) {
     const std::vector<BoundaryTriangle> triangles = boundary_triangles(mesh.tetrahedra);
     report.boundary_triangles = triangles.size();
     report.labels = mesh::count_labels(mesh);
-    report.closed_manifold = mesh::manifold_fault(triangles).empty();
+    report.boundary_fault = mesh::manifold_fault(triangles);
+    report.closed_manifold = report.boundary_fault.empty();
     report.components = count_components(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);

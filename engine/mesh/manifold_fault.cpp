@@ -43,16 +43,24 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
     const std::vector<Side> sides = sides_of(boundary);
     UnionFind rings;
     rings.start(3 * boundary.size());
+    std::string fault;  // the first one
+    std::size_t count = 0;
+    const auto counted = [&](const char* faults) {
+        return count > 1 ? fault + " (" + std::to_string(count) + " such " + faults + " in total)" : fault;
+    };
     for (std::size_t first = 0; first < sides.size();) {
         std::size_t last = first;
         while (last < sides.size() && sides[last].node == sides[first].node) ++last;
-        if (last - first != 2)
-            return "an edge between nodes " + std::to_string(sides[first].node[0]) + " and " +
-                   std::to_string(sides[first].node[1]) + " with " + std::to_string(last - first) +
-                   " boundary triangles instead of 2";
-        for (std::size_t end = 0; end < 2; ++end) rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
+        if (last - first == 2)
+            for (std::size_t end = 0; end < 2; ++end)
+                rings.join(sides[first].corner[end], sides[first + 1].corner[end]);
+        else if (count++ == 0)
+            fault = "an edge between nodes " + std::to_string(sides[first].node[0]) + " and " +
+                    std::to_string(sides[first].node[1]) + " with " + std::to_string(last - first) +
+                    " boundary triangles instead of 2";
         first = last;
     }
+    if (count > 0) return counted("edges");
     // All corners at a node must belong to one ring of triangles. It is enough to compare each corner with the previous
     // corner of the same node.
     std::vector<std::pair<Index, Index>> corners;
@@ -60,10 +68,10 @@ std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
         corners.emplace_back(boundary[c / 3].node[c % 3], rings.root(static_cast<Index>(c)));
     std::ranges::sort(corners);
     for (std::size_t c = 1; c < corners.size(); ++c)
-        if (corners[c].first == corners[c - 1].first && corners[c].second != corners[c - 1].second)
-            return "node " + std::to_string(corners[c].first) +
-                   ", at which parts of the boundary meet without a common edge";
-    return {};
+        if (corners[c].first == corners[c - 1].first && corners[c].second != corners[c - 1].second && count++ == 0)
+            fault = "node " + std::to_string(corners[c].first) +
+                    ", at which parts of the boundary meet without a common edge";
+    return counted("meetings");
 }
 
 }  // namespace skerry::mesh

@@ -7,6 +7,7 @@
 #include "engine/mesh/tetrahedron.h"
 #include "skerry/error.h"
 #include "skerry/mesh.h"
+#include "systems/collision/build_surface.h"
 
 namespace skerry::mesh {
 namespace {
@@ -56,28 +57,53 @@ std::vector<Vec3> drop_unused(const std::vector<Vec3>& nodes, std::vector<std::a
     return used;
 }
 
-Mesh take_tetrahedra(RawMesh& raw) {
+/// True if two tetrahedra lie on the same side of a face that they share, so that they overlap.
+bool any_overlap(const Mesh& mesh) {
+    std::array<int, 2> on_side{};
+    const TetrahedronFace* before = nullptr;
+    const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
+    for (const TetrahedronFace& face : faces) {
+        if (before == nullptr || face.node != before->node) on_side = {};
+        if (++on_side[face.turned ? 1 : 0] > 1) return true;
+        before = &face;
+    }
+    return false;
+}
+
+/// Turns the inverted tetrahedra of a file, unless they would then overlap others. Some programs list the nodes of all
+/// or some tetrahedra in the opposite order. If instead a node lies in a wrong place, tetrahedra at this node are
+/// inverted, too, but share each face with a tetrahedron on its other side.
+void turn_inverted(const std::string& path, Mesh& mesh, std::vector<std::string>* notes) {
+    std::vector<std::size_t> inverted;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (orientation(mesh, mesh.tetrahedra[t]) == Orientation::inverted) inverted.push_back(t);
+    const auto turn = [&] {
+        for (const std::size_t t : inverted) std::swap(mesh.tetrahedra[t][2], mesh.tetrahedra[t][3]);
+    };
+    const std::size_t count = inverted.size(), all = mesh.tetrahedra.size();
+    if (count == 0) return;
+    turn();
+    if (count < all && any_overlap(mesh)) {
+        turn();
+        return;
+    }
+    if (notes)
+        notes->push_back(path + ": " + std::to_string(count) + " of " + std::to_string(all) +
+                         " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
+}
+
+Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::string>* notes) {
     Mesh mesh;
     mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
-    // Some programs write tetrahedra with the opposite orientation. A file with inverted and no positive tetrahedra is
-    // reoriented, because it probably comes from such a program. If both kinds occur, the mesh is faulty, and
-    // reorienting would hide the fault.
-    bool any_positive = false, any_inverted = false;
-    for (const std::array<Index, 4>& t : mesh.tetrahedra) {
-        const Orientation side = orientation(mesh, t);
-        any_positive = any_positive || side == Orientation::positive;
-        any_inverted = any_inverted || side == Orientation::inverted;
-    }
-    if (any_inverted && !any_positive)
-        for (std::array<Index, 4>& t : mesh.tetrahedra) std::swap(t[2], t[3]);
+    turn_inverted(path, mesh, notes);
     return mesh;
 }
 
 }  // namespace
 
-Mesh read(const std::string& path) {
+Mesh read(const std::string& path, std::vector<std::string>* notes) {
     RawMesh raw = read_raw(path, false);
     if (raw.tetrahedra.empty())
         Complaint{path,
@@ -87,12 +113,12 @@ Mesh read(const std::string& path) {
                   "at least one tetrahedron",
                   "the file has " + elements_text(raw) + "; export the mesh with tetrahedra"}
             .raise();
-    return take_tetrahedra(raw);
+    return take_tetrahedra(path, raw, notes);
 }
 
-SurfaceMesh read_surface(const std::string& path) {
+SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes) {
     RawMesh raw = read_raw(path, true);
-    if (!raw.tetrahedra.empty()) return boundary(take_tetrahedra(raw));
+    if (!raw.tetrahedra.empty()) return boundary(take_tetrahedra(path, raw, notes));
     if (raw.curved_triangles > 0)
         Complaint{path,
                   {},

@@ -15,6 +15,7 @@ struct RunStart {
     double step_count = 0;   // estimated number of remaining steps
     std::size_t frames = 0;  // number of frames written before a resumption; 0 for a new run
     Real frame_step = 0;     // time between two frames [s]
+    Real row_step = 0;       // time between two rows of a series; 0: every call of Writer::sample makes a row [s]
 
     bool resumed() const { return frames > 0; }
 };

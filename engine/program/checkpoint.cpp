@@ -26,6 +26,7 @@ Json to_json(const RunMemory& memory) {
             {"seconds", memory.seconds},
             {"frame_step", memory.frame_step},
             {"samples", memory.samples},
+            {"probe_step", memory.probe_step},
             {"frame", memory.frame},
             {"sample", memory.sample},
             {"seconds_wall", memory.seconds_wall},
@@ -46,6 +47,7 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
         json.at("seconds").get_to(memory.seconds);
         json.at("frame_step").get_to(memory.frame_step);
         json.at("samples").get_to(memory.samples);
+        json.at("probe_step").get_to(memory.probe_step);
         json.at("frame").get_to(memory.frame);
         json.at("sample").get_to(memory.sample);
         json.at("seconds_wall").get_to(memory.seconds_wall);
@@ -56,7 +58,8 @@ RunMemory memory_of(const std::filesystem::path& file, const std::string& text) 
                "a file written by `skerry run --checkpoint`", damaged);
     }
     const bool good = memory.frame_step > 0 && std::isfinite(memory.frame_step) && memory.samples > 0 &&
-                      memory.frame >= 0 && memory.sample >= 0 && memory.sample < memory.samples;
+                      memory.probe_step >= 0 && memory.frame >= 0 && memory.sample >= 0 &&
+                      memory.sample < memory.samples;
     if (!good)
         refuse(file,
                "frame " + std::to_string(memory.frame) + ", sample " + std::to_string(memory.sample) + " of " +

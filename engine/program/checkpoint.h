@@ -17,7 +17,8 @@ struct RunMemory {
     std::vector<std::string> assignments;  // SceneOverrides::assignments
     double seconds = 0;                    // planned duration of the run [s]
     double frame_step = 0;                 // time between two frames [s]
-    int samples = 1;                       // number of calls of advance per frame
+    int samples = 1;                       // RunPlan::samples
+    double probe_step = 0;                 // RunPlan::probe_step [s]
     long frame = 0;                        // number of the frame being simulated
     int sample = 0;                        // index of the next call of advance within the frame
     double seconds_wall = 0;

@@ -46,6 +46,7 @@ struct RunOptions {
     bool quiet = false;
     bool profile = false;              // also print step limits, solver statistics, energies and stage times
     bool strict = false;               // warnings count as failure: the run ends with exit_failed
+    bool series_figures = false;       // RunResult::series is computed, for the table of a sweep
     std::filesystem::path checkpoint;  // file for checkpoints; empty: no checkpoints
     std::optional<Real> every;         // simulated time between two checkpoints [s]
     std::filesystem::path restart;     // checkpoint from which the run resumes; empty: a new run
@@ -74,7 +75,7 @@ int solve(const SolveOptions& options);
 
 struct SweepOptions {
     std::filesystem::path cases;
-    // Folder of the results. If empty, it is out/NAME for the file of cases NAME.json.
+    // Folder of the results. If empty, it is out/NAME for the sweep with the name NAME.
     std::filesystem::path out;
     std::optional<int> jobs;      // number of cases that run at the same time
     std::optional<int> rank, of;  // rank of this process, and number of processes that share the cases

@@ -8,6 +8,7 @@
 #include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_mesh.h"
 #include "engine/program/inspect_repair.h"
+#include "engine/program/mesh_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
@@ -149,7 +150,8 @@ Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& k
         if (kind.dynamics != BodyDynamics::rigid)
             add_thin_part(plan.meshes[plan.bodies[kind.body].mesh], world.surface(bodies[kind.body]),
                           step_case(plan, plan.bodies[kind.body]), of_kind);
-        for (const std::string& problem : of_kind) problems.push_back("body \"" + kind.first_name + "\": " + problem);
+        for (const std::string& problem : of_kind)
+            problems.push_back(mesh_of_body_text(plan, kind.body) + ": " + problem);
     }
     std::vector<BodyKindReport> by_step = kinds;
     std::erase_if(by_step, [](const BodyKindReport& kind) { return !kind.sets_step(); });
@@ -278,6 +280,7 @@ int inspect_scene(const InspectOptions& options) {
                            {"wall_seconds_per_second", cost.seconds / scene.seconds},
                            {"wall_seconds", cost.seconds},
                            {"body_kinds", bodies},
+                           {"notes", plan.notes},
                            {"problems", problems}};
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
@@ -307,6 +310,7 @@ int inspect_scene(const InspectOptions& options) {
                   << materials_text(kind) << "\n";
         if (kind.sets_step()) print_bound(kind.bound, "                ");
     }
+    print_notes(plan.notes);
     print_problems(problems);
     return exit_ok;
 }

@@ -18,8 +18,6 @@ namespace skerry {
 
 namespace {
 
-// Tetrahedra of lower quality are slivers, which shorten the step and reduce accuracy.
-constexpr Real poor_quality = 0.1;
 constexpr Real hardly_longer = 1.03;  // a ratio of step lengths between 1 and this value counts as a small gain
 
 /// Describes a ratio of stable steps: the step of the mesh without its worst tetrahedra, divided by the present step.
@@ -33,43 +31,13 @@ std::string compared(Real ratio) {
 
 }  // namespace
 
-Problems problems_of(const MeshReport& r) {
-    Problems problems;
-    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
-    if (r.inverted > 0)
-        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
-    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
-    if (r.components > 1)
-        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
-    if (r.tetrahedra > 0 && r.min_quality < poor_quality)
-        problems.push_back("the worst tetrahedron is a sliver of quality " + short_number(r.min_quality) +
-                           " (1: regular tetrahedron), which shortens the stable step");
-    if (!r.closed_manifold) problems.push_back("the boundary is not a closed manifold: contacts may fail there");
-    return problems;
-}
-
 void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
                    Problems& problems) {
     if (std::string text = thin_part_text(mesh, boundary, of); !text.empty()) problems.push_back(std::move(text));
 }
 
-Json mesh_json(const MeshReport& r) {
-    Json labels = Json::object();
-    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
-    return {{"nodes", r.nodes},
-            {"tetrahedra", r.tetrahedra},
-            {"boundary_triangles", r.boundary_triangles},
-            {"components", r.components},
-            {"lower", vector_json(r.lower)},
-            {"upper", vector_json(r.upper)},
-            {"volume", r.volume},
-            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
-            {"min_altitude", r.min_altitude},
-            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
-            {"inverted", r.inverted},
-            {"flat", r.flat},
-            {"closed_manifold", r.closed_manifold},
-            {"labels", labels}};
+void print_notes(const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) std::cout << "  note          " << note << "\n";
 }
 
 void print_problems(const Problems& problems) {
@@ -108,22 +76,8 @@ void print_bound(const StepBound& bound, const char* indent) {
 
 namespace {
 
-/// Returns the number of tetrahedra per label, for example "label 1: 300 tetrahedra, label 2: 20 tetrahedra". Only the
-/// first 20 labels are listed.
-std::string labels_text(const MeshReport& report) {
-    constexpr std::size_t most = 20;
-    std::string text;
-    std::size_t listed = 0;
-    for (const auto& [label, tetrahedra] : report.labels) {
-        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
-        text +=
-            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
-    }
-    return text;
-}
-
 /// Reports a mesh of tetrahedra.
-int report_mesh(const InspectOptions& options, const Mesh& mesh) {
+int report_mesh(const InspectOptions& options, const Mesh& mesh, const std::vector<std::string>& notes) {
     if (!options.repair.empty())
         return inspect_repair({.mesh = mesh,
                                .what = options.file.string(),
@@ -146,6 +100,7 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh) {
         Json json = {{"schema", "skerry.mesh/1"}, {"file", options.file.string()}};
         json.update(mesh_json(report));
         if (is_body) json["step_bound"] = bound_json(bound);
+        json["notes"] = notes;
         json["problems"] = problems;
         std::cout << json.dump(1) << std::endl;
         return exit_ok;
@@ -169,6 +124,7 @@ int report_mesh(const InspectOptions& options, const Mesh& mesh) {
         print_bound(bound, "                ");
     }
     if (!report.labels.empty()) std::cout << "  labels        " << labels_text(report) << "\n";
+    print_notes(notes);
     print_problems(problems);
     return exit_ok;
 }
@@ -278,14 +234,15 @@ int inspect_mesh(const InspectOptions& options) {
     if (!repairs && is_surface_file(options.file))
         return report_surface(options, mesh::read_surface(options.file.string()));
     std::optional<Mesh> mesh;
+    std::vector<std::string> notes;
     try {
-        mesh = mesh::read(options.file.string());
+        mesh = mesh::read(options.file.string(), &notes);
     } catch (const SceneError&) {
         const std::optional<SurfaceMesh> surface = repairs ? std::nullopt : surface_instead(options);
         if (!surface) throw;
         return report_surface(options, *surface);
     }
-    return report_mesh(options, *mesh);
+    return report_mesh(options, *mesh, notes);
 }
 
 }  // namespace skerry

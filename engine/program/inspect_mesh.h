@@ -7,21 +7,19 @@
 #include <vector>
 
 #include "engine/program/commands.h"
+#include "engine/program/mesh_text.h"
 #include "engine/program/step_bound.h"
 #include "engine/scene/place.h"
 #include "skerry/mesh.h"
 
 namespace skerry {
 
-using Problems = std::vector<std::string>;
-
-/// Returns the problems of a mesh, one sentence each.
-Problems problems_of(const MeshReport& report);
-/// Adds a problem if a part of the mesh is too thin to bend as its material. `boundary`: boundary triangles of the mesh.
+/// Adds a problem if a part of the mesh is too thin to bend as its material. `boundary`: boundary triangles of the
+/// mesh.
 void add_thin_part(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of,
                    Problems& problems);
+void print_notes(const std::vector<std::string>& notes);
 void print_problems(const Problems& problems);
-Json mesh_json(const MeshReport& report);
 Json bound_json(const StepBound& bound);
 
 /// Prints the tetrahedra that limit the stable step, and the stable step of the mesh without its worst tetrahedra.

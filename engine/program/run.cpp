@@ -11,11 +11,14 @@
 #include "engine/mesh/manifold_fault.h"
 #include "engine/program/checkpoint.h"
 #include "engine/program/commands.h"
+#include "engine/program/nearest_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_outputs.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/run_result.h"
+#include "engine/program/series_figures.h"
+#include "engine/program/stiff_note.h"
 #include "engine/program/thin_part_text.h"
 #include "engine/scene/scene_plan.h"
 #include "jobs/executor.h"
@@ -59,8 +62,8 @@ const char* const advice =
 /// resumed run could not reproduce the remaining steps of that call.
 class FrameLoop {
 public:
-    FrameLoop(Scene& scene, const RunPlan& plan, RunMemory memory, RunOutputs& outputs, CheckpointWriter& checkpoints,
-              Progress& progress, RunResult& result)
+    FrameLoop(Scene& scene, const RunOptions& options, const RunPlan& plan, RunMemory memory, RunOutputs& outputs,
+              CheckpointWriter& checkpoints, Progress& progress, RunResult& result)
         : world_(scene.world),
           plan_(plan),
           memory_(std::move(memory)),
@@ -68,7 +71,9 @@ public:
           checkpoints_(checkpoints),
           progress_(progress),
           result_(result),
-          probes_(scene) {}
+          probes_(scene) {
+        if (options.series_figures && !scene.recorded.empty()) figures_.emplace(world_, scene.recorded);
+    }
 
     void run() {
         const SignalGuard guard;
@@ -78,14 +83,17 @@ public:
         int sample = memory_.sample;
         for (long frame = first; frame < plan_.frames() && result_.status == "ok"; ++frame, sample = 0) {
             const double length = plan_.length_of(frame);
-            double duration = length / plan_.samples;
-            if (frame == first && cut_short(plan_, frame, planned))
-                duration =
-                    (static_cast<double>(frame) * plan_.frame_step + length - world_.time()) / (plan_.samples - sample);
+            const bool longer = frame == first && cut_short(plan_, frame, planned);
+            std::vector<double> ends = plan_.ends_in(frame);
+            if (longer) std::erase_if(ends, [&](double end) { return !(end > world_.time() + slack_of_time()); });
+            const int calls = ends.empty() ? plan_.samples : static_cast<int>(ends.size());
+            double duration = length / calls;
+            if (longer)
+                duration = (static_cast<double>(frame) * plan_.frame_step + length - world_.time()) / (calls - sample);
             const Real begin = world_.time();
-            for (; sample < plan_.samples && result_.status == "ok"; ++sample) {
+            for (; sample < calls && result_.status == "ok"; ++sample) {
                 if (sample > 0 && checkpoints_.due(world_.time())) write_checkpoint(frame, sample);
-                advance(duration);
+                advance(ends.empty() ? duration : ends[static_cast<std::size_t>(sample)] - world_.time());
             }
             if (result_.status != "ok" && !(world_.time() > begin))
                 break;  // the run stopped before the first step of this frame, so the frame is not written
@@ -97,9 +105,12 @@ public:
         result_.checkpoints = checkpoints_.written();
         result_.checkpoints_failed = checkpoints_.failed();
         result_.probes = probes_.records();
+        if (figures_) result_.series = figures_->all();
     }
 
 private:
+    /// Rounding error of the present time, relative to the times at which calls of advance end [s].
+    double slack_of_time() const { return RunPlan::slack * plan_.longest_call(); }
     void begin() {
         result_.peak_kinetic_energy = memory_.peak_kinetic_energy;
         if (result_.restarted_at)
@@ -132,6 +143,7 @@ private:
         if (!(sampled > 0)) return;
         probes_.sample(world_, sampled);
         outputs_.sample(world_);
+        if (figures_) figures_->sample(world_);
     }
     void write_checkpoint(long frame, int sample) {
         memory_.frame = frame;
@@ -152,6 +164,7 @@ private:
     Progress& progress_;
     RunResult& result_;
     ProbeRecorder probes_;
+    std::optional<SeriesFigures> figures_;
     std::uint64_t steps_ = 0;  // number of steps since the run was started or resumed
 };
 
@@ -197,7 +210,8 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& worl
         for (const std::array<Index, 3>& node : world.surface(bodies[b])) boundary.push_back({node, no_index});
         const std::string fault = mesh::manifold_fault(boundary);
         if (!fault.empty())
-            found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault);
+            found.push_back("the boundary of body '" + body.settings.name + "' is not a closed manifold: " + fault +
+                            (plan.mesh_files[body.mesh].empty() ? "" : " in " + plan.mesh_files[body.mesh].string()));
     }
     return found;
 }
@@ -241,9 +255,16 @@ RunResult simulate(const RunOptions& asked) {
     const RunPlan run_plan = restart ? plan_run(options, memory, world.time()) : plan_run(scene, options);
     memory.frame_step = run_plan.frame_step;
     memory.samples = run_plan.samples;
+    memory.probe_step = run_plan.probe_step;
     const RunStart start{.step_count = run_plan.steps(world),
                          .frames = restart ? static_cast<std::size_t>(memory.frame) + 1 : 0,
-                         .frame_step = memory.frame_step};
+                         .frame_step = memory.frame_step,
+                         .row_step = run_plan.even() ? 0 : run_plan.probe_step};
+    result.notes = plan.notes;
+    if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
+        result.notes.push_back(note);
+    if (!options.quiet)
+        for (const std::string& note : result.notes) std::cerr << "skerry: NOTE: " << note << std::endl;
     RunOutputs outputs(options, scene, start, result);
     CheckpointWriter checkpoints(options.checkpoint, options.every.value_or(run_plan.seconds / 10), world.time());
 
@@ -251,10 +272,11 @@ RunResult simulate(const RunOptions& asked) {
     {
         Progress progress(!options.quiet, run_plan.seconds, start.step_count, run_plan.longest_step(world),
                           world.time());
-        FrameLoop(scene, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
+        FrameLoop(scene, options, run_plan, std::move(memory), outputs, checkpoints, progress, result).run();
     }
 
     result.report = world.report();
+    if (result.report.steps > 0 && result.report.max_contacts == 0) result.nearest = nearest_text(world);
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
     result.stopped_by = caught_signal;

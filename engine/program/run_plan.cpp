@@ -16,21 +16,41 @@ double RunPlan::length_of(long frame) const {
     return std::min(frame_step, seconds - static_cast<double>(frame) * frame_step);
 }
 
-double RunPlan::sample() const {
-    return std::min(frame_step, seconds) / samples;
+bool RunPlan::even() const {
+    if (!(probe_step > 0)) return true;
+    const double ratio = frame_step / probe_step, whole = std::round(ratio);
+    return whole > 0 && std::abs(ratio - whole) <= slack * whole;
+}
+
+std::vector<double> RunPlan::ends_in(long frame) const {
+    const double begin = static_cast<double>(frame) * frame_step, length = length_of(frame), end = begin + length;
+    if (!(probe_step > 0) || (even() && length >= (1 - slack) * frame_step)) return {};
+    std::vector<double> ends;
+    for (double k = std::floor(begin / probe_step + slack) + 1; k * probe_step < end - slack * probe_step; ++k)
+        ends.push_back(k * probe_step);
+    ends.push_back(end);
+    return ends;
+}
+
+double RunPlan::longest_call() const {
+    const double frame = std::min(frame_step, seconds);
+    return probe_step > 0 ? std::min(frame, probe_step) : frame;
 }
 
 double RunPlan::longest_step(const World& world) const {
     const Real stable = world.stable_step();
-    return std::min({frame_step / samples, seconds / samples, stable, world.settings().step_size.value_or(stable)});
+    return std::min({longest_call(), stable, world.settings().step_size.value_or(stable)});
 }
 
 double RunPlan::steps(const World& world) const {
-    return std::max(0.0, seconds - world.time()) / sample() * std::ceil(sample() / longest_step(world));
+    const double call = longest_call();
+    return std::max(0.0, seconds - world.time()) / call * std::ceil(call / longest_step(world));
 }
 
 bool cut_short(const RunPlan& plan, long frame, double planned) {
-    const double before = RunPlan{planned, plan.frame_step, plan.samples}.length_of(frame);
+    RunPlan earlier = plan;
+    earlier.seconds = planned;
+    const double before = earlier.length_of(frame);
     const bool within = before > RunPlan::slack * plan.frame_step && before < (1 - RunPlan::slack) * plan.frame_step;
     return within && before != plan.length_of(frame);
 }
@@ -59,18 +79,20 @@ void expect_countable_frames(const RunOptions& options, const RunPlan& plan) {
 }  // namespace
 
 RunPlan plan_run(const Scene& scene, const RunOptions& options) {
-    RunPlan plan{options.seconds.value_or(scene.seconds), scene.frame_step, 1};
+    RunPlan plan{.seconds = options.seconds.value_or(scene.seconds), .frame_step = scene.frame_step};
     if (options.frames_per_second) plan.frame_step = 1 / *options.frames_per_second;
     expect_countable_frames(options, plan);
     if (scene.probes.empty() && scene.recorded.empty()) return plan;
+    plan.probe_step = scene.probe_step;
     const double samples = std::min(plan.frame_step, plan.seconds) / scene.probe_step;
     expect_countable(options, "samples of the probes per frame", samples, "increase probe_step");
-    plan.samples = std::max(1, static_cast<int>(std::lround(samples)));
+    const bool whole = plan.even() && plan.frame_step <= plan.seconds;
+    plan.samples = static_cast<int>(whole ? std::lround(samples) : std::lround(std::ceil(samples)) + 1);
     return plan;
 }
 
 RunPlan plan_run(const RunOptions& options, const RunMemory& memory, double time) {
-    const RunPlan plan{options.seconds.value_or(memory.seconds), memory.frame_step, memory.samples};
+    const RunPlan plan{options.seconds.value_or(memory.seconds), memory.frame_step, memory.samples, memory.probe_step};
     expect_countable_frames(options, plan);
     if (plan.seconds > time + RunPlan::slack * plan.frame_step) return plan;
     char found[128], expected[128];

@@ -39,7 +39,10 @@ struct RunResult {
     std::vector<std::pair<std::string, std::string>> outputs_failed;
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
     std::vector<std::string> thin_parts;      // one sentence for each mesh with a part that is too stiff in bending
-    std::vector<std::string> written;         // description of each written output
+    std::vector<std::string> notes;           // remarks about the input that do not question the result
+    std::string nearest;                      // result of nearest_text() for a run without any contact, else empty
+    std::vector<std::pair<std::string, double>> series;  // figures of the time series of the probes, see SeriesFigures
+    std::vector<std::string> written;                    // description of each written output
 };
 
 /// Simulates a scene and writes the requested outputs. Throws SceneError if the scene or an option is invalid.

@@ -164,6 +164,7 @@ Json statistics_of(const RunResult& result) {
         {"max_gap_violation", r.max_gap_violation},
         {"mean_edge", result.mean_edge},
         {"trust", trust_of(result)},
+        {"notes", result.notes},
         {"probes", probes},
         {"state_hash", hash_text(result.state_hash)},
     };

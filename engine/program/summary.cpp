@@ -47,6 +47,15 @@ std::string penetration_text(const RunResult& result) {
            (result.mean_edge > 0 ? " (" + percent(depth / result.mean_edge) + " of the mean edge length)" : "");
 }
 
+std::string contacts_text(const RunResult& result) {
+    const WorldReport& r = result.report;
+    if (r.max_contacts > 0 || r.bodies + r.colliders < 2)
+        return short_number(r.mean_contacts, 4) + " in a step on average, at most " +
+               grouped(static_cast<std::uint64_t>(r.max_contacts));
+    return "no contact in the whole run" +
+           (result.nearest.empty() ? "" : ": the shortest distance at the end is " + result.nearest);
+}
+
 std::string balance_text(const WorldReport& r) {
     constexpr double rounding = 1e-9;  // relative errors of the momentum below this value are rounding errors
     return "energy error " + percent(r.energy_error_share) + ", momentum error " +
@@ -85,9 +94,7 @@ std::string step_lines(const RunResult& result) {
     return summary_line("steps", grouped(r.steps) + " of " +
                                      with_unit(result.seconds_simulated / static_cast<double>(r.steps), "s") +
                                      " on average") +
-           summary_line("time", time_text(result)) +
-           summary_line("contacts", short_number(r.mean_contacts, 4) + " in a step on average, at most " +
-                                        grouped(static_cast<std::uint64_t>(r.max_contacts))) +
+           summary_line("time", time_text(result)) + summary_line("contacts", contacts_text(result)) +
            summary_line("penetration", penetration_text(result)) + summary_line("balance", balance_text(r));
 }
 

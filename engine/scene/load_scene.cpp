@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "engine/mesh/require_positive.h"
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
 #include "skerry/scene.h"
@@ -54,6 +55,22 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
 
 }  // namespace
 
+namespace {
+
+/// Adds a body with a mesh. If the mesh is invalid and was read from a file, the error names this file.
+BodyHandle add_mesh_body(const ScenePlan& plan, const BodyPlan& body, const BodySettings& settings, World& world) {
+    const Mesh& mesh = plan.meshes[body.mesh];
+    try {
+        return world.add_body(mesh, settings);
+    } catch (const SceneError&) {
+        if (const std::filesystem::path& file = plan.mesh_files[body.mesh]; !file.empty())
+            mesh::require_positive(mesh, file.string());
+        throw;
+    }
+}
+
+}  // namespace
+
 Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>& added) {
     const Place top(plan.file);
     Scene scene{.name = plan.name,
@@ -83,7 +100,7 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
             if (body.shape.sphere) return world.add_body(*body.shape.sphere, settings);
             if (body.shape.capsule) return world.add_body(*body.shape.capsule, settings);
             if (body.shape.cylinder) return world.add_body(*body.shape.cylinder, settings);
-            return world.add_body(plan.meshes[body.mesh], settings);
+            return add_mesh_body(plan, body, settings, world);
         }));
         if (added) added(bodies.size());
         pins.emplace_back();

@@ -13,7 +13,8 @@ namespace skerry {
 
 namespace {
 
-Mesh make_shape(const MeshEntry& entry) {
+/// `notes`: gets remarks about the mesh file.
+Mesh make_shape(const MeshEntry& entry, std::vector<std::string>& notes) {
     if (entry.box) return mesh::box(entry.box->size, entry.box->cells);
     if (entry.ball) return mesh::ball(entry.ball->radius, entry.ball->resolution);
     if (entry.cylinder)
@@ -21,11 +22,11 @@ Mesh make_shape(const MeshEntry& entry) {
     if (entry.lathe) return mesh::lathe(entry.lathe->profile, entry.lathe->resolution);
     if (entry.skittle) return mesh::skittle(entry.skittle->height, entry.skittle->resolution);
     if (entry.table) return mesh::table(*entry.table);
-    return mesh::read(entry.file->path.string());
+    return mesh::read(entry.file->path.string(), &notes);
 }
 
-Mesh make_mesh(const MeshEntry& entry) {
-    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry); });
+Mesh make_mesh(const MeshEntry& entry, std::vector<std::string>& notes) {
+    Mesh mesh = called_at(entry.place, [&] { return make_shape(entry, notes); });
     for (Vec3& node : mesh.nodes) node *= entry.scale;
     return mesh;
 }
@@ -36,21 +37,21 @@ Mesh picture_of(const BodyShapeEntry& shape) {
     return mesh::cylinder_picture(shape.cylinder->radius, shape.cylinder->height);
 }
 
-SurfaceMesh make_surface(const MeshEntry& entry) {
-    if (!entry.file) return mesh::boundary(make_mesh(entry));
-    SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string()); });
+SurfaceMesh make_surface(const MeshEntry& entry, std::vector<std::string>& notes) {
+    if (!entry.file) return mesh::boundary(make_mesh(entry, notes));
+    SurfaceMesh surface = called_at(entry.place, [&] { return mesh::read_surface(entry.file->path.string(), &notes); });
     for (Vec3& node : surface.nodes) node *= entry.scale;
     return surface;
 }
 
-Shape make_collider_shape(const ShapeEntry& entry) {
+Shape make_collider_shape(const ShapeEntry& entry, std::vector<std::string>& notes) {
     if (entry.plane) return *entry.plane;
     if (entry.sphere) return *entry.sphere;
     if (entry.box) return *entry.box;
     if (entry.capsule) return *entry.capsule;
     if (entry.cylinder) return *entry.cylinder;
     if (entry.bucket) return *entry.bucket;
-    return make_surface(*entry.mesh);
+    return make_surface(*entry.mesh, notes);
 }
 
 Motion make_motion(const MotionEntry& entry) {
@@ -140,7 +141,8 @@ std::size_t plan_mesh(const BodyEntry& entry, PlannedBodies& so_far, ScenePlan& 
         const auto known = so_far.mesh_of_file.find({entry.mesh->file->path, entry.mesh->scale});
         if (known != so_far.mesh_of_file.end()) return known->second;
     }
-    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh) : picture_of(*entry.shape));
+    plan.meshes.push_back(entry.mesh ? make_mesh(*entry.mesh, plan.notes) : picture_of(*entry.shape));
+    plan.mesh_files.push_back(entry.mesh && entry.mesh->file ? entry.mesh->file->path : std::filesystem::path());
     if (entry.mesh && entry.mesh->file) so_far.mesh_of_file[{entry.mesh->file->path, entry.mesh->scale}] = next;
     return next;
 }
@@ -185,9 +187,9 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     }
 }
 
-ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number) {
+ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::vector<std::string>& notes) {
     ColliderPlan collider;
-    collider.shape = make_collider_shape(entry.shape);
+    collider.shape = make_collider_shape(entry.shape, notes);
     collider.settings.position = entry.position;
     collider.settings.rotation = entry.rotation.value;
     collider.settings.motion = make_motion(entry.motion);
@@ -261,7 +263,7 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-        plan.colliders.push_back(plan_collider(scene.colliders[i], i));
+        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
     for (const JointEntry& joint : scene.joints) plan.joints.push_back(plan_joint(joint, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;

@@ -67,6 +67,8 @@ struct ScenePlan {
     std::vector<std::pair<std::string, MaterialSettings>> materials;
     // one mesh for each mesh file, and for each entry of "bodies" without a file; copies of a body share the mesh
     std::vector<Mesh> meshes;
+    std::vector<std::filesystem::path> mesh_files;  // file of each mesh; empty for a mesh without a file
+    std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;

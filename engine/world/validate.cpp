@@ -195,20 +195,22 @@ namespace {
 /// part of a surface that objects touch.
 void require_apart(const Mesh& mesh, const std::string& object) {
     const std::vector<TetrahedronFace> faces = sorted_faces(mesh.tetrahedra);
+    std::string found;  // the first two tetrahedra on one side of a face
+    std::size_t count = 0;
     for (std::size_t first = 0; first < faces.size();) {
         std::array<Index, 2> seen{no_index, no_index};  // number of the tetrahedron on each side of the face
         std::size_t i = first;
         for (; i < faces.size() && faces[i].node == faces[first].node; ++i) {
             Index& on_side = seen[faces[i].turned ? 1 : 0];
-            if (on_side != no_index)
-                refuse(object, "mesh",
-                       "tetrahedra " + std::to_string(on_side) + " and " + std::to_string(faces[i].tetrahedron) +
-                           " on the same side of a shared face",
-                       "at most one tetrahedron on each side of a face");
+            if (on_side != no_index && count++ == 0)
+                found = "tetrahedra " + std::to_string(on_side) + " and " + std::to_string(faces[i].tetrahedron) +
+                        " on the same side of a shared face";
             on_side = faces[i].tetrahedron;
         }
         first = i;
     }
+    if (count > 1) found += " (" + std::to_string(count) + " such pairs)";
+    if (count > 0) refuse(object, "mesh", found, "at most one tetrahedron on each side of a face");
 }
 
 /// Checks the pose and the initial motion of a body.

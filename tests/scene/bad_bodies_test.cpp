@@ -29,6 +29,10 @@ TEST_CASE("tetrahedra that lie in each other are refused by their numbers", "[sc
     CHECK_THROWS_WITH(world.add_body(twice, {.material = rubber, .name = "twice"}),
                       Contains("body 'twice'") && Contains("tetrahedra 0 and 2 on the same side of a shared face"));
 
+    twice.tetrahedra.push_back({0, 1, 2, 3});
+    CHECK_THROWS_WITH(world.add_body(twice, {.material = rubber}),
+                      Contains("tetrahedra 0 and 2 on the same side of a shared face (8 such pairs)"));
+
     Mesh inside = two_sided();
     inside.nodes.push_back(Vec3(0.2, 0.2, 0.2));
     inside.tetrahedra.push_back({0, 1, 2, 5});  // inside the first one, on its base

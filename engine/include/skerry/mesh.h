@@ -86,9 +86,9 @@ Mesh table(const TableShape& shape);
 /// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
 /// (unstructured grids; ASCII, base64 and raw, also compressed by zlib) or TetGen .node/.ele (`path` may name either
 /// file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused nodes are
-/// dropped. If no tetrahedron is positive, the file is assumed to have the opposite node order, and all tetrahedra are
-/// reoriented. If some tetrahedra are positive and others are not, the mesh is left as in the file, and `inspect`
-/// counts the faults.
+/// dropped. Inverted tetrahedra are turned: two of their nodes change places. `notes`, if given, gets a sentence that
+/// names the file and the number of turned tetrahedra. If turning would make tetrahedra overlap, the shape itself is
+/// faulty; the mesh is then left as in the file, and `inspect` counts the faults.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.
@@ -98,12 +98,12 @@ Mesh table(const TableShape& shape);
 /// - TetGen: the last attribute in the .ele file, if it is a whole number for all tetrahedra.
 ///
 /// Throws SceneError that names the file, the place in the file, and the found and the expected text.
-Mesh read(const std::string& path);
+Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle surface from a file in one of the formats of `read`, or in Wavefront .obj or .stl format. The
 /// surface of a tetrahedral mesh is its boundary. Polygons are split into triangles that share their first corner.
-/// Throws SceneError.
-SurfaceMesh read_surface(const std::string& path);
+/// `notes` as for `read`. Throws SceneError.
+SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns an equal mesh. The file name must end in
 /// .msh. An existing file is replaced completely or not at all. Throws SceneError.
@@ -126,8 +126,10 @@ struct MeshReport {
     // < 0 for an inverted one.
     Real min_quality = 0, mean_quality = 0;
     std::size_t inverted = 0, flat = 0;  // numbers of tetrahedra of negative volume and of zero volume
+    std::size_t slivers = 0;             // number of tetrahedra of positive volume with a quality below 0.1
     // true if every boundary edge has two triangles, and the triangles at every node form one ring
     bool closed_manifold = false;
+    std::string boundary_fault;         // first fault of the boundary, and number of faults; empty if there are none
     std::map<int, std::size_t> labels;  // number of tetrahedra with each label; empty if the mesh has no labels
 };
 MeshReport inspect(const Mesh& mesh);

@@ -191,14 +191,26 @@ public:
     /// that are a pose of the body, and set_velocities() takes the nearest rigid motion.
     void set_pose(BodyHandle body, const Pose& pose);
     void set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angular_velocity = Vec3::Zero());
-    /// Changes the kind of a body. Handle, name and settings stay, and the body counts as added last. Centre of mass,
-    /// momentum and angular momentum stay the same up to rounding. Between explicit and implicit bodies, shape and
-    /// velocities are taken over. A body that becomes rigid gets the shape of its mesh, fitted to the nodes; its energy
-    /// of deformation and vibration is lost. A body that becomes explicit starts with fully relaxed viscous stress, as
-    /// if it had been in its shape for a long time. Throws SceneError for `automatic`; for a body that is attached, has
-    /// a joint, or is a sphere, capsule or cylinder; and for a body with self-contact that is to become rigid or
-    /// implicit.
+    /// Changes the kind of a body. Handle, name, settings and shape stay, and the body counts as added last. Centre of
+    /// mass, momentum and angular momentum stay the same up to rounding. Between explicit and implicit bodies,
+    /// velocities are taken over. A body that becomes rigid is frozen in its present shape; its vibration is lost. When
+    /// it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes explicit
+    /// starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws SceneError for
+    /// `automatic`; for a body that is attached, has a joint, or is a sphere, capsule or cylinder; for a body with
+    /// self-contact that is to become rigid or implicit; and for a body with inverted tetrahedra that is to become
+    /// rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
+    /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
+    /// its mesh. The body keeps no memory: viscous strain, sleep, and the stored impulses of its contacts and joints
+    /// are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even if it
+    /// was frozen in it. Settings::start_overlaps applies to new overlaps.
+    void reset(BodyHandle body);
+    void reset(BodyHandle body, const Pose& pose);
+    /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
+    void reset();
+    /// Continues from the state of `saved`, which must be a clone() of this world. Handles stay valid. Threads and
+    /// callbacks of this world stay.
+    void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
     /// Reads or changes a material. Bodies of this material keep their shapes and velocities and get new masses, stable

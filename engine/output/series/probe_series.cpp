@@ -16,7 +16,7 @@ public:
     ProbeSeries(const std::filesystem::path& file, const Scene& scene) : file_(file), probes_(scene.recorded) {}
 
     void open(World& world, const RunStart& start) override {
-        recorder_.emplace(world, probes_);
+        recorder_.emplace(world, probes_, start.row_step);
         begin_file(world, start);
         if (!start.resumed()) recorder_->sample(world);
     }

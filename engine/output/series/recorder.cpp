@@ -183,6 +183,7 @@ Recorder::Recorder(World& world, std::vector<RecordedProbe> probes, Real every) 
     if (std::ranges::any_of(probes, measures_force) && !world.measures_forces()) world.measure_forces(true);
     impl_->every = every;
     impl_->last_time = world.time();
+    if (every > 0) impl_->next = (std::floor(world.time() / every + slack) + 1) * every;
     impl_->columns.push_back({"", "time", "s"});
     for (RecordedProbe& probe : probes) {
         add_columns(probe, impl_->columns);
@@ -200,8 +201,9 @@ void Recorder::sample(const World& world) {
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
+    const bool initial = !r.begun && !(time > r.last_time);
     r.last_time = time;
-    if (r.begun && time < r.next - slack * r.every) return;
+    if (!initial && time < r.next - slack * r.every) return;
     r.begun = true;
     if (r.every > 0) r.next = (std::floor(time / r.every + slack) + 1) * r.every;
     const std::size_t before = r.values.size();

@@ -18,6 +18,7 @@ RunOptions options_of(const CaseJob& job) {
     options.overrides.threads = 1;
     options.overrides.backend = Backend::serial;
     options.quiet = true;
+    options.series_figures = true;
     if (job.probes) options.outputs["--probes"] = unfinished_series_file(job.folder, job.index);
     return options;
 }

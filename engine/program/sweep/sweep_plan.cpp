@@ -96,7 +96,7 @@ CaseFile SweepPlan::read(int index) const {
 SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder) {
     SweepPlan plan{.file = read_sweep_file(file), .cases = {}, .folder = folder, .hashes = {}};
     plan.cases = cases_of(plan.file);
-    if (plan.folder.empty()) plan.folder = std::filesystem::path("out") / file.stem();
+    if (plan.folder.empty()) plan.folder = std::filesystem::path("out") / plan.file.name;
     CaseHasher hasher(plan.file.scene.path);
     require_places(plan, hasher.scene());
     require_a_readable_case(plan);

@@ -37,20 +37,6 @@ Real volume_sign(const std::array<Index, 4>& corner, std::span<const Vec3> posit
     return edges.determinant();
 }
 
-/// Changes the attachments of a body so that they hold their nodes at the present positions.
-void hold_here(Model& model, std::size_t body, Real now) {
-    AttachmentTable& table = model.attachments;
-    for (std::size_t a = 0; a < table.slot.size(); ++a) {
-        if (table.body[a] != static_cast<Index>(body)) continue;
-        const RigidPose pose = pose_at(table.script[a], table.keyframe, table.initial[a], now);
-        for (Index i = table.nodes[a].begin; i < table.nodes[a].end; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            table.anchor[at] = pose.rotation.transpose() *
-                               (model.nodes.position[static_cast<std::size_t>(table.node[at])] - pose.position);
-        }
-    }
-}
-
 /// Moves a rigid body to the given node positions. Throws SceneError if no rigid motion of the body leads to them.
 void place_rigid(WorldState& world, std::size_t body, std::span<const Vec3> position) {
     Model& model = world.model;
@@ -80,6 +66,19 @@ void require_upright(const Model& model, std::size_t body, std::span<const Vec3>
         if (!(volume_sign(tetrahedra[t], position) > 0) && volume_sign(tetrahedra[t], now) > 0)
             refuse(object, field, "positions for which tetrahedron " + std::to_string(t) + " has a volume <= 0",
                    "positions that invert no tetrahedron");
+}
+
+void hold_here(Model& model, std::size_t body, Real now) {
+    AttachmentTable& table = model.attachments;
+    for (std::size_t a = 0; a < table.slot.size(); ++a) {
+        if (table.body[a] != static_cast<Index>(body)) continue;
+        const RigidPose pose = pose_at(table.script[a], table.keyframe, table.initial[a], now);
+        for (Index i = table.nodes[a].begin; i < table.nodes[a].end; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            table.anchor[at] = pose.rotation.transpose() *
+                               (model.nodes.position[static_cast<std::size_t>(table.node[at])] - pose.position);
+        }
+    }
 }
 
 void place_nodes(WorldState& world, std::size_t body, std::span<const Vec3> position) {

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/mesh/tetrahedron.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/erase_gone.h"
@@ -94,15 +95,56 @@ void give_nodes_momenta(Model& model, std::size_t body, const WholeMotion& wante
         model.nodes.velocity[n] += velocity + turn.cross(model.nodes.position[n] - center);
 }
 
-/// Appends another row for a body, with the dynamics `next`, undeformed and without velocity. If the new row has no
-/// valid stable step, removes this row again and throws SceneError.
+/// Shape of the mesh of a body, in the frame of the mesh [m].
+std::vector<Vec3> mesh_shape_of(const Model& model, std::size_t body) {
+    if (const std::vector<Vec3>& kept = model.body_records[body].mesh_shape; !kept.empty()) return kept;
+    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[body]);
+    return {rest.begin(), rest.end()};
+}
+
+/// Present shape of a body, in the frame of the mesh [m]. The list is empty if the body is not deformed.
+std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const RigidPose& pose,
+                                    std::span<const Vec3> mesh_shape) {
+    std::vector<Vec3> shape;
+    Real most = 0;
+    for (const Vec3& x : rows_of(model.nodes.position, model.bodies.nodes[body])) {
+        shape.push_back(pose.rotation.transpose() * (x - pose.position));
+        most = std::max(most, (shape.back() - mesh_shape[shape.size() - 1]).norm());
+    }
+    // rounding error of the fitted pose, relative to the mean edge length
+    constexpr Real rounding = 1e-12;
+    if (!(most > rounding * model.bodies.mean_edge[body])) shape.clear();
+    return shape;
+}
+
+/// A rigid body keeps its volume, so that a shape with an inverted tetrahedron has no inertia that makes sense.
+void require_upright_shape(const Model& model, std::size_t body, std::span<const Vec3> shape) {
+    const BodyRecord& record = model.body_records[body];
+    const Mesh deformed{.nodes = {shape.begin(), shape.end()}, .tetrahedra = record.tetrahedra};
+    const auto is_bad = [&](const std::array<Index, 4>& tetrahedron) {
+        return mesh::orientation(deformed, tetrahedron) != mesh::Orientation::positive;
+    };
+    const auto count = std::ranges::count_if(record.tetrahedra, is_bad);
+    if (count > 0)
+        refuse_change(model, body, "dynamics",
+                      "a shape in which " + std::to_string(count) + " of " + std::to_string(record.tetrahedra.size()) +
+                          " tetrahedra are flat or inverted",
+                      "a shape without such tetrahedra, because a rigid body is frozen in its present shape",
+                      "advance until the body has recovered, or call reset() first");
+}
+
+/// Appends another row for a body, with the dynamics `next` and without velocity. A rigid body gets the present shape
+/// of the body, other bodies get the shape of the mesh. If the new row has no valid stable step, removes this row again
+/// and throws SceneError.
 std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     Model& model = world.model;
     const BodyTable& bodies = model.bodies;
     const BodyRecord record = model.body_records[body];
-    const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, bodies.nodes[body]);
-    const std::vector<Vec3> nodes(rest.begin(), rest.end());
     const RigidPose pose = pose_of_body(model, body);
+    const std::vector<Vec3> mesh_shape = mesh_shape_of(model, body);
+    std::vector<Vec3> frozen;
+    if (next == BodyDynamics::rigid) frozen = deformed_shape_of(model, body, pose, mesh_shape);
+    if (!frozen.empty()) require_upright_shape(model, body, frozen);
     const Index row = append_body(model, world.scratch.stiffness_sum,
                                   {.slot = bodies.slot[body],
                                    .self_contact = bodies.self_contact[body] != 0,
@@ -112,7 +154,8 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
                                    .material = bodies.material[body],
                                    .tetrahedron_material = record.tetrahedron_material,
                                    .contact_distance = bodies.contact_distance[body],
-                                   .nodes = nodes,
+                                   .nodes = frozen.empty() ? mesh_shape : frozen,
+                                   .mesh_shape = frozen.empty() ? std::span<const Vec3>() : mesh_shape,
                                    .tetrahedra = record.tetrahedra,
                                    .triangles = {},
                                    .position = pose.position,
@@ -121,6 +164,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
                                    .angular_velocity = Vec3::Zero()});
     const auto after = static_cast<std::size_t>(row);
     model.body_records[after].name = record.name;
+    model.body_records[after].start = record.start;
     try {
         validate_step(model, row, record.name);
     } catch (const SceneError&) {
@@ -166,11 +210,11 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     copy_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);
     note_forces(model);
+    model.body_records[after].settled = model.body_records[before].settled;
     if (model.is_rigid(after)) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
-        return;  // the undeformed shape may overlap other objects, so the body is checked like a new body
+        return;
     }
-    model.body_records[after].settled = model.body_records[before].settled;
     copy_rows(model.nodes.position, from, to);
     copy_rows(model.nodes.displacement_origin, from, to);
     copy_rows(model.nodes.velocity, from, to);

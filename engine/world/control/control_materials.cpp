@@ -81,6 +81,7 @@ void restart(WorldState& world, std::size_t body) {
     as_new.round_radius = model.bodies.round_radius[body];
     as_new.nodes = model.nodes.rest_position.span().subspan(static_cast<std::size_t>(nodes.begin),
                                                             static_cast<std::size_t>(nodes.size()));
+    as_new.mesh_shape = record.mesh_shape;
     as_new.tetrahedra = record.tetrahedra;
     restart_elements(model, static_cast<Index>(body), as_new, world.scratch.stiffness_sum);
     validate_step(model, static_cast<Index>(body), record.name);

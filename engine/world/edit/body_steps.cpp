@@ -89,7 +89,7 @@ RoundMass round_mass(const Model& model, const NewBody& body) {
 
 void set_masses(Model& model, const NewBody& body, Range range) {
     NodeTable& nodes = model.nodes;
-    add_lumped_mass(body.tetrahedra, body.nodes, densities(model, body), rows_of(nodes.mass, range));
+    add_lumped_mass(body.tetrahedra, body.shape_of_masses(), densities(model, body), rows_of(nodes.mass, range));
     // A round body is drawn with a mesh that lies inside the exact shape and has less volume. The masses of its nodes
     // are scaled to the mass of the exact shape.
     if (body.core_nodes > 0) {

@@ -212,7 +212,9 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
          .surface = {body.triangles.begin(), body.triangles.end()},
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
-         .element_tetrahedra = covered_tetrahedra(list, rows.elements.element)});
+         .element_tetrahedra = covered_tetrahedra(list, rows.elements.element),
+         .start = {body.position, body.rotation},
+         .mesh_shape = {body.mesh_shape.begin(), body.mesh_shape.end()}});
     if (implicit) model.stiffen(b);
     model.settled = false;
     model.append_outline(b);

@@ -30,6 +30,9 @@ struct NewBody {
     Index core_nodes = 0;
     Real round_radius = 0;  // [m]
     std::span<const Vec3> nodes;
+    // For a body that is frozen in the deformed shape `nodes`: node positions of its mesh, which determine the masses
+    // of the tetrahedra. If the list is empty, `nodes` determine the masses [m].
+    std::span<const Vec3> mesh_shape = {};
     std::span<const std::array<Index, 4>> tetrahedra;
     std::span<const std::array<Index, 3>> triangles;  // surface triangles of a body without tetrahedra
     Vec3 position;
@@ -44,6 +47,7 @@ struct NewBody {
     /// Half height and rim radius of a cylinder [m].
     Real half_height() const { return (nodes[1] - nodes[0]).norm(); }
     Real rim_radius() const { return (nodes[2] - nodes[1]).norm(); }
+    std::span<const Vec3> shape_of_masses() const { return mesh_shape.empty() ? nodes : mesh_shape; }
     Index material_of(std::size_t of_tetrahedron) const {
         return tetrahedron_material.empty() ? material : tetrahedron_material[of_tetrahedron];
     }

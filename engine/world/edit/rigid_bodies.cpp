@@ -42,7 +42,7 @@ MassProperties mass_properties(const Model& model, const NewBody& body) {
         return body.nodes[static_cast<std::size_t>(body.tetrahedra[t][k])];
     };
     for (std::size_t t = 0; t < mass.size(); ++t) {
-        mass[t] = density[t] * six_volumes(body.tetrahedra[t], body.nodes) / 6;
+        mass[t] = density[t] * six_volumes(body.tetrahedra[t], body.shape_of_masses()) / 6;
         found.mass += mass[t];
         found.center += mass[t] / 4 * (corner(t, 0) + corner(t, 1) + corner(t, 2) + corner(t, 3));
     }

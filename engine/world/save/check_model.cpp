@@ -291,11 +291,6 @@ void check_clusters(const Hdf5File& file, Model& model) {
     expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
 }
 
-bool is_rotation(const Mat3& m) {
-    constexpr Real rounding = 1e-9;
-    return (m.transpose() * m - Mat3::Identity()).norm() < rounding && m.determinant() > 0;
-}
-
 void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
     const auto require = [&](bool good, const char* column, std::size_t r, const char* found, const char* expected) {
         if (!good)

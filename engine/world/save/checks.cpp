@@ -1,5 +1,7 @@
 #include "engine/world/save/checks.h"
 
+#include <Eigen/Dense>
+
 namespace skerry {
 
 namespace {
@@ -79,6 +81,11 @@ void expect_all_offsets(const Hdf5File& file, const std::string& path, std::span
     if (offset.back() != static_cast<Index>(items))
         file.complain(path, std::to_string(offset.back()) + " as the last offset" + of,
                       std::to_string(items) + ", the number of items");
+}
+
+bool is_rotation(const Mat3& matrix) {
+    constexpr Real rounding = 1e-9;
+    return (matrix.transpose() * matrix - Mat3::Identity()).norm() < rounding && matrix.determinant() > 0;
 }
 
 }  // namespace skerry

@@ -53,6 +53,8 @@ void expect_between(const Hdf5File& file, std::string_view path, std::span<const
 /// Checks that each range begins where the previous range ends, and that the ranges together cover `count` rows.
 void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
+bool is_rotation(const Mat3& matrix);
+
 inline std::span<const Index> part(std::span<const Index> rows, Range range) {
     return rows.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.size()));
 }

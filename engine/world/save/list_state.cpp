@@ -45,6 +45,8 @@ void list_records(SavedRows& saved, Archive& archive) {
     archive.column("/records/choice_reason", saved.choice_reason);
     archive.column("/records/choice_estimate", saved.choice_estimate);
     archive.column("/records/collider_settled", saved.collider_settled);
+    archive.column("/records/body_start", saved.body_start);
+    list_ragged("/records/mesh_shape", saved.mesh_shape, archive);
     list_ragged("/records/tetrahedron_material", saved.tetrahedron_material, archive);
     list_ragged("/records/body_name", saved.body_name, archive);
     list_ragged("/records/collider_name", saved.collider_name, archive);

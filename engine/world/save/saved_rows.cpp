@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "components/hash.h"
+#include "engine/mesh/require_positive.h"
 #include "engine/world/save/checks.h"
 #include "engine/world/validate.h"
 
@@ -189,6 +190,37 @@ HandleType handle_of(std::uint32_t slot, std::uint32_t generation, std::uint32_t
     return slot == HandleType{}.slot ? HandleType{} : HandleType{slot, generation, world};
 }
 
+std::array<Real, 12> numbers_of(const RigidPose& pose) {
+    std::array<Real, 12> numbers{};
+    std::copy_n(pose.position.data(), 3, numbers.begin());
+    std::copy_n(pose.rotation.data(), 9, numbers.begin() + 3);
+    return numbers;
+}
+
+/// Reads the pose at which a body was added. `body`: name of the body in messages.
+RigidPose pose_of(const std::array<Real, 12>& numbers, const std::string& body, const Hdf5File& file) {
+    const RigidPose pose{Eigen::Map<const Vec3>(numbers.data()), Eigen::Map<const Mat3>(numbers.data() + 3)};
+    if (!is_rotation(pose.rotation))
+        file.complain("/records/body_start", "a matrix that is not a rotation for " + body, "a rotation matrix");
+    return pose;
+}
+
+/// Reads the shape of the mesh of a body that is frozen in another shape. The list is empty for all other bodies.
+void put_mesh_shape(std::span<const Vec3> shape, std::size_t body, const Hdf5File& file, Model& model) {
+    BodyRecord& record = model.body_records[body];
+    if (shape.empty()) return;
+    const std::string name = "body " + std::to_string(body);
+    if (!model.is_rigid(body) || shape.size() != static_cast<std::size_t>(model.bodies.nodes[body].size()))
+        file.complain("/records/mesh_shape", std::to_string(shape.size()) + " nodes for " + name,
+                      "none, or one for each node of a rigid body");
+    record.mesh_shape.assign(shape.begin(), shape.end());
+    try {
+        mesh::require_positive({.nodes = record.mesh_shape, .tetrahedra = record.tetrahedra}, name);
+    } catch (const SceneError& error) {
+        file.complain("/records/mesh_shape", std::string("an invalid shape (") + error.what() + ")", "a valid mesh");
+    }
+}
+
 SavedStart start_of(const RunRecord& record) {
     SavedStart saved;
     for (const StartOverlap& found : record.start_overlaps) {
@@ -226,6 +258,8 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.choice_reason.push_back(e.reason);
         saved.choice_estimate.push_back({e.explicit_step, e.implicit_step, e.deforming_step, e.explicit_cost,
                                          e.implicit_cost, e.strain, e.damped_above});
+        saved.body_start.push_back(numbers_of(record.start));
+        append(std::span<const Vec3>(record.mesh_shape), saved.mesh_shape);
         append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
     }
@@ -269,6 +303,8 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_rows(file, "/records/body_settled", saved.body_settled.size(), bodies, "bodies");
     expect_rows(file, "/records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
     expect_rows(file, "/records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
+    expect_rows(file, "/records/body_start", saved.body_start.size(), bodies, "bodies");
+    expect_ragged(file, "/records/mesh_shape", saved.mesh_shape, bodies, "bodies");
     expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
     expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
     expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
@@ -305,7 +341,9 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
             file.complain("/records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");
         record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
+        record.start = pose_of(saved.body_start[b], body, file);
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
+        put_mesh_shape(saved.mesh_shape[b], b, file, model);
         record.surface.assign(parts.surface.begin(), parts.surface.end());
         const std::span<const Index> materials = saved.tetrahedron_material[b];
         if (!materials.empty() && materials.size() != parts.tetrahedra.size())

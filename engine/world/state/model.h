@@ -35,6 +35,7 @@
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
 #include "systems/dynamics/kinds/element_list.h"
+#include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
 
@@ -55,7 +56,11 @@ struct BodyRecord {
     // Tetrahedra covered by each element, in the order of the lanes in the element blocks of the body. An unused lane
     // has no tetrahedra.
     Ragged<Index> element_tetrahedra;
-    bool settled = false;       // true if the body was checked for overlaps
+    bool settled = false;                             // true if the body was checked for overlaps
+    RigidPose start{Vec3::Zero(), Mat3::Identity()};  // pose at which the body was added
+    // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
+    // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
+    std::vector<Vec3> mesh_shape{};
     DynamicsEstimate choice{};  // estimate behind the choice, for a body added as `automatic`
 };
 

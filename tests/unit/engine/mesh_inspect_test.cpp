@@ -60,6 +60,7 @@ TEST_CASE("flat does not depend on the unit of length", "[unit]") {
         thin.nodes[3] = {0.5, 0.3, 1e-4};  // a sliver, not flat
         for (Vec3& x : thin.nodes) x *= scale;
         CHECK(inspect(thin).flat == 0);
+        CHECK(inspect(thin).slivers == 1);
         CHECK_NOTHROW(mesh::require_positive(thin, "sliver"));
         thin.nodes[3][2] = 1e-14 * scale;
         CHECK(inspect(thin).flat == 1);
@@ -88,7 +89,16 @@ TEST_CASE("two tetrahedra that meet in one node are no manifold, and the node is
     mesh.tetrahedra.back() = {0, 1, 4, 5};
     CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==
           "an edge between nodes 0 and 1 with 4 boundary triangles instead of 2");
+    CHECK(inspect(mesh).boundary_fault == mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)));
     CHECK(mesh::manifold_fault({}) == "no boundary triangle");
+    const Mesh far = mesh;
+    for (const Vec3& x : far.nodes) mesh.nodes.push_back(x + Vec3(10, 0, 0));
+    for (std::array<Index, 4> t : far.tetrahedra) {
+        for (Index& n : t) n += static_cast<Index>(far.nodes.size());
+        mesh.tetrahedra.push_back(t);
+    }
+    CHECK(mesh::manifold_fault(boundary_triangles(mesh.tetrahedra)) ==
+          "an edge between nodes 0 and 1 with 4 boundary triangles instead of 2 (2 such edges in total)");
 }
 
 TEST_CASE("separate tetrahedra are separate pieces, unused nodes none", "[unit]") {

@@ -174,22 +174,39 @@ TEST_CASE("either name of a TetGen pair reads both", "[unit]") {
     CHECK(mesh::read(elements).tetrahedra == sample().tetrahedra);
 }
 
-TEST_CASE("a file whose tetrahedra all count the other way round is turned over", "[unit]") {
-    Mesh mesh = sample();
-    for (auto& t : mesh.tetrahedra) std::swap(t[0], t[1]);
+TEST_CASE("inverted tetrahedra of a file are turned, and a note counts them", "[unit]") {
     const TemporaryFolder folder;
-    const MeshReport report = inspect(mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text))));
-    CHECK(report.inverted == 0);
-    CHECK(report.volume == Approx(0.006));
+    std::vector<std::string> notes;
+    const auto read = [&](const Mesh& mesh) {
+        notes.clear();
+        return mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text)), &notes);
+    };
+    CHECK(inspect(read(sample())).volume == Approx(0.006));
+    CHECK(notes.empty());
+    Mesh some = sample(), all = sample();
+    std::swap(some.tetrahedra[3][0], some.tetrahedra[3][1]);
+    for (auto& t : all.tetrahedra) std::swap(t[0], t[1]);
+    const std::string count = std::to_string(all.tetrahedra.size());
+    for (const auto& [mesh, turned] : {std::pair(some, std::string("1")), {all, count}}) {
+        const MeshReport report = inspect(read(mesh));
+        CHECK(report.inverted == 0);
+        CHECK(report.volume == Approx(0.006));
+        REQUIRE(notes.size() == 1);
+        CHECK_THAT(notes[0], Contains("a.msh: " + turned + " of " + count + " tetrahedra list their nodes"));
+    }
+    mesh::read_surface(folder.write("b.msh", gmsh2_file(some, Bytes::text)), &notes);
+    CHECK_THAT(notes.back(), Contains("b.msh: 1 of " + count));
 }
 
-TEST_CASE("a file with some inverted tetrahedra is read as it is", "[unit]") {
-    Mesh mesh = sample();
-    std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
+TEST_CASE("a file with a node in a wrong place is read as it is", "[unit]") {
+    Mesh mesh{.nodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, 0.5)},
+              .tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}}};  // turned, the second would lie in the first
     const TemporaryFolder folder;
-    const Mesh found = mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text)));
+    std::vector<std::string> notes;
+    const Mesh found = mesh::read(folder.write("a.msh", gmsh2_file(mesh, Bytes::text)), &notes);
     CHECK(found.tetrahedra == mesh.tetrahedra);
     CHECK(inspect(found).inverted == 1);
+    CHECK(notes.empty());
 }
 
 TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") {
@@ -344,7 +361,10 @@ TEST_CASE("meshes of other programs load, and malformed ones are refused for wha
         CHECK(report.tetrahedra == known.tetrahedra);
         CHECK(report.inverted + report.flat == 0);
     }
-    CHECK(inspect(mesh::read((folder / "six_tetra_bad.msh").string())).inverted == 1);
+    std::vector<std::string> notes;
+    CHECK(inspect(mesh::read((folder / "six_tetra_bad.msh").string(), &notes)).inverted == 0);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Contains("six_tetra_bad.msh: 1 of 6 tetrahedra"));
     const auto refused = [&](const char* name) {
         try {
             mesh::read((folder / "malformed" / (std::string("malformed_cube_") + name + ".msh")).string());

@@ -78,7 +78,62 @@ class ProgramStartTest(ProgramCase):
             {"name": "pair", "mesh": {"file": "m.ele"}, "material": "rubber"}]})
         said = self.skerry("run", scene).stdout
         self.assertIn("the boundary of body 'pair' is not a closed manifold: node 0, at which parts of", said)
-        self.assertIn("not a closed manifold", self.skerry("inspect", scene).stdout)
+        self.assertRegex(said, "without a common edge in .*m.ele; contacts may fail")
+        said = self.skerry("inspect", scene).stdout
+        self.assertRegex(said, r'body "pair" \(mesh .*m.ele\): the boundary is not a closed manifold \(node 0, at')
+
+    def two_tetrahedra(self, name, second, apex=-1):
+        """A scene with a mesh of two tetrahedra on a shared face; `second` lists the nodes of the second one."""
+        self.write(name + ".node", f"5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 {apex}\n")
+        self.write(name + ".ele", f"2 4 0\n1 1 2 3 4\n2 {second}\n")
+        return self.write(name + ".json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
+            {"name": "pair", "mesh": {"file": name + ".ele"}, "material": "rubber"}]})
+
+    def test_tetrahedra_listed_the_other_way_round_are_turned_and_counted(self):
+        scene, stats = self.two_tetrahedra("mixed", "1 2 3 5"), self.folder / "stats.json"
+        done = self.skerry("run", scene, "--stats", stats)
+        said = "mixed.ele: 1 of 2 tetrahedra list their nodes in the opposite order"
+        self.assertIn("skerry: NOTE: ", done.stderr)
+        self.assertIn(said, done.stderr)
+        self.assertIn(said, json.loads(stats.read_text())["notes"][0])
+        self.assertIn(said, self.skerry("inspect", scene).stdout)
+        self.assertIn(said, self.skerry("inspect", self.folder / "mixed.ele").stdout)
+        self.assertEqual(self.skerry("run", scene, "--quiet").stderr, "")
+        clean = self.skerry("run", self.two_tetrahedra("clean", "1 3 2 5"))
+        self.assertNotIn("NOTE", clean.stderr)
+
+    def test_a_mesh_with_a_node_in_a_wrong_place_is_refused_with_its_file_and_its_faults(self):
+        # The apex of the second tetrahedron lies on the wrong side: turned, it would lie in the first tetrahedron.
+        scene = self.two_tetrahedra("tangled", "1 3 2 5", apex=0.5)
+        self.assert_refused("run", scene,
+                            said=["tangled.json", "tangled.ele: tetrahedron 1", "inverted: 1, flat: 0 of 2"])
+        self.assertIn("1 inverted tetrahedra", self.skerry("inspect", self.folder / "tangled.ele").stdout)
+
+    def test_a_stiff_explicit_body_is_named_with_its_remedy_before_a_long_run(self):
+        scene = json.loads(json.dumps(SCENE))
+        scene["materials"]["steel"] = {"E": 2e11, "nu": 0.3, "rho": 7800}
+        scene["bodies"].append({**scene["bodies"][0], "name": "anvil", "material": "steel", "dynamics": "explicit",
+                                "position": [1, 0, 0.11]})
+        scene["seconds"] = 1000
+        scene["settings"] = {"gravity": [0, 0, 0]}  # the bodies fall asleep, and the run is short
+        slow = self.skerry("run", self.write("anvil.json", scene), "--seconds", 1000)
+        note = next(line for line in slow.stderr.splitlines() if "NOTE" in line)
+        for part in ('body "anvil" is explicit, of material "steel"', "steps, ",
+                     'set "dynamics" of the body to "implicit"'):
+            self.assertIn(part, note)
+        self.assertNotIn("NOTE", self.skerry("run", self.folder / "anvil.json", "--seconds", 0.001).stderr)
+        scene["bodies"][1]["dynamics"] = "implicit"
+        self.assertNotIn("NOTE", self.skerry("run", self.write("quick.json", scene)).stderr)
+
+    def test_a_run_without_any_contact_says_so_with_the_shortest_distance(self):
+        scene = {**SCENE, "settings": {"gravity": [0, 0, 0]}}
+        scene["bodies"] = [{**SCENE["bodies"][0], "position": [0, 0, 0.6]}]
+        said = self.skerry("run", self.write("far.json", scene)).stdout
+        self.assertIn('no contact in the whole run: the shortest distance at the end is 500 mm between body "block" '
+                      'and collider "floor"', said)
+        self.assertNotIn("no contact in the whole run", self.skerry("run", self.scene).stdout)
+        del scene["colliders"]
+        self.assertNotIn("no contact in the whole run", self.skerry("run", self.write("alone.json", scene)).stdout)
 
     def test_a_collider_that_turns_by_much_in_a_step_is_named(self):
         mill = {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "settings": {"gravity": [0, 0, 0]},

@@ -106,6 +106,27 @@ class SeriesTest(ProgramCase):
         of = [re.search(r'"state_hash": "(\w+)"', path.read_text()).group(1) for path in (stats, other)]
         self.assertEqual(*of)
 
+    def test_rows_are_at_multiples_of_the_probe_step_whatever_the_frames(self):
+        for probe_step, frame_step, seconds in ((0.01, 1 / 60, 0.1), (0.02, 0.05, 0.13), (0.04, 0.015, 0.2)):
+            series = self.folder / "series.csv"
+            scene = self.write("odd.json", {**SCENE, "probe_step": probe_step, "frame_step": frame_step,
+                                            "seconds": seconds})
+            self.skerry("run", scene, "--probes", series)
+            rows = read_csv(series)
+            at = rows["time [s]"]
+            self.assertEqual(len(at), math.floor(seconds / probe_step + 1e-9) + 1, at)
+            for i, time in enumerate(at):
+                self.assertAlmostEqual(time, probe_step * i, places=12)
+            # impulses between rows include the calls of advance that end between them
+            checkpoint, again = self.folder / "run.skerry", self.folder / "again.csv"
+            whole = self.skerry("run", scene, "--stats", self.folder / "whole.json", "--probes", again,
+                                "--checkpoint", checkpoint, "--every", 0.03, "--seconds", seconds)
+            self.skerry("run", "--restart", checkpoint, "--probes", again, "--seconds", seconds + 0.05)
+            longer = read_csv(again)
+            for i, time in enumerate(longer["time [s]"]):
+                self.assertAlmostEqual(time, probe_step * i, places=12)
+            self.assertEqual(longer["time [s]"][:len(at)], at)
+
     def test_hdf5_holds_the_same_numbers_with_units(self):
         self.skerry("run", self.scene, "--probes", self.folder / "s.h5", "--seconds", 0.05)
         content = (self.folder / "s.h5").read_bytes()

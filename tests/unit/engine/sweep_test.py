@@ -72,6 +72,43 @@ class SweepTest(ProgramCase):
             self.assertEqual((result["report"]["threads"], result["report"]["backend"]), (1, "serial"))
         self.assertEqual(len(set(self.hashes())), 6)
 
+    def test_the_table_has_columns_for_every_probe_of_a_series(self):
+        probes = [{"name": "centre", "quantity": "motion", "body": "block"},
+                  {"name": "weight", "quantity": "force", "body": "block", "by": "floor"},
+                  {"name": "bend", "quantity": "stress", "body": "block"},
+                  {"name": "squeeze", "quantity": "volume", "body": "block"}]
+        self.scene.write_text(json.dumps({**SCENE, "probes": probes}))
+        done = self.sweep(self.cases, "--out", self.out, "--probes")
+        for name in ("weight.largest_force_max_N", "bend.largest_von_mises_max_Pa",
+                     "squeeze.smallest_volume_ratio_min"):
+            self.assertIn(name, done.stdout.splitlines()[0])
+        for row in self.table():
+            with open(self.out / f"case_{int(row['case']):06d}.csv", newline="") as file:
+                series = list(csv.DictReader(file))
+            for column, figure, unit in (("centre.position_z [m]", "centre.position_z", "_m"),
+                                         ("centre.velocity_z [m/s]", "centre.velocity_z", "_m_s"),
+                                         ("bend.largest_von_mises [Pa]", "bend.largest_von_mises", "_Pa"),
+                                         ("squeeze.smallest_volume_ratio [1]", "squeeze.smallest_volume_ratio", "")):
+                values = [float(line[column]) for line in series]
+                self.assertLessEqual(float(row[figure + "_min" + unit]), min(values))
+                self.assertGreaterEqual(float(row[figure + "_max" + unit]), max(values))
+                self.assertAlmostEqual(float(row[figure + "_end" + unit]), values[-1], places=9)
+            self.assertGreater(float(row["weight.force_z_max_N"]), 10)
+            self.assertTrue(float(row["weight.force_z_min_N"]) <= float(row["weight.force_z_mean_N"]) <=
+                            float(row["weight.force_z_max_N"]))
+
+    def test_the_folder_of_results_has_the_name_of_the_sweep(self):
+        cases = {"scene": "drop.json", "grid": [{**MU, "values": [0.1]}]}
+        for name, extra in (("grips", {"name": "grips"}), ("cases", {})):
+            file = self.write("cases.json", {**extra, **cases})
+            done = subprocess.run([PROGRAM, "sweep", file, "--quiet"], cwd=self.folder, capture_output=True, text=True,
+                                  timeout=300, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue((self.folder / "out" / name / "sweep.csv").exists(), name)
+        for name in ("../elsewhere", ".."):
+            self.assert_refused("sweep", self.write("bad.json", {"name": name, **cases}),
+                                said=["bad.json", "name", name])
+
     def test_what_is_done_is_not_done_again(self):
         self.sweep(self.cases, "--out", self.out)
         files = {i: self.out / f"case_{i:06d}.json" for i in range(6)}

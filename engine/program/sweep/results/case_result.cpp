@@ -73,6 +73,7 @@ CaseResult result_of(const RunResult& run, double seconds_cpu) {
         add("changes", probe.changes);
         add("max_von_mises_Pa", probe.max_von_mises);
     }
+    result.figures.insert(result.figures.end(), run.series.begin(), run.series.end());
     return result;
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int most_lines = 60;  // largest number of cases in the table on the terminal
 constexpr int most_messages = 10;
+// endings of the numbers of probes that the table on the terminal shows
+constexpr const char* shown_of_probes[] = {".slip_m", ".largest_force_max_N", ".largest_von_mises_max_Pa",
+                                           ".smallest_volume_ratio_min"};
 
 using Cells = std::vector<std::string>;
 
@@ -28,7 +31,8 @@ std::vector<std::string> shown_figures(const SweepTable& table) {
     std::vector<std::string> shown{"seconds_simulated", "steps",         "seconds_cpu",
                                    "contacts_mean",     "penetration_m", "energy_error_share"};
     for (const std::string& name : figure_names(table))
-        if (name.ends_with(".slip_m")) shown.push_back(name);
+        if (std::ranges::any_of(shown_of_probes, [&](const char* end) { return name.ends_with(end); }))
+            shown.push_back(name);
     shown.emplace_back("warnings");
     return shown;
 }

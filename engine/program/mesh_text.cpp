@@ -1,0 +1,64 @@
+#include "engine/program/mesh_text.h"
+
+#include "engine/program/number_text.h"
+#include "engine/program/start_text.h"
+
+namespace skerry {
+
+Problems problems_of(const MeshReport& r) {
+    Problems problems;
+    if (r.tetrahedra == 0) problems.push_back("the mesh has no tetrahedra");
+    if (r.inverted > 0)
+        problems.push_back(grouped(r.inverted) + " inverted tetrahedra (of negative volume): a run refuses the mesh");
+    if (r.flat > 0) problems.push_back(grouped(r.flat) + " flat tetrahedra (without volume): a run refuses the mesh");
+    if (r.components > 1)
+        problems.push_back(grouped(r.components) + " parts of the mesh are not connected to each other");
+    if (r.slivers > 0)
+        problems.push_back(grouped(r.slivers) + " of " + grouped(r.tetrahedra) +
+                           (r.slivers == 1 ? " tetrahedra is a sliver" : " tetrahedra are slivers") +
+                           ", the worst of quality " + short_number(r.min_quality) +
+                           " (1: regular tetrahedron), which shortens the stable step");
+    if (!r.closed_manifold)
+        problems.push_back("the boundary is not a closed manifold (" + r.boundary_fault + "): contacts may fail there");
+    return problems;
+}
+
+Json mesh_json(const MeshReport& r) {
+    Json labels = Json::object();
+    for (const auto& [label, tetrahedra] : r.labels) labels[std::to_string(label)] = tetrahedra;
+    return {{"nodes", r.nodes},
+            {"tetrahedra", r.tetrahedra},
+            {"boundary_triangles", r.boundary_triangles},
+            {"components", r.components},
+            {"lower", vector_json(r.lower)},
+            {"upper", vector_json(r.upper)},
+            {"volume", r.volume},
+            {"edge", {{"mean", r.mean_edge}, {"min", r.min_edge}, {"max", r.max_edge}}},
+            {"min_altitude", r.min_altitude},
+            {"quality", {{"min", r.min_quality}, {"mean", r.mean_quality}}},
+            {"inverted", r.inverted},
+            {"flat", r.flat},
+            {"slivers", r.slivers},
+            {"closed_manifold", r.closed_manifold},
+            {"labels", labels}};
+}
+
+std::string labels_text(const MeshReport& report) {
+    constexpr std::size_t most = 20;
+    std::string text;
+    std::size_t listed = 0;
+    for (const auto& [label, tetrahedra] : report.labels) {
+        if (listed == most) return text + ", ... (" + grouped(report.labels.size()) + " labels)";
+        text +=
+            (listed++ > 0 ? ", label " : "label ") + std::to_string(label) + ": " + grouped(tetrahedra) + " tetrahedra";
+    }
+    return text;
+}
+
+std::string mesh_of_body_text(const ScenePlan& plan, std::size_t body) {
+    const BodyPlan& of = plan.bodies[body];
+    const std::filesystem::path& file = plan.mesh_files[of.mesh];
+    return "body \"" + of.settings.name + "\"" + (file.empty() ? "" : " (mesh " + file.string() + ")");
+}
+
+}  // namespace skerry

@@ -1,0 +1,87 @@
+#include "engine/program/stiff_note.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/program/mesh_text.h"
+#include "engine/program/number_text.h"
+#include "engine/world/world_state.h"
+
+namespace skerry {
+
+namespace {
+
+// Number of steps below which a run needs no note. A scene of a few hundred tetrahedra makes so many steps in about a
+// minute.
+constexpr double few_steps = 1e5;
+// Least ratio of the step length without the stiff bodies to the present one for which a note is given.
+constexpr Real much_longer = 4;
+
+/// Explicit bodies whose stable steps are close to the shortest one, and the longest step without them.
+struct ShortSteps {
+    std::size_t first = 0;  // index in ScenePlan::bodies of the body with the shortest step
+    std::size_t count = 0;
+    Real step = infinity, others = infinity;  // [s]
+};
+
+ShortSteps short_steps(const ScenePlan& plan, const World& world) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
+    std::vector<Real> step(bodies.size(), infinity);
+    ShortSteps stiff;
+    for (std::size_t b = 0; b < step.size(); ++b) {
+        if (world.dynamics(bodies[b]) != BodyDynamics::explicit_elastic) continue;
+        step[b] = model.bodies.stable_step[static_cast<std::size_t>(model.row(bodies[b], "stable_step"))];
+        if (!(step[b] < stiff.step)) continue;
+        stiff.first = b;
+        stiff.step = step[b];
+    }
+    for (std::size_t b = 0; b < step.size(); ++b) {
+        const bool chosen = plan.bodies[b].settings.dynamics == BodyDynamics::automatic;
+        if (!chosen && step[b] < much_longer * stiff.step)
+            ++stiff.count;
+        else
+            stiff.others = std::min(stiff.others, step[b]);
+    }
+    return stiff;
+}
+
+/// Number of tetrahedra that need much shorter steps than most tetrahedra of the body; 0 if all need similar steps.
+std::size_t count_bad(std::vector<Real> step) {
+    const auto middle = step.begin() + static_cast<std::ptrdiff_t>(step.size() / 2);
+    std::ranges::nth_element(step, middle);
+    const Real usual = *middle;
+    return static_cast<std::size_t>(
+        std::ranges::count_if(step, [usual](Real each) { return much_longer * each < usual; }));
+}
+
+}  // namespace
+
+std::string stiff_note(const ScenePlan& plan, const World& world, double steps, double sample) {
+    if (steps < few_steps || plan.bodies.empty()) return {};
+    const ShortSteps stiff = short_steps(plan, world);
+    const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(infinity)});
+    if (stiff.count == 0 || !(others > much_longer * stiff.step)) return {};
+    const BodyPlan& body = plan.bodies[stiff.first];
+    std::string text = mesh_of_body_text(plan, stiff.first);
+    if (stiff.count > 1) text += " and " + grouped(stiff.count - 1) + " more bodies like it";
+    text += std::string(stiff.count > 1 ? " are" : " is") + " explicit, of material \"" +
+            plan.materials[body.material].first + "\", and " + (stiff.count > 1 ? "need" : "needs") + " steps of " +
+            with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " +
+            short_number(others / stiff.step) + " times as many as otherwise; ";
+    const std::vector<Real> each = world.tetrahedron_steps(world.bodies()[stiff.first]);
+    if (const std::size_t bad = count_bad(each); bad > 0)
+        return text + "the cause: " + grouped(bad) + " of " + grouped(each.size()) +
+               " tetrahedra, the worst tetrahedron " + std::to_string(std::ranges::min_element(each) - each.begin()) +
+               ": repair the mesh (`skerry inspect " + plan.file.string() + " --body " + body.settings.name +
+               " --repair NEW.msh`)";
+    if (body.settings.self_contact)
+        return text +
+               "reduce young_modulus, coarsen the mesh, or give up self_contact and set \"dynamics\" of the body "
+               "to \"implicit\"";
+    return text +
+           "set \"dynamics\" of the body to \"implicit\", or to \"rigid\" if its deformation does not matter "
+           "(docs/stiff.md)";
+}
+
+}  // namespace skerry

@@ -1,0 +1,15 @@
+// A note about explicit bodies that make the steps of a run very short.
+#pragma once
+
+#include <string>
+
+#include "engine/scene/scene_plan.h"
+
+namespace skerry {
+
+/// Returns a sentence that names the explicit body that dictates the step length, its material and the remedy. Returns
+/// an empty text if the run has few steps, or if steps would not be much longer without this body. `steps`: estimated
+/// number of steps of the run. `sample`: longest step that frames and probes allow [s].
+std::string stiff_note(const ScenePlan& plan, const World& world, double steps, double sample);
+
+}  // namespace skerry

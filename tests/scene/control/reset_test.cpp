@@ -1,0 +1,211 @@
+// Bodies that are put back into their rest shapes, and worlds that are put back into a saved state (World::reset).
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "engine/world/world_state.h"
+#include "skerry/joint.h"
+#include "systems/geometry/rotation.h"
+#include "tests/support/same_bits.h"
+#include "tests/support/worlds.h"
+
+namespace skerry::test::reset_test {
+
+namespace {
+
+constexpr BodyDynamics deformable = BodyDynamics::explicit_elastic, implicit = BodyDynamics::implicit_elastic,
+                       rigid = BodyDynamics::rigid;
+
+/// A cube in free space that is pressed between its upper and lower faces, or thrown if it is rigid.
+struct Cube {
+    World world;
+    BodyHandle body;
+    std::vector<Vec3> start;
+    std::array<std::vector<Index>, 2> face;
+
+    explicit Cube(BodyDynamics dynamics, Real loss_factor, int threads = 1)
+        : world({.gravity = {0, 0, 0}, .backend = Backend::threads, .threads = threads}) {
+        const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {4, 4, 4});
+        const auto material = world.add_material(
+            {.young_modulus = 1e5, .poisson_ratio = 0.4, .density = 1000, .loss_factor = loss_factor});
+        body = world.add_body(mesh, {.material = material,
+                                     .position = {0.3, 0, 1},
+                                     .rotation = {0.2, 0.1, 0.7},
+                                     .dynamics = dynamics,
+                                     .name = "cube"});
+        start.assign(world.positions(body).begin(), world.positions(body).end());
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+            if (std::abs(mesh.nodes[n].z()) > 0.049) face[mesh.nodes[n].z() > 0].push_back(static_cast<Index>(n));
+    }
+
+    /// Deforms the cube by a third and holds it until part of its stress has relaxed, or throws a rigid cube.
+    void disturb() {
+        if (world.dynamics(body) == rigid) {
+            world.set_velocity(body, {1, 0, 0}, {0, 3, 0});
+            REQUIRE(world.advance(0.3).ok());
+            return;
+        }
+        const auto lower = world.attach(body, face[0]), upper = world.attach(body, face[1]);
+        world.move_to(upper, {.position = {0, 0.01, -0.03}}, 0.1);
+        REQUIRE(world.advance(0.5).ok());
+        world.remove(lower);
+        world.remove(upper);
+    }
+
+    Real farthest_from(std::span<const Vec3> position) const {
+        Real most = 0;
+        const auto now = world.positions(body);
+        for (std::size_t n = 0; n < position.size(); ++n) most = std::max(most, (now[n] - position[n]).norm());
+        return most;
+    }
+};
+
+// rounding errors of positions of about 1 m, in 0.2 s of motion
+constexpr Real rounding = 1e-12;
+
+Real largest_warm_start(World& world) {
+    Real largest = 0;
+    for (const Vec3& impulse : WorldAccess::state_of(world).cache.warm_start.impulse)
+        largest = std::max(largest, impulse.norm());
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a body that is reset stays in its rest shape, with any losses and dynamics", "[scene]") {
+    for (const BodyDynamics dynamics : {deformable, implicit, rigid})
+        for (const Real loss : {0.0, 0.05, 0.3}) {
+            CAPTURE(name_of(dynamics), loss);
+            Cube cube(dynamics, loss);
+            cube.disturb();
+            REQUIRE(cube.farthest_from(cube.start) > 0.01);
+            cube.world.reset(cube.body);
+            CHECK(cube.farthest_from(cube.start) < rounding);
+            CHECK(cube.world.energy().kinetic == 0);
+            for (int k = 0; k < 20; ++k) {
+                REQUIRE(cube.world.advance(0.01).ok());
+                REQUIRE(cube.farthest_from(cube.start) < rounding);
+            }
+            CHECK(cube.world.energy().elastic < 1e-20);
+        }
+}
+
+TEST_CASE("a body can be reset at another pose", "[scene]") {
+    for (const BodyDynamics dynamics : {deformable, implicit, rigid}) {
+        CAPTURE(name_of(dynamics));
+        Cube cube(dynamics, 0.3);
+        cube.disturb();
+        const Pose pose{{-0.2, 0.5, 0}, {0, 2.5, 1}};
+        cube.world.reset(cube.body, pose);
+        const Mat3 turn = rotation_matrix(pose.rotation) * rotation_matrix({0.2, 0.1, 0.7}).transpose();
+        std::vector<Vec3> wanted;
+        for (const Vec3& x : cube.start) wanted.push_back(pose.position + turn * (x - Vec3(0.3, 0, 1)));
+        REQUIRE(cube.world.advance(0.2).ok());
+        CHECK(cube.farthest_from(wanted) < rounding);
+    }
+}
+
+TEST_CASE("a held body is reset with its attachment", "[scene]") {
+    for (const BodyDynamics dynamics : {deformable, implicit, rigid}) {
+        CAPTURE(name_of(dynamics));
+        Cube cube(dynamics, 0.3);
+        const auto held = cube.world.attach(cube.body, cube.face[0]);
+        cube.world.move_to(held, {.position = {0, 0.05, 0}}, 0.05);
+        REQUIRE(cube.world.advance(0.1).ok());
+        REQUIRE(cube.farthest_from(cube.start) > 0.01);
+        cube.world.reset(cube.body);
+        REQUIRE(cube.world.advance(0.2).ok());
+        CHECK(cube.farthest_from(cube.start) < rounding);
+    }
+}
+
+TEST_CASE("a world that is reset starts again: sleepers wake, and contacts and joints forget their impulses",
+          "[scene]") {
+    World world({.threads = 1});
+    const auto rubber = world.add_material({.young_modulus = 1e5, .friction = 0.5, .loss_factor = 0.3});
+    const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {2, 2, 2});
+    world.add_collider(Plane{});
+    std::vector<BodyHandle> bodies;
+    for (const BodyDynamics dynamics : {deformable, implicit, rigid})
+        bodies.push_back(world.add_body(
+            mesh,
+            {.material = rubber, .position = {0.3 * static_cast<Real>(bodies.size()), 0, 0.06}, .dynamics = dynamics}));
+    const auto hung = world.add_body(mesh, {.material = rubber, .position = {0, 1, 1}, .dynamics = rigid});
+    const auto joint =
+        Joints(world).add({.kind = JointKind::hinge, .first = hung, .point = {0.3, 1, 1}, .axis = {0, 1, 0}});
+    REQUIRE(world.advance(3).ok());
+    for (const BodyHandle body : bodies) REQUIRE(world.asleep(body));
+    REQUIRE(std::abs(Joints(world).state(joint).coordinate) > 0.1);
+    world.reset();
+    for (const BodyHandle body : bodies) {
+        CHECK_FALSE(world.asleep(body));
+        CHECK(world.center_of_mass(body).z() == Approx(0.06).epsilon(1e-12));
+    }
+    CHECK(largest_warm_start(world) == 0);
+    CHECK(Joints(world).state(joint).force.norm() == 0);
+    CHECK(Joints(world).state(joint).coordinate == Approx(0).margin(1e-12));
+    const Real time = world.time();
+    REQUIRE(world.advance(0.02).ok());
+    CHECK(world.time() > time);
+    for (const BodyHandle body :
+         bodies)  // free fall; symplectic Euler is g h t / 2 off after a first step of another length
+        CHECK(world.center_of_mass(body).z() == Approx(0.06 - standard_gravity * 0.02 * 0.02 / 2).margin(1e-3));
+    REQUIRE(world.advance(3).ok());
+    for (const BodyHandle body : bodies) CHECK(world.asleep(body));
+}
+
+TEST_CASE("implicit elements of a strained body are chosen again when it is reset", "[scene]") {
+    Cube cube(deformable, 0.05);
+    const Real step = cube.world.stable_step();
+    cube.disturb();
+    cube.world.reset(cube.body);
+    CHECK(cube.world.stable_step() == Approx(step).epsilon(1e-9));
+}
+
+TEST_CASE("a world can go back to a clone, bit by bit, with its handles and callbacks", "[determinism]") {
+    Cube cube(deformable, 0.3);
+    int steps = 0;
+    cube.world.watch_steps([&](const StepReport&) { ++steps; });
+    cube.disturb();
+    const World saved = cube.world.clone();
+    REQUIRE(cube.world.advance(0.05).ok());
+    const std::uint64_t after = cube.world.state_hash();
+    const Real time = cube.world.time();
+    cube.world.reset(saved);
+    CHECK(cube.world.time() < time);
+    CHECK(cube.world.state_hash() == saved.state_hash());
+    const int before = steps;
+    REQUIRE(cube.world.advance(0.05).ok());
+    CHECK(cube.world.state_hash() == after);
+    CHECK(steps > before);
+    CHECK(cube.world.name(cube.body) == "cube");
+    const World other;
+    CHECK_THROWS_WITH(cube.world.reset(other), Catch::Contains("reset") && Catch::Contains("clone()"));
+    CHECK(cube.world.state_hash() == after);
+}
+
+TEST_CASE("a reset at a pose that is not finite, or of a removed body, is refused", "[scene]") {
+    Cube cube(deformable, 0);
+    const std::uint64_t before = cube.world.state_hash();
+    CHECK_THROWS_WITH(cube.world.reset(cube.body, {.position = {0, 0, infinity}}),
+                      Catch::Contains("'cube'") && Catch::Contains("position"));
+    CHECK(cube.world.state_hash() == before);
+    cube.world.remove(cube.body);
+    CHECK_THROWS_WITH(cube.world.reset(cube.body), Catch::Contains("reset"));
+}
+
+TEST_CASE("a body is reset to the same bits on any number of threads, in a clone and after loading", "[determinism]") {
+    for (const BodyDynamics dynamics : {deformable, implicit, rigid})
+        check_same_bits(
+            [dynamics](int threads) {
+                Cube cube(dynamics, 0.3, threads);
+                cube.disturb();
+                return cube;
+            },
+            [](World& world) {
+                world.reset(world.bodies().front());
+                world.set_gravity({0, 0, -standard_gravity});
+                REQUIRE(world.advance(0.05).ok());
+            });
+}
+
+}  // namespace skerry::test::reset_test
