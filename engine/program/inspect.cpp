@@ -8,6 +8,7 @@
 #include "engine/program/dynamics_text.h"
 #include "engine/program/inspect_repair.h"
 #include "engine/program/number_text.h"
+#include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
@@ -322,8 +323,8 @@ SceneCost try_steps(World& world, Real overlap) {
     return cost;
 }
 
-Problems problems_of(const std::vector<BodyKindReport>& kinds, const SceneStart& start, const SceneCost& cost) {
-    Problems problems;
+Problems problems_of(Problems problems, const std::vector<BodyKindReport>& kinds, const SceneStart& start,
+                     const SceneCost& cost) {
     for (const BodyKindReport& kind : kinds)
         for (const std::string& problem : problems_of(kind.mesh))
             problems.push_back("body \"" + kind.first_name + "\": " + problem);
@@ -403,7 +404,7 @@ int inspect_scene(const InspectOptions& options) {
     Real overlap = 0;
     for (const StartOverlap& found : start.as_written.start_overlaps) overlap = std::max(overlap, found.depth);
     const SceneCost cost = try_steps(scene.world, overlap);
-    const Problems problems = problems_of(kinds, start, cost);
+    const Problems problems = problems_of(plan_warnings(plan), kinds, start, cost);
     if (options.json) {
         Json bodies = Json::array();
         for (const BodyKindReport& kind : kinds) {
