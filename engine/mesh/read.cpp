@@ -40,17 +40,24 @@ RawMesh read_raw(const std::string& path, bool surface) {
     return extension == ".obj" ? read_obj(reader) : read_stl(reader);
 }
 
+/// Nodes that are used, and their numbers among all nodes.
+struct UsedNodes {
+    std::vector<Vec3> nodes;
+    std::vector<Index> number;
+};
+
 /// Removes nodes that no row uses. The remaining nodes stay in order, and the node numbers in the rows are updated.
 template <std::size_t N>
-std::vector<Vec3> drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
+UsedNodes drop_unused(const std::vector<Vec3>& nodes, std::vector<std::array<Index, N>>& rows) {
     std::vector<Index> place(nodes.size(), no_index);
     for (const std::array<Index, N>& row : rows)
         for (const Index n : row) place[static_cast<std::size_t>(n)] = 0;
-    std::vector<Vec3> used;
+    UsedNodes used;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         if (place[n] == no_index) continue;
-        place[n] = static_cast<Index>(used.size());
-        used.push_back(nodes[n]);
+        place[n] = static_cast<Index>(used.nodes.size());
+        used.nodes.push_back(nodes[n]);
+        used.number.push_back(static_cast<Index>(n));
     }
     for (std::array<Index, N>& row : rows)
         for (Index& n : row) n = place[static_cast<std::size_t>(n)];
@@ -94,7 +101,9 @@ void turn_inverted(const std::string& path, Mesh& mesh, std::vector<std::string>
 
 Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::string>* notes) {
     Mesh mesh;
-    mesh.nodes = drop_unused(raw.nodes, raw.tetrahedra);
+    UsedNodes used = drop_unused(raw.nodes, raw.tetrahedra);
+    mesh.nodes = std::move(used.nodes);
+    if (mesh.nodes.size() < raw.nodes.size()) mesh.file_number = std::move(used.number);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
     turn_inverted(path, mesh, notes);
@@ -136,7 +145,7 @@ SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* note
                   "the file has " + elements_text(raw) + "; export the surface as triangles"}
             .raise();
     SurfaceMesh surface;
-    surface.nodes = drop_unused(raw.nodes, raw.triangles);
+    surface.nodes = drop_unused(raw.nodes, raw.triangles).nodes;
     surface.triangles = std::move(raw.triangles);
     return surface;
 }

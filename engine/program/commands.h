@@ -19,6 +19,8 @@ enum ExitCode : int {
     exit_failed = 1,     // the simulation or solver failed, or a strict run has warnings
     exit_bad_input = 2,  // error in an input file or on the command line
     exit_output = 3,     // the computation succeeded, but an output could not be written
+    // the run reached its end, but its results cannot be trusted (WorldReport::distrust)
+    exit_untrusted = 4,
 };
 // a run that a signal stopped ends with this exit code plus the number of the signal
 inline constexpr int exit_signal = 128;

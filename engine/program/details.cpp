@@ -107,7 +107,8 @@ std::string energy_line(const RunResult& result) {
                                       with_unit(energy.elastic, "J") + ", potential " +
                                       with_unit(energy.potential, "J") + ", dissipated " +
                                       with_unit(energy.dissipated, "J") + ", error of the energy balance " +
-                                      with_unit(result.report.energy_error, "J"));
+                                      with_unit(result.report.energy_error, "J") +
+                                      (result.report.distrust().empty() ? "" : "; not to be trusted"));
 }
 
 }  // namespace

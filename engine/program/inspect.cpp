@@ -10,6 +10,7 @@
 #include "engine/program/inspect_repair.h"
 #include "engine/program/mesh_text.h"
 #include "engine/program/number_text.h"
+#include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_plan.h"
 #include "engine/program/start_text.h"
@@ -142,7 +143,7 @@ SceneStart start_of(const ScenePlan& plan, Scene as_written) {
 
 Problems problems_of(const ScenePlan& plan, const std::vector<BodyKindReport>& kinds, const SceneStart& start,
                      const SceneCost& cost) {
-    Problems problems;
+    Problems problems = plan_warnings(plan);
     const World& world = start.scene.world;
     const std::vector<BodyHandle> bodies = bodies_in_order(world);
     for (const BodyKindReport& kind : kinds) {

@@ -32,7 +32,8 @@ const char* const general_examples = R"(Examples:
   skerry sweep examples/incline_sweep.json                 simulate a scene with many values, one case per core
 
 Exit codes: 0 success, 1 the simulation failed, the solver did not converge, or a run with --strict has warnings,
-2 invalid input, 3 an output of a run could not be written, 128 + n stopped by signal n.
+2 invalid input, 3 an output of a run could not be written, 4 the results of a run cannot be trusted, because surfaces
+passed through each other or contacts stayed unsolved, 128 + n stopped by signal n.
 `skerry COMMAND --help` describes the options of a command.)";
 
 const char* const run_examples = R"(Examples:

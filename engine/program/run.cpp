@@ -13,6 +13,7 @@
 #include "engine/program/commands.h"
 #include "engine/program/nearest_text.h"
 #include "engine/program/number_text.h"
+#include "engine/program/plan_warnings.h"
 #include "engine/program/progress.h"
 #include "engine/program/run_outputs.h"
 #include "engine/program/run_plan.h"
@@ -245,6 +246,10 @@ RunResult simulate(const RunOptions& asked) {
     memory.assignments = options.overrides.assignments;
     result.bad_boundaries = bad_boundaries(plan, world);
     result.thin_parts = thin_parts(plan, world);
+    result.plan_warnings = plan_warnings(plan);
+    if (!options.quiet)
+        for (const std::string& warning : result.plan_warnings)
+            std::cerr << "skerry: WARNING: " << warning << std::endl;
     result.scene = scene.name;
     result.scene_file = options.scene.string();
     result.settings = world.settings();
@@ -277,6 +282,10 @@ RunResult simulate(const RunOptions& asked) {
 
     result.report = world.report();
     if (result.report.steps > 0 && result.report.max_contacts == 0) result.nearest = nearest_text(world);
+    if (std::string distrust = result.report.distrust(); result.status == "ok" && !distrust.empty()) {
+        result.status = std::move(distrust);
+        result.distrusted = true;
+    }
     result.state_hash = world.state_hash();
     result.seconds_simulated = world.time();
     result.stopped_by = caught_signal;
@@ -295,6 +304,7 @@ int run(const RunOptions& options) {
     if (result.status != "ok") std::cerr << "skerry: " << result.status << "\n";
     if (result.stopped_by != 0) return exit_signal + result.stopped_by;
     if (!result.outputs_failed.empty()) return exit_output;
+    if (result.distrusted) return exit_untrusted;
     return result.status == "ok" && (warnings.empty() || !options.strict) ? exit_ok : exit_failed;
 }
 

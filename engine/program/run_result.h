@@ -18,6 +18,7 @@ struct RunResult {
     std::string scene;
     std::string scene_file;
     std::string status = "ok";  // "ok", or a description of the error
+    bool distrusted = false;    // true if the run reached its end, but WorldReport::distrust() is not empty
     int stopped_by = 0;         // signal that stopped the run; 0 if there was none
     Settings settings;
     int threads = 0;  // number of threads that the run used
@@ -37,6 +38,7 @@ struct RunResult {
     std::vector<ProbeRecord> probes;
     // option and error message of each output that failed
     std::vector<std::pair<std::string, std::string>> outputs_failed;
+    std::vector<std::string> plan_warnings;   // warnings about values in the scene
     std::vector<std::string> bad_boundaries;  // one sentence for each mesh whose boundary is not a closed manifold
     std::vector<std::string> thin_parts;      // one sentence for each mesh with a part that is too stiff in bending
     std::vector<std::string> notes;           // remarks about the input that do not question the result

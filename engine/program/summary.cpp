@@ -41,10 +41,15 @@ std::string start_lines(const RunResult& result) {
 }
 
 std::string penetration_text(const RunResult& result) {
-    const Real depth = result.report.max_penetration;
-    if (!(depth > 0)) return "none: no surfaces overlapped";
-    return "at most " + with_unit(depth, "m") +
-           (result.mean_edge > 0 ? " (" + percent(depth / result.mean_edge) + " of the mean edge length)" : "");
+    const WorldReport& r = result.report;
+    const auto deep = [&](Real depth) {
+        return "at most " + with_unit(depth, "m") +
+               (result.mean_edge > 0 ? " (" + percent(depth / result.mean_edge) + " of the mean edge length)" : "");
+    };
+    std::string text;
+    if (r.max_penetration > 0) text = deep(r.max_penetration);
+    if (r.held_penetration > 0) text += (text.empty() ? "" : "; ") + ("held surfaces " + deep(r.held_penetration));
+    return text.empty() ? "none: no surfaces overlapped" : text;
 }
 
 std::string contacts_text(const RunResult& result) {
@@ -58,7 +63,8 @@ std::string contacts_text(const RunResult& result) {
 
 std::string balance_text(const WorldReport& r) {
     constexpr double rounding = 1e-9;  // relative errors of the momentum below this value are rounding errors
-    return "energy error " + percent(r.energy_error_share) + ", momentum error " +
+    const std::string untrusted = r.distrust().empty() ? "" : "not to be trusted: ";
+    return untrusted + "energy error " + percent(r.energy_error_share) + ", momentum error " +
            (std::isnan(r.momentum_error)        ? "not available, because a pinned body is damped or implicit"
             : r.momentum_error_share < rounding ? "within rounding"
                                                 : percent(r.momentum_error_share));
@@ -116,7 +122,7 @@ std::string summary_of(const RunResult& result) {
         text += ", after " + with_unit(start, "s") + " of loading and set-up";
     if (wall > 0) text += ", " + short_number(simulated / wall) + " times real time";
     text += "\n" + summary_line("scene", result.scene_file);
-    if (result.status != "ok") text += summary_line("ENDED EARLY", result.status);
+    if (result.status != "ok") text += summary_line(result.distrusted ? "NOT TRUSTED" : "ENDED EARLY", result.status);
     if (result.restarted_at) text += summary_line("restarted", "at " + with_unit(*result.restarted_at, "s"));
     text += summary_line("bodies", bodies_text(result));
     if (const std::string choices = choices_text(r); !choices.empty()) text += summary_line("dynamics", choices);

@@ -70,7 +70,7 @@ void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vect
 
 std::vector<std::string> warnings_of(const RunResult& result) {
     const WorldReport& r = result.report;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = result.plan_warnings;
     const bool bad_start = warn_of_start(result, warnings);
     for (const std::string& boundary : result.bad_boundaries)
         warnings.push_back(boundary +
@@ -96,6 +96,12 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
         warnings.push_back("surfaces overlapped during the run by up to " +
                            percent(r.max_penetration / result.mean_edge) + " of the mean edge length: " + shorter);
+    if (result.mean_edge > 0 && r.held_penetration > visible_share * result.mean_edge)
+        warnings.push_back(
+            (r.held_body.empty() ? "held surfaces are" : "held nodes of body \"" + r.held_body + "\" are") + " up to " +
+            with_unit(r.held_penetration, "m") + " deep inside " +
+            (r.held_in.empty() ? "another object" : "\"" + r.held_in + "\"") +
+            ", and no contact can push them out: correct the motion of the pin or of the collider");
     if (r.collider_turn > visible_turn) warnings.push_back(turning_text(r));
     warn_of_elements(r, shorter, warnings);
     return warnings;

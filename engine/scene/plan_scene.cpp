@@ -60,6 +60,22 @@ Motion make_motion(const MotionEntry& entry) {
     return motion;
 }
 
+/// Returns the index in mesh.nodes of a node that the scene names by its number in the mesh file.
+Index node_of_file(const Mesh& mesh, int number, const Place& place) {
+    if (mesh.file_number.empty()) {
+        if (static_cast<std::size_t>(number) >= mesh.nodes.size())
+            place.refuse("node " + std::to_string(number), "a node number below " + std::to_string(mesh.nodes.size()));
+        return number;
+    }
+    const auto found = std::ranges::lower_bound(mesh.file_number, number);
+    if (found == mesh.file_number.end() || *found != number)
+        place.refuse("node " + std::to_string(number) + ", which no tetrahedron of the mesh file uses",
+                     "the number of a node of a tetrahedron, from " + std::to_string(mesh.file_number.front()) +
+                         " to " + std::to_string(mesh.file_number.back()),
+                     "count all nodes of the file from 0, in their order in the file");
+    return static_cast<Index>(found - mesh.file_number.begin());
+}
+
 PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     PinPlan pin{.nodes = {}, .motion = make_motion(entry.motion), .pivot = entry.pivot, .place = entry.place};
     if (entry.box) {
@@ -69,13 +85,11 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh) {
     if (entry.nodes.empty()) entry.place.key("nodes").refuse("an empty list", "at least one node number");
     for (std::size_t i = 0; i < entry.nodes.size(); ++i) {
         const Place place = entry.place.key("nodes").item(i);
-        if (static_cast<std::size_t>(entry.nodes[i]) >= mesh.nodes.size())
-            place.refuse("node " + std::to_string(entry.nodes[i]),
-                         "a node number below " + std::to_string(mesh.nodes.size()));
-        if (std::find(pin.nodes.begin(), pin.nodes.end(), entry.nodes[i]) != pin.nodes.end())
+        const Index node = node_of_file(mesh, entry.nodes[i], place);
+        if (std::find(pin.nodes.begin(), pin.nodes.end(), node) != pin.nodes.end())
             place.refuse("node " + std::to_string(entry.nodes[i]) + " for the second time", "every node at most once",
                          "delete the repeated number");
-        pin.nodes.push_back(entry.nodes[i]);
+        pin.nodes.push_back(node);
     }
     return pin;
 }

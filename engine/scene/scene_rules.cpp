@@ -24,7 +24,10 @@ const Rule<PinEntry>& rule_of<PinEntry>() {
         Rule<PinEntry>("pin", "Nodes of a body that are fixed or follow a motion.")
             .key("box", &PinEntry::box, {.meaning = "box around the pinned nodes, in the mesh's own frame"})
             .key("nodes", &PinEntry::nodes,
-                 {.meaning = "numbers of the pinned nodes, counted from 0", .limits = at_least(0)})
+                 {.meaning =
+                      "numbers of the pinned nodes. All nodes of a mesh file count, from 0 in the order of the file, "
+                      "whatever numbers the file gives them",
+                  .limits = at_least(0)})
             .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; default: none"})
             .key("pivot", &PinEntry::pivot, {.meaning = "centre of rotation of the motion", .unit = "m"})
             .exactly_one({"box", "nodes"});

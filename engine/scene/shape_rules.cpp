@@ -142,7 +142,10 @@ const Rule<MotionEntry>& rule_of<MotionEntry>() {
         Rule<MotionEntry>("motion", "A scripted motion: constant velocities, or poses at given times.")
             .key("velocity", &MotionEntry::velocity, {.meaning = "velocity", .unit = "m/s"})
             .key("angular_velocity", &MotionEntry::angular_velocity, {.meaning = "angular velocity", .unit = "rad/s"})
-            .key("keys", &MotionEntry::keys, {.meaning = "poses in the order of ascending time"})
+            .key("keys", &MotionEntry::keys,
+                 {.meaning =
+                      "poses in the order of ascending time. The poses of a collider replace its own pose and the "
+                      "point of a plane; without any rotation in the keys the collider keeps its own"})
             .at_most_one({"velocity", "keys"})
             .at_most_one({"angular_velocity", "keys"})
             .check([](const Place& place, const MotionEntry& motion) {

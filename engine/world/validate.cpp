@@ -10,6 +10,7 @@
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
 #include "systems/collision/build_surface.h"
+#include "systems/geometry/rotation.h"
 
 namespace skerry {
 
@@ -319,12 +320,47 @@ void validate(const Motion& motion, const Vec3& pivot) {
     require_finite("attachment", "pivot", pivot);
 }
 
+namespace {
+
+/// Checks that the first key of a plane's motion agrees with the point and the normal of the plane, unless these have
+/// their initial values. Keys that are meant as distances from the point would put the plane into another place.
+void require_keys_of_plane(const Plane& plane, const ColliderSettings& collider, const std::string& object) {
+    if (collider.motion.keys.empty()) return;
+    constexpr Real same =
+        1e-6;  // relative difference of two positions, or of two unit vectors, that are meant as equal
+    const Mat3 turn = rotation_matrix(collider.rotation);
+    const MotionKey& first = collider.motion.keys.front();
+    const auto refuse_key = [&](const char* field, const std::string& found, const std::string& expected) {
+        Complaint{.file = {},
+                  .object = object,
+                  .field = field,
+                  .found = found,
+                  .expected = expected,
+                  .hint =
+                      "keys are poses of the plane itself, as for move_to: position is a point of the plane, and "
+                      "rotation turns +z to its normal; correct all keys, or leave out point and normal"}
+            .raise();
+    };
+    const Vec3 normal = turn * plane.normal.normalized(), of_keys = rotation_matrix(first.rotation).col(2);
+    if (collider.motion.turns() && plane.normal.normalized() != Vec3::UnitZ() && (of_keys - normal).norm() > same)
+        refuse_key("motion.keys[0].rotation", shown(first.rotation) + " rad, which gives the normal " + shown(of_keys),
+                   "a rotation that gives the normal of the plane, " + shown(normal));
+    const Vec3 point = collider.position + turn * plane.point;
+    if (!plane.point.isZero(0) &&
+        std::abs(normal.dot(first.position - point)) > same * std::max(point.norm(), first.position.norm()))
+        refuse_key("motion.keys[0].position", shown(first.position) + " m",
+                   "a point of the plane through " + shown(point) + " m");
+}
+
+}  // namespace
+
 void validate(const Shape& shape, const ColliderSettings& collider) {
     const std::string object = titled("collider", collider.name);
     std::visit(ShapeCheck{object}, shape);
     require_finite(object, "position", collider.position);
     require_finite(object, "rotation", collider.rotation);
     validate(collider.motion, object);
+    if (const auto* plane = std::get_if<Plane>(&shape)) require_keys_of_plane(*plane, collider, object);
     require_surface(collider.friction, collider.static_friction, collider.dynamic_friction, collider.restitution,
                     object);
     require(collider.contact_distance >= 0, object, "contact_distance", collider.contact_distance, "a length >= 0 (m)");

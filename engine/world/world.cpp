@@ -18,6 +18,7 @@
 #include "engine/world/step/step.h"
 #include "engine/world/tuning.h"
 #include "engine/world/validate.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "systems/dynamics/rigid/move_rigid_bodies.h"
 #include "systems/geometry/rotation.h"
 
@@ -157,6 +158,7 @@ World World::clone() const {
     to.record.counters = from.record.counters;
     to.record.limits = from.record.limits;
     to.record.balance = from.record.balance;
+    to.record.held = from.record.held;
     to.record.start_overlaps = from.record.start_overlaps;
     to.record.start_moves = from.record.start_moves;
     to.record.forces = from.record.forces;
@@ -345,12 +347,25 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     return handle;
 }
 
+namespace {
+
+/// Forgets which objects had the deepest overlap of held surfaces, if one of them is removed. The depth remains.
+void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
+    const PairSlots pair = slots_of_pair(held.pair);
+    if (is_collider ? pair.is_collider && pair.second == slot
+                    : pair.first == slot || (!pair.is_collider && pair.second == slot))
+        held.pair = HeldDepth::no_pair;
+}
+
+}  // namespace
+
 void World::remove(BodyHandle body) {
     state_->require_between_steps("remove");
     Model& model = state_->model;
     const Index row = model.row(body, "remove");
     ForceLedger& forces = state_->record.forces;
     forces.forget_body(body.slot);
+    forget_held(state_->record.held, body.slot, false);
     for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
         const std::uint32_t slot = model.attachments.slot[a];
         if (model.attachments.body[a] != row || !model.attachment_map.has_slot(slot)) continue;
@@ -370,6 +385,7 @@ void World::remove(ColliderHandle collider) {
     state_->require_between_steps("remove");
     const Index row = state_->model.row(collider, "remove");
     state_->record.forces.forget_collider(collider.slot);
+    forget_held(state_->record.held, collider.slot, true);
     enable_pairs_of(collider, state_->model.disabled_pairs);
     OpenEdits& edits = state_->edits;
     edits.places.add_collider(state_->model, static_cast<std::size_t>(row), time());

@@ -10,6 +10,7 @@
 #include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
+#include "systems/collision/inputs/contact_key.h"
 #include "systems/dynamics/checks/volume_ratios.h"
 #include "systems/dynamics/motion/move_colliders.h"
 
@@ -108,6 +109,19 @@ std::string DynamicsChoice::message() const {
     return text;
 }
 
+std::string WorldReport::distrust() const {
+    if (crossed > 0)
+        return "surfaces passed through each other at " + std::to_string(crossed) +
+               " nodes or edges, so positions, forces and energies cannot be trusted; leave more room between the "
+               "objects that press on a body, or shorten the step";
+    if (worst_error > largest_trusted_error)
+        return "a contact region of " + std::to_string(worst_region) +
+               " contacts was left unsolved with a relative error of " + short_text(worst_error) + ", more than " +
+               short_text(largest_trusted_error) +
+               ", so forces and energies cannot be trusted; increase max_iterations, or reduce the load on the bodies";
+    return {};
+}
+
 std::string StepReport::message() const {
     const std::string who = body_name.empty() ? "a body" : "body '" + body_name + "'";
     const std::string where = (node < 0 ? "" : ", node " + std::to_string(node)) +
@@ -174,6 +188,28 @@ void note_fastest_turn(const Model& model, WorldReport& report) {
     }
 }
 
+/// Writes the deepest overlap of held surfaces, and the names of the two objects if both still exist.
+void note_held(const WorldState& world, WorldReport& report) {
+    const Model& model = world.model;
+    report.held_penetration = world.record.held.depth;
+    if (world.record.held.pair == HeldDepth::no_pair) return;
+    const PairSlots pair = slots_of_pair(world.record.held.pair);
+    const bool has_second =
+        pair.is_collider ? model.collider_map.has_slot(pair.second) : model.body_map.has_slot(pair.second);
+    if (!model.body_map.has_slot(pair.first) || !has_second) return;
+    const auto name_of_body = [&](std::uint32_t slot) -> const std::string& {
+        return model.body_records[static_cast<std::size_t>(model.body_map.row(model.body_map.handle_of_slot(slot)))]
+            .name;
+    };
+    report.held_body = name_of_body(pair.first);
+    const auto& colliders = model.collider_map;
+    report.held_in =
+        pair.is_collider
+            ? model.collider_records[static_cast<std::size_t>(colliders.row(colliders.handle_of_slot(pair.second)))]
+                  .name
+            : name_of_body(pair.second);
+}
+
 }  // namespace
 
 WorldReport World::report() const {
@@ -220,6 +256,7 @@ WorldReport World::report() const {
     report.crossing_tests = world.cache.crossings.tested;
     report.crossings_found = world.cache.crossings.hits;
     report.crossed = world.cache.crossings.let_through;
+    note_held(world, report);
     report.energy = energy_of(world.model, report.dissipated);
     for (const Index body : world.model.rigid_bodies.body) {
         const RigidSums sums = rigid_sums(world.model, static_cast<std::size_t>(body));

@@ -308,6 +308,9 @@ private:
         collider["position"] = list(place);
         if (random_.chance(0.5)) collider["rotation"] = rotation();
         if (random_.chance(0.4)) collider["motion"] = motion(place);
+        // Keys give the normal of a plane.
+        if (collider.contains("motion") && collider["motion"].contains("keys") && collider["shape"].contains("plane"))
+            collider["shape"]["plane"].erase("normal");
         if (random_.chance(0.5)) collider["friction"] = random_.one_of<Real>({0, 1, random_.within(0, 10)});
         if (random_.chance(0.3)) collider["restitution"] = random_.within(0, 1);
         if (collider["shape"].contains("mesh") && random_.chance(0.5))

@@ -1,5 +1,6 @@
 // Balls dropped on each kind of collider, moving colliders, and refused steps.
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "systems/geometry/rotation.h"
 #include "tests/support/worlds.h"
@@ -104,6 +105,72 @@ TEST_CASE("a plane with its own normal keeps it while keys move it", "[scene]") 
     CHECK(nearest > 0.1 - 1e-4);  // pushed along without being thrown far
     CHECK(world.center_of_mass(ball).x() < 0.3);
     CHECK((rotation_matrix(world.pose(world.colliders()[0]).rotation) * Vec3::UnitZ() - Vec3::UnitX()).norm() < 1e-12);
+}
+
+TEST_CASE("keys of a plane are poses of the plane itself, as for move_to and set_pose", "[scene]") {
+    const Plane lid{.normal = {0, 0, -1}, .point = {0, 0, 2}};
+    const Vec3 upside_down(std::numbers::pi, 0, 0);
+    const auto normal_of = [](const World& world, ColliderHandle plane) {
+        return Vec3(rotation_matrix(world.pose(plane).rotation).col(2));
+    };
+    World world(Settings{.gravity = Vec3::Zero()});
+    world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .position = {0, 0, 1}});
+    const auto keyed =
+        world.add_collider(lid, {.motion = {.keys = {{0, {0, 0, 2}, Vec3::Zero()}, {0.1, {0, 0, 1.9}, Vec3::Zero()}}}});
+    const auto turned = world.add_collider(
+        lid, {.motion = {.keys = {{0, {0, 0, 2}, upside_down}, {0.1, {0, 0, 1.9}, {std::numbers::pi / 2, 0, 0}}}}});
+    const auto led = world.add_collider(lid), put = world.add_collider(lid);
+    for (const ColliderHandle plane : {keyed, turned, led, put}) {
+        CHECK(world.pose(plane).position.z() == 2);
+        CHECK((normal_of(world, plane) - lid.normal).norm() < 1e-12);
+    }
+    world.move_to(led, {.position = {0, 0, 1.9}, .rotation = upside_down}, 0.1);
+    world.set_pose(put, {.position = {0, 0, 1.9}, .rotation = upside_down});
+    REQUIRE(world.advance(0.1).ok());
+    for (const ColliderHandle plane : {keyed, led, put}) {
+        CHECK(world.pose(plane).position.z() == Approx(1.9).epsilon(1e-12));
+        CHECK((normal_of(world, plane) - lid.normal).norm() < 1e-12);
+    }
+    CHECK(world.pose(turned).position.z() == Approx(1.9).epsilon(1e-12));
+    CHECK((normal_of(world, turned) - Vec3(0, -1, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("a plane whose first key contradicts its point or its normal is refused", "[scene]") {
+    World world;
+    const auto refusal = [&](const Plane& plane, const MotionKey& first, const Vec3& position = Vec3::Zero()) {
+        MotionKey second = first;
+        second.time = first.time + 1;
+        second.position.x() += 1;
+        try {
+            world.add_collider(plane, {.position = position, .motion = {.keys = {first, second}}, .name = "lid"});
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing refused");
+    };
+    const std::string none = "nothing refused";
+    CHECK_THAT(refusal({.point = {0, 0, 0.05}}, {}),
+               Catch::Contains("collider 'lid': motion.keys[0].position: found (0, 0, 0) m, expected a point of the "
+                               "plane through (0, 0, 0.05) m"));
+    CHECK(refusal({.point = {0, 0, 0.05}}, {.position = {3, 1, 0.05}}) == none);  // another point of the same plane
+    CHECK(refusal({.point = {0, 0, 0.05}}, {.position = {0, 0, 0.15}}, {0, 0, 0.1}) == none);
+    CHECK(refusal({}, {.position = {0, 0, 0.05}}) == none);
+    CHECK_THAT(refusal({.normal = {0, 0, -3}}, {.rotation = {0, 0, 0.5}}),
+               Catch::Contains("motion.keys[0].rotation") && Catch::Contains("gives the normal (0, 0, 1)") &&
+                   Catch::Contains("the normal of the plane, (0, 0, -1)"));
+    CHECK(refusal({.normal = {0, 0, -3}}, {}) == none);
+    CHECK(refusal({}, {.rotation = {0.5, 0, 0}}) == none);
+}
+
+TEST_CASE("a collider whose keys do not turn keeps its own rotation, whatever its shape", "[scene]") {
+    World world;
+    const Vec3 rotation(0, 0.5, 0);
+    const std::vector<MotionKey> keys{{0, {1, 0, 0}, Vec3::Zero()}, {1, {2, 0, 0}, Vec3::Zero()}};
+    for (const Shape& shape : {Shape(Box{}), Shape(Plane{}), Shape(slab())}) {
+        const auto collider = world.add_collider(shape, {.rotation = rotation, .motion = {.keys = keys}});
+        CHECK((world.pose(collider).rotation - rotation).norm() < 1e-12);
+        CHECK(world.pose(collider).position == Vec3(1, 0, 0));
+    }
 }
 
 TEST_CASE("a scene in which nothing is close skips the contact branch", "[scene]") {

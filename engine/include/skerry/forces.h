@@ -1,6 +1,7 @@
 // Contact forces and reaction forces of attachments, summed over a call of advance (docs/outputs.md).
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,13 +35,21 @@ struct ForceReport {
     // (docs/methods/time_stepping.md 1.5).
     Real seconds = 0;
     Vec3 moment_point = Vec3::Zero();  // reference point of moments, as given to measure_forces [m]
+    // False if the call was too short to show the force (docs/outputs.md), or took no step.
+    bool measured = true;
 
-    /// Mean force over the call [N]; zero if the call took no step.
-    Vec3 force() const { return seconds > 0 ? Vec3(impulse / seconds) : Vec3::Zero(); }
-    /// Mean moment over the call about moment_point [N m].
-    Vec3 moment() const { return seconds > 0 ? Vec3(moment_impulse / seconds) : Vec3::Zero(); }
+    /// Mean force over the call [N]; NaN if the force was not measured.
+    Vec3 force() const { return mean(impulse); }
+    /// Mean moment over the call about moment_point [N m]; NaN if the force was not measured.
+    Vec3 moment() const { return mean(moment_impulse); }
     /// Mean moment over the call about another fixed point [N m].
     Vec3 moment_about(const Vec3& point) const;
+
+private:
+    Vec3 mean(const Vec3& sum) const {
+        constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
+        return measured && seconds > 0 ? Vec3(sum / seconds) : Vec3(Vec3::Constant(none));
+    }
 };
 
 /// Forces between two partners: two bodies, a body and a collider, or a body that touches itself. `on_first` is the

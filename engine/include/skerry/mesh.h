@@ -21,6 +21,9 @@ struct Mesh {
     // Label of each tetrahedron, for example the number of its material. BodySettings::materials maps labels to
     // materials. An empty list means that the mesh has no labels.
     std::vector<int> label{};
+    // Number of each node in the file from which the mesh was read, in ascending order: the nodes of the file are
+    // counted from 0 in their order. An empty list means that the numbers equal the indices in `nodes`.
+    std::vector<Index> file_number{};
 };
 
 /// A triangle surface, either closed or with a boundary. Triangles are counter-clockwise as seen from outside.
@@ -84,11 +87,12 @@ struct TableShape {
 Mesh table(const TableShape& shape);
 
 /// Reads a mesh from Gmsh .msh (1, 2.2, 4.1; ASCII and binary), legacy VTK .vtk (ASCII and binary), VTK XML .vtu
-/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib) or TetGen .node/.ele (`path` may name either
-/// file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused nodes are
-/// dropped. Inverted tetrahedra are turned: two of their nodes change places. `notes`, if given, gets a sentence that
-/// names the file and the number of turned tetrahedra. If turning would make tetrahedra overlap, the shape itself is
-/// faulty; the mesh is then left as in the file, and `inspect` counts the faults.
+/// (unstructured grids; ASCII, base64 and raw, also compressed by zlib) or TetGen .node/.ele (`path` may name
+/// either file). Only linear tetrahedra are used: curved tetrahedra are refused, other kinds of elements and unused
+/// nodes are dropped; Mesh::file_number then names the remaining nodes. Inverted tetrahedra are turned: two of
+/// their nodes change places. `notes`, if given, gets a sentence that names the file and the number of turned
+/// tetrahedra. If turning would make tetrahedra overlap, the shape itself is faulty; the mesh is then left as in
+/// the file, and `inspect` counts the faults.
 ///
 /// Sources of the labels; without these sources the mesh has no labels:
 /// - Gmsh: the number of the physical group (of the first group, if a volume is in several), 0 outside of all groups.

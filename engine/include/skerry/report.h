@@ -131,6 +131,9 @@ public:
     Index worst_region = 0;      // number of contacts of the region with worst_error
     Real max_penetration = 0;    // largest overlap of surfaces in any step [m]
     Real max_gap_violation = 0;  // largest penetration into the contact distance in any step [m]
+    // Largest overlap of surfaces that no contact can move in any step: held nodes inside a collider, or inside another
+    // held body [m].
+    Real held_penetration = 0;
     Index inverted = 0;          // number of elements that turned inside out, including those in discarded attempts
     BodyHandle inverted_body{};  // body of the first element that turned inside out
     std::string inverted_name;
@@ -261,6 +264,9 @@ struct RunCounters {
     Real start_penetration = 0, start_gap_violation = 0;
 };
 
+/// Relative error of the contact impulses of a region above which the results of a run are not to be trusted.
+inline constexpr Real largest_trusted_error = 0.5;
+
 /// The counters of the run, and measures of the present state. Computing these measures takes a pass over all tables.
 struct WorldReport : RunCounters {
     Real time = 0;           // [s]
@@ -292,6 +298,10 @@ struct WorldReport : RunCounters {
     // - crossings found in discarded attempts;
     // - crossings that no attempt at a step could prevent.
     std::uint64_t crossing_tests = 0, crossings_found = 0, crossed = 0;
+    // Largest overlap of surfaces that no contact can move, in any step [m], and the names of the two objects: a body
+    // with held nodes, and a collider or another body. The names are empty if one of the objects was removed.
+    Real held_penetration = 0;
+    std::string held_body, held_in;
     Energy energy;
     Vec3 momentum = Vec3::Zero();          // [kg m/s]
     Vec3 angular_momentum = Vec3::Zero();  // angular momentum about the origin [kg m^2/s]
@@ -322,6 +332,10 @@ struct WorldReport : RunCounters {
     // distance from the axis of rotation.
     Real collider_turn = 0;
     std::string turning_collider;
+
+    /// Describes why positions, forces and energies of the run cannot be trusted: surfaces passed through each other,
+    /// or a contact region kept an error above largest_trusted_error. Empty if neither happened.
+    std::string distrust() const;
 };
 
 }  // namespace skerry

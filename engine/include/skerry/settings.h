@@ -132,11 +132,20 @@ struct Motion {
     Vec3 velocity = Vec3::Zero();          // [m/s]
     Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
     std::vector<MotionKey> keys{};
+
+    /// True if a key has a rotation.
+    bool turns() const {
+        for (const MotionKey& key : keys)
+            if (!key.rotation.isZero(0)) return true;
+        return false;
+    }
 };
 
 struct ColliderSettings {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
+    // Keys are poses of the collider itself, as World::pose returns them, and replace `position` and `rotation`. For a
+    // plane they also replace Plane::point and normal. If no key has a rotation, the collider keeps its own.
     Motion motion{};
     // Friction coefficient. If given, a contact uses the geometric mean of this value and the value of the body. If not
     // given, it uses the value of the body.

@@ -94,7 +94,8 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    const bool known = force.seconds > 0;  // no step since the last row: the mean force is undefined
+    // Without a call since the last row that was long enough to measure the force, the mean force is unknown.
+    const bool known = force.seconds > 0 && force.measured;
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = known ? 1 / force.seconds : none;
     put_vector(known ? force.impulse : Vec3::Constant(none), values);
@@ -122,7 +123,8 @@ void ForceSum::add(const ForceReport& report) {
     moment += report.moment_impulse;
     friction += report.friction_impulse;
     pressing += report.pressing_impulse;
-    largest = std::max(largest, report.largest_force);
+    if (report.measured) largest = std::max(largest, report.largest_force);
+    measured = measured || report.measured;
     seconds += report.seconds;
     contacts = report.contacts;
 }

@@ -12,6 +12,7 @@ struct ForceSum {
     // Sums of impulse [N s], angular impulse [N m s] and friction impulse [N s].
     Vec3 impulse = Vec3::Zero(), moment = Vec3::Zero(), friction = Vec3::Zero();
     Real pressing = 0, largest = 0, seconds = 0;
+    bool measured = false;  // true if a call was long enough to measure the force
     Index contacts = 0;
 
     void add(const ForceReport& report);

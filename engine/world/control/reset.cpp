@@ -41,7 +41,7 @@ void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     const Range blocks = model.bodies.blocks[body];
     const Eigen::Quaternion<Real> q(turn);
     for (Index b = blocks.begin; b < blocks.end; ++b) {
-        elements.viscous_strain[b] = elements.viscous_strain_next[b] = ElementStrain{};
+        elements.spring_strain[b] = elements.spring_strain_next[b] = SpringStrain{};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const std::array<Real, 4> components{q.w(), q.x(), q.y(), q.z()};
             for (std::size_t i = 0; i < components.size(); ++i) elements.rotation[b][i][l] = components[i];
@@ -92,7 +92,6 @@ void reset_body(WorldState& world, std::size_t body, const RigidPose& pose) {
                            pose.rotation * model.rigid_bodies.axes[r]);
     }
     forget_impulses(world, body);
-    world.clock.kick_before = 0;
 }
 
 }  // namespace

@@ -62,32 +62,13 @@ RigidPose compose(const RigidPose& outer, const RigidPose& inner) {
     return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
 
-/// Appends a script for the frame of a shape, given the motion of its collider. The rotation vectors of the shape frame
-/// are only known up to full revolutions. Keyframes with a large rotation between them are therefore divided by more
-/// keyframes.
-MotionScript append_script_of_shape(const Motion& motion, const RigidPose& frame, Column<Keyframe>& keyframe) {
-    if (frame.position.isZero(0) && frame.rotation == Mat3::Identity()) return append_script(motion, keyframe);
-    constexpr Real most = 2;  // largest rotation between two keyframes [rad]
-    Column<Keyframe> keys;
-    const MotionScript script = append_script(motion, keys);
+/// Motion of a shape that has the pose `placed` without keys. Keys give the pose of the shape itself, as move_to and
+/// set_pose do. If no key has a rotation, the shape keeps its own.
+Motion motion_of_shape(const Motion& motion, const RigidPose& placed) {
     Motion of_shape = motion;
-    of_shape.keys.clear();
-    const auto add = [&](Real time) {
-        const RigidPose pose = compose(pose_at(script, keys, {}, time), frame);
-        const Vec3 rotation = rotation_vector(pose.rotation);
-        of_shape.keys.push_back(
-            {time, pose.position,
-             of_shape.keys.empty() ? rotation : nearest_turn(rotation, of_shape.keys.back().rotation)});
-    };
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        if (k > 0) {
-            const Keyframe &a = keys[k - 1], &b = keys[k];
-            const int pieces = static_cast<int>(turn_between(a.rotation, b.rotation).norm() / most) + 1;
-            for (int i = 1; i < pieces; ++i) add(a.time + static_cast<Real>(i) / pieces * (b.time - a.time));
-        }
-        add(keys[k].time);
-    }
-    return append_script(of_shape, keyframe);
+    if (!motion.turns())
+        for (MotionKey& key : of_shape.keys) key.rotation = rotation_vector(placed.rotation);
+    return of_shape;
 }
 
 }  // namespace
@@ -157,10 +138,10 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
     AnyTable(table).resize(row + 1);
     table.slot[row] = slot;
     table.geometry[row] = std::visit(GeometryOf{}, shape);
-    const RigidPose frame = shape_frame(shape);
-    const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, frame);
-    table.initial[row] = initial_of(placed, settings.motion, now);
-    table.script[row] = append_script_of_shape(settings.motion, frame, table.keyframe);
+    const RigidPose placed = compose({settings.position, rotation_matrix(settings.rotation)}, shape_frame(shape));
+    const Motion motion = motion_of_shape(settings.motion, placed);
+    table.initial[row] = initial_of(placed, motion, now);
+    table.script[row] = append_script(motion, table.keyframe);
     const RigidPose present = pose_at(table.script[row], table.keyframe, table.initial[row], now);
     table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
     table.surface[row] = surface_properties(
@@ -188,7 +169,7 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
                                        .angular_velocity = Vec3::Zero()});
         std::vector<Index> all(surface->nodes.size());
         for (std::size_t n = 0; n < all.size(); ++n) all[n] = static_cast<Index>(n);
-        append_attachment(model, no_slot, table.body[row], all, placed, settings.motion, now);
+        append_attachment(model, no_slot, table.body[row], all, placed, motion, now);
     }
     return static_cast<Index>(row);
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
@@ -170,9 +171,46 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
     return is_implicit(model, key) ? call_.whole : call_.kick;
 }
 
-void ForceLedger::begin_call(const Model& model, StepScratch& scratch) {
+bool ForceLedger::shows_contacts() const {
+    // Gaps that a step leaves open are a small part of the distance that bodies travel in it. A contact needs a
+    // hundredth of this step to close them.
+    constexpr Real shortest_share = 0.01;
+    return call_.whole > 0 && call_.whole >= shortest_share * step_before_;
+}
+
+bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const {
+    if (!(call_.whole > 0)) return false;
+    const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
+    if (rests(model, static_cast<Index>(body))) return true;
+    // On a rigid body, the reaction is the change of momentum that weight and contacts do not explain.
+    const bool rigid = model.is_rigid(body), implicit = is_implicit(model, body);
+    if (rigid && !shows_contacts()) return false;
+    constexpr Real digits = 2 * std::numeric_limits<Real>::epsilon();
+    Real held = 0;   // mass [kg]
+    Real noise = 0;  // rounding error of the momentum [N s]
+    const auto add_position = [&](std::size_t n, Real mass) {
+        if (!model.nodes.velocity[n].isZero(0)) noise += mass * digits * model.nodes.position[n].norm() / step_.whole;
+    };
+    for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[attachment])) {
+        const auto n = static_cast<std::size_t>(node);
+        held += model.nodes.mass[n];
+        if (!rigid) add_position(n, model.nodes.mass[n]);
+    }
+    if (rigid || implicit)
+        for (auto n = static_cast<std::size_t>(model.bodies.nodes[body].begin);
+             n < static_cast<std::size_t>(model.bodies.nodes[body].end); ++n) {
+            if (rigid) add_position(n, model.nodes.mass[n]);
+            noise += model.nodes.mass[n] * digits * model.nodes.velocity[n].norm();
+        }
+    // An error counts as small up to this fraction of the force, or this acceleration of the held nodes [m/s^2].
+    constexpr Real small_share = 0.01, small_acceleration = 1e-3;
+    return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole;
+}
+
+void ForceLedger::begin_call(const Model& model, Real step_before, StepScratch& scratch) {
     fit(model);
     call_ = {};
+    step_before_ = step_before;
     for (PairRow& row : pairs_) {
         row.sums = {};
         row.peak.begin_call();

@@ -68,14 +68,20 @@ public:
     /// Time for which forces have acted between the objects of a pair in this call [s]. If all bodies of the pair are
     /// implicit, it is the sum of the step lengths. Otherwise it is the sum of the kicks of the steps.
     Real seconds_of(const Model& model, const PairKey& key) const;
+    /// True if the call was long enough to show contact forces. Gaps that the step before the call has left open may
+    /// stay open during a call that is much shorter than that step.
+    bool shows_contacts() const;
+    /// True if rounding errors of positions and velocities changed the force of an attachment by little. `attachment`:
+    /// row of AttachmentTable.
+    bool shows_reaction(const Model& model, std::size_t attachment, const Vec3& impulse) const;
 
     /// Starts to measure forces. For sleeping bodies, the contact and attachment forces of the last step before they
     /// fell asleep are used.
     void start(const Model& model, const RestingContactTable& resting, const Vec3& moment_point);
     void stop() { *this = {}; }
     /// Must be called before the first step of a call, and again after a call that made no step. Stores the velocities
-    /// of held nodes.
-    void begin_call(const Model& model, StepScratch& scratch);
+    /// of held nodes. `step_before`: length of the step before the call; 0 if there was none [s].
+    void begin_call(const Model& model, Real step_before, StepScratch& scratch);
     /// Must be called after a committed step. `rested`: for each body, nonzero if the body was asleep when the step
     /// began.
     void add_step(const Model& model, std::span<const std::uint8_t> rested, StepScratch& scratch);
@@ -108,6 +114,7 @@ private:
         Real whole = 0, kick = 0;
     };
     Seconds step_, call_;
+    Real step_before_ = 0;        // length of the step before the call; 0 if there was none [s]
     Real measured_seconds_ = 0;   // time since the start of the measurement [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // by slot

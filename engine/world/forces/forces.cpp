@@ -29,16 +29,29 @@ void add(const ContactSums& sums, PairSide side, ForceReport& report) {
     report.pressing_impulse += sums.pressing;
 }
 
+/// True if the forces between the two objects of a pair are mean values over the time in which both were still.
+bool rests(const Model& model, const PairKey& key) {
+    const auto asleep = [&](std::uint32_t slot) {
+        return model.bodies.asleep[static_cast<std::size_t>(model.body_map.row(model.body_map.handle_of_slot(slot)))] !=
+               0;
+    };
+    return asleep(key.first) && (!key.bodies || asleep(key.second));
+}
+
 ForceReport pair_report(const WorldState& world, const PairKey& key, PairSide side) {
     const ForceLedger& ledger = world.record.forces;
     const Real seconds = ledger.seconds_of(world.model, key);
+    const bool measured = seconds > 0 && (ledger.shows_contacts() || rests(world.model, key));
     for (const ForceLedger::PairRow& row : ledger.pairs())
         if (row.key == key) {
             ForceReport report = report_of(ledger, row.peak, seconds);
             add(row.sums, side, report);
+            report.measured = measured;
             return report;
         }
-    return report_of(ledger, {}, seconds);
+    ForceReport none = report_of(ledger, {}, seconds);
+    none.measured = measured;
+    return none;
 }
 
 }  // namespace
@@ -92,6 +105,8 @@ ForceReport Forces::on(BodyHandle body) const {
         else if (is_first || is_second)
             add(pair.sums, is_first ? PairSide::first : PairSide::second, report);
     }
+    const bool rested = world_->model.bodies.asleep[static_cast<std::size_t>(row)] != 0;
+    report.measured = report.seconds > 0 && (rested || ledger.shows_contacts());
     return report;
 }
 
@@ -99,8 +114,14 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    for (const ForceLedger::PairRow& pair : ledger.pairs())
-        if (!pair.key.bodies && pair.key.second == collider.slot) add(pair.sums, PairSide::second, report);
+    bool touched = false, awake = false;
+    for (const ForceLedger::PairRow& pair : ledger.pairs()) {
+        if (pair.key.bodies || pair.key.second != collider.slot) continue;
+        touched = true;
+        awake = awake || !rests(world_->model, pair.key);
+        add(pair.sums, PairSide::second, report);
+    }
+    report.measured = report.seconds > 0 && ((touched && !awake) || ledger.shows_contacts());
     return report;
 }
 
@@ -139,6 +160,7 @@ ForceReport Forces::by(AttachmentHandle attachment) const {
         report_of(ledger, sums.peak, ledger.seconds_on(world_->model, world_->model.attachments.body[row]));
     report.impulse = sums.sums.impulse;
     report.moment_impulse = sums.sums.moment;
+    report.measured = ledger.shows_reaction(world_->model, row, report.impulse);
     return report;
 }
 

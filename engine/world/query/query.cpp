@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/query/fitted_tree.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 #include "systems/collision/narrow/collider_distance.h"
@@ -20,8 +21,9 @@ bool has(const std::vector<T>& list, const T& item) {
     return std::ranges::find(list, item) != list.end();
 }
 
-/// Returns the bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes.
-SurfaceTree tree_of(WorldState& world, std::size_t body) {
+}  // namespace
+
+SurfaceTree fitted_tree(WorldState& world, std::size_t body) {
     const Model& model = world.model;
     QueryTrees& trees = world.query_trees;
     if (trees.fitted.size() != model.bodies.slot.size()) {
@@ -35,6 +37,8 @@ SurfaceTree tree_of(WorldState& world, std::size_t body) {
     return {
         tree, model.bvh.node, model.bvh_leaves.triangle, trees.box, model.surface.triangles.node, model.nodes.position};
 }
+
+namespace {
 
 SurfaceHit hit_of(const Model& model, const TrianglePoint& found, std::size_t body) {
     SurfaceHit hit;
@@ -72,7 +76,7 @@ std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter,
                 take(*found, handle, {});
             continue;
         }
-        if (const std::optional<TrianglePoint> found = of_tree(tree_of(world, b), limit))
+        if (const std::optional<TrianglePoint> found = of_tree(fitted_tree(world, b), limit))
             take(hit_of(model, *found, b), handle, {});
     }
     for (std::size_t c = 0; filter.colliders && c < model.colliders.slot.size(); ++c) {
@@ -80,7 +84,7 @@ std::optional<SurfaceHit> first_of(WorldState& world, const QueryFilter& filter,
         if (!(model.colliders.filter[c].group & filter.groups) || has(filter.except_colliders, handle)) continue;
         if (const Index mesh = model.colliders.body[c]; mesh != no_index) {
             const auto b = static_cast<std::size_t>(mesh);
-            if (const std::optional<TrianglePoint> found = of_tree(tree_of(world, b), limit))
+            if (const std::optional<TrianglePoint> found = of_tree(fitted_tree(world, b), limit))
                 take(hit_of(model, *found, b), {}, handle);
             continue;
         }

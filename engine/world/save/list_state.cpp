@@ -105,6 +105,7 @@ void list_cache(ContactCache& cache, SavedRows& saved, Archive& archive) {
 void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.value("/run/counters", world.record.counters);
     archive.value("/run/balance", world.record.balance);
+    archive.value("/run/held", world.record.held);
     archive.column("/run/limits/limit", saved.limit);
     archive.column("/run/limits/slot", saved.limit_slot);
     archive.column("/run/limits/generation", saved.limit_generation);

@@ -6,6 +6,7 @@
 #include "components/row_type.h"
 #include "components/step_watch.h"
 #include "engine/world/state/clock.h"
+#include "engine/world/state/held_depth.h"
 #include "engine/world/step/balance.h"
 #include "engine/world/tuning.h"
 #include "skerry/report.h"
@@ -56,6 +57,13 @@ struct MembersOf<Balance> {
     }
     static_assert(sizeof(Balance) == 17 * sizeof(Real),
                   "every member of this struct must be in the list of saved members");
+};
+template <>
+struct MembersOf<HeldDepth> {
+    static auto list() {
+        using S = HeldDepth;
+        return std::array{Member{"depth", &S::depth}, Member{"pair", &S::pair}};
+    }
 };
 template <>
 struct MembersOf<RunCounters> {

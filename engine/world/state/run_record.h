@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/world/forces/force_ledger.h"
+#include "engine/world/state/held_depth.h"
 #include "engine/world/state/step_limits.h"
 #include "engine/world/step/balance.h"
 #include "jobs/trace.h"
@@ -27,6 +28,7 @@ struct RunRecord {
     std::vector<StartOverlap> start_overlaps;  // overlaps that the last check has found
     std::vector<StartMove> start_moves;
     StepLimits limits;
+    HeldDepth held;  // largest overlap of held surfaces in any step
     Balance balance;
     Trace trace;
     bool tracing = false;

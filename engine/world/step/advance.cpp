@@ -98,6 +98,11 @@ void add_to_report(const WorldState& world, StepReport& report) {
     ++report.steps;
 }
 
+void note_held(const HeldDepth& held, WorldState& world, StepReport& report) {
+    report.held_penetration = std::max(report.held_penetration, held.depth);
+    world.record.held.take(held);
+}
+
 void note_outcome(StepOutcome outcome, RunCounters& counters, StepReport& report) {
     report.retried += outcome == StepOutcome::again_with_crossings;
     counters.retried += outcome == StepOutcome::again_with_crossings;
@@ -227,7 +232,8 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     };
     world.transaction.begin_call(model, clock);
     ForceLedger& forces = world.record.forces;
-    if (forces.on()) forces.begin_call(model, world.scratch);
+    const Real step_before = clock.step_before;
+    if (forces.on()) forces.begin_call(model, step_before, world.scratch);
     const auto drift = [&](Real offset) {
         const Real seconds = offset - clock.offset;
         drift_to(*world.executor, offset, model, clock, search);
@@ -265,6 +271,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         world.drawn_behind = world.scratch.parameters.draws_late;
         if (world.scratch.findings.rest.bodies > 0) world.draw(true);
         add_to_report(world, report);
+        note_held(held_in_shapes(world, report.steps == 1), world, report);
         note_inversions(world, report);
         note_limit(world, report);
         left = plan.steps > 1 || within < left ? left - plan.h : 0;
@@ -289,9 +296,10 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     if (report.steps == 0) {
         world.transaction.roll_back_call(model, clock);
         if (leapfrog) measure_displacement_again(*world.executor, model, search);
-        if (forces.on()) forces.begin_call(model, world.scratch);
+        if (forces.on()) forces.begin_call(model, step_before, world.scratch);
     } else {
         drift(0);
+        note_held(held_in_surfaces(world), world, report);
         // otherwise the next call would make this update and gain its energy
         stiffened += follow_stiffening(model);
         world.record.balance.work += stiffened;

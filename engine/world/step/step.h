@@ -15,6 +15,15 @@ void build_step(WorldState& world);
 /// Adds a committed step to the counters of the run.
 void count_step(const StepScratch& scratch, RunCounters& counters);
 
+// held_depth.cpp
+
+/// Largest depth of held nodes inside analytic colliders now. Unless `all` is set, held nodes that stand still are not
+/// tested against colliders that stand still.
+HeldDepth held_in_shapes(const WorldState& world, bool all);
+/// Largest depth of held nodes behind held triangles of other bodies and of mesh colliders now. Refits the trees of the
+/// bodies that have held nodes.
+HeldDepth held_in_surfaces(WorldState& world);
+
 // note_forces.cpp
 
 /// Computes Model::forced and force_rate. Must be called after force elements, or bodies on which they act, were added,

@@ -58,6 +58,14 @@ public:
         return decrement;
     }
 
+    /// Kinetic energy that the forces of the step alone would give to the free nodes [J].
+    Real of_forces() const {
+        Real sum = 0;
+        for (std::size_t k = 0; k < step_.velocity.size(); ++k)
+            if (!stiff_.holds(k)) sum += (within_ * step_.force[k]).squaredNorm() / (2 * stiff_.mass(k));
+        return sum;
+    }
+
     /// Sum of kinetic energy, elastic energy and energy of the spin, which sets the scale of rounding errors [J].
     Real size() const {
         Real sum = 0;
@@ -100,9 +108,13 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
     if (!std::isfinite(value) || !factor()) return false;
     Real decrement = objective.turn();
     const Real first = decrement;
+    // In a very short step the decrement is below the rounding error of the energies although forces act. The given
+    // velocities are accepted only if the decrement is also small compared with the effect of these forces, because the
+    // reactions of held nodes follow from the change of the velocities.
+    if (decrement <= rounding * std::min(size, objective.of_forces())) return true;
     for (int k = 0; k < most_steps; ++k) {
         if (!std::isfinite(decrement)) return false;
-        if (decrement <= std::max(close * close * first, rounding * size)) return true;
+        if (k > 0 && decrement <= std::max(close * close * first, rounding * size)) return true;
         ++step.counts.steps;
         constexpr Real enough = 1e-4;  // required decrease, as a fraction of the decrease that the slope predicts
         Real along = 1, next = objective.at(along);
@@ -115,7 +127,7 @@ bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
         for (std::size_t n = 0; n < step.velocity.size(); ++n) step.velocity[n] += along * step.direction[n];
         const Real before = decrement;
         decrement = objective.turn();
-        if (decrement > still_good * still_good * before) {
+        if (decrement > std::max(still_good * still_good * before, rounding * size)) {
             if (!factor()) return false;
             decrement = objective.redirect();
         }

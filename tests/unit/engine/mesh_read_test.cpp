@@ -75,6 +75,33 @@ TEST_CASE("every format gives back the tetrahedra that were written, without the
     }
 }
 
+TEST_CASE("in every format, nodes have the numbers that they have in the file when unused nodes are dropped",
+          "[unit]") {
+    const Mesh used = sample();
+    CHECK(used.file_number.empty());
+    // Unused nodes at the beginning and in the middle: the numbers 0 and 4.
+    Mesh written = used;
+    std::vector<Index> numbers;
+    for (std::size_t n = 0; n < used.nodes.size(); ++n) numbers.push_back(static_cast<Index>(n < 3 ? n + 1 : n + 2));
+    for (auto& tetrahedron : written.tetrahedra)
+        for (Index& n : tetrahedron) n = numbers[static_cast<std::size_t>(n)];
+    written.nodes.insert(written.nodes.begin() + 3, Vec3(5, 5, 5));
+    written.nodes.insert(written.nodes.begin(), Vec3(7, 7, 7));
+    const TemporaryFolder folder;
+    for (const SampleFile& file : all_sample_files(written)) {
+        INFO(file.name);
+        const std::string path = folder.write(file.name, file.content);
+        if (is_surface_file(file.name) || file.name.ends_with(".node")) continue;
+        const Mesh found = mesh::read(path);
+        CHECK(found.file_number == numbers);
+        CHECK(found.nodes == used.nodes);
+        CHECK(found.tetrahedra == used.tetrahedra);
+    }
+    const std::string whole = folder.write("whole.msh", "");
+    mesh::write(whole, used);
+    CHECK(mesh::read(whole).file_number.empty());
+}
+
 TEST_CASE("every format of tetrahedra gives back the labels that were written", "[unit]") {
     const Mesh mesh = labelled_sample();
     const TemporaryFolder folder;

@@ -32,6 +32,77 @@ class ProgramRunTest(ProgramCase):
         self.assertLess(calm["energy"]["share"], 0.01)
         self.assertEqual(calm["warnings"], [])
 
+    def test_held_nodes_inside_a_collider_are_a_warning_with_their_depth(self):
+        led = {"name": "led", "seconds": 0.2, "settings": {"gravity": [0, 0, 0]}, "materials": {"m": {}},
+               "bodies": [{"name": "cube", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}},
+                           "material": "m", "position": [0, 0, 0.06],
+                           "pin": {"box": {"lower": [-1, -1, -1], "upper": [1, 1, 1]},
+                                   "motion": {"velocity": [0, 0, -0.15]}}}],
+               "colliders": [{"name": "floor", "shape": {"plane": {}}}]}
+        stats = self.folder / "led_stats.json"
+        summary = self.skerry("run", self.write("led.json", led), "--stats", stats).stdout
+        line = next(line for line in summary.splitlines() if line.startswith("  penetration"))
+        self.assertRegex(line, r"held surfaces at most (19\.[0-9]|20) mm")
+        self.assertIn('WARNING       held nodes of body "cube" are up to', summary)
+        found = json.loads(stats.read_text())["trust"]["penetration"]
+        self.assertAlmostEqual(found["held"], 0.02, delta=1e-3)
+        self.assertEqual((found["held_body"], found["held_in"]), ("cube", "floor"))
+
+    def test_a_run_in_which_surfaces_cross_ends_with_its_own_status_and_exit_code(self):
+        # Two boxes close on a cube until nothing is left between them.
+        def finger(side):
+            keys = [{"time": 0, "position": [side * 0.026, 0, 0]}, {"time": 0.1, "position": [side * 0.005, 0, 0]}]
+            return {"shape": {"box": {"size": [0.01, 0.1, 0.1]}}, "motion": {"keys": keys}}
+        scene = {"name": "closed", "seconds": 0.11, "settings": {"gravity": [0, 0, 0]}, "materials": {"m": {}},
+                 "bodies": [{"mesh": {"box": {"size": [0.04, 0.04, 0.04], "cells": [2, 2, 2]}}, "material": "m"}],
+                 "colliders": [finger(-1), finger(1)]}
+        stats = self.folder / "closed_stats.json"
+        done = self.skerry("run", self.write("closed.json", scene), "--stats", stats, "--profile", code=4)
+        self.assertIn("NOT TRUSTED", done.stdout)
+        self.assertIn("cannot be trusted", done.stderr)
+        self.assertIn("balance       not to be trusted: energy error", done.stdout)
+        self.assertIn("; not to be trusted", next(line for line in done.stdout.splitlines() if "dissipated" in line))
+        found = json.loads(stats.read_text())
+        self.assertEqual(found["status"], found["trust"]["distrust"])
+        self.assertIn("cannot be trusted", found["status"])
+        self.assertAlmostEqual(found["seconds_simulated"], 0.11)
+        self.assertEqual(json.loads(self.run_with_stats(self.scene))["trust"]["distrust"], "")
+
+    def test_values_in_wrong_units_are_warnings_before_the_start(self):
+        def warnings(*settings):
+            done = self.skerry("run", self.scene, "--seconds", 1e-3, *(part for s in settings for part in ("--set", s)))
+            said = [line for line in done.stderr.splitlines() if line.startswith("skerry: WARNING: ")]
+            for line in said:
+                self.assertIn(line.removeprefix("skerry: "), re.sub(r"WARNING +", "WARNING: ", done.stdout))
+            return said
+        self.assertEqual(warnings(), [])
+        sag = warnings("materials.rubber.E=0.02")
+        self.assertEqual(len(sag), 1)
+        self.assertIn('body "block" sags by about 49,000 times its height under its own weight', sag[0])
+        self.assertIn("is E in Pa", sag[0])
+        self.assertIn("times its height", warnings("bodies[0].mesh.scale=200", "bodies[0].position=[0,0,25]")[0])
+        self.assertIn("is it in g/cm^3?", warnings("materials.rubber.rho=1")[0])
+        self.assertIn("more than any material", warnings("materials.rubber.rho=1e6", "materials.rubber.E=1e8")[0])
+        self.assertIn("more than diamond", warnings("materials.rubber.E=2e14")[0])
+        self.assertIn("is it in m/s^2?", warnings("settings.gravity=[0,0,-9810]", "materials.rubber.E=1e8")[0])
+        self.assertEqual(warnings("materials.rubber.E=0.02", "settings.gravity=[0,0,0]"), [])
+        small = '{"name":"chip","mesh":{"ball":{"radius":1e-5,"resolution":2}},"material":"rubber","position":[9,9,9]}'
+        block = json.dumps(SCENE["bodies"][0])
+        self.assertIn("mesh.scale to 0.001", warnings(f"bodies=[{block},{small}]")[0])
+        inspected = self.skerry("inspect", self.scene, "--set", "materials.rubber.E=0.02").stdout
+        self.assertIn("sags by about 49,000 times its height", inspected)
+
+    def test_a_position_that_keys_replace_is_a_warning(self):
+        def collider(position):
+            keys = [{"time": 0, "position": [0, 0, -1]}, {"time": 1, "position": [0, 0, -2]}]
+            shape = {"box": {"size": [1, 1, 1]}}
+            scene = {**SCENE, "seconds": 1e-3,
+                     "colliders": [{"name": "lift", "shape": shape, "position": position, "motion": {"keys": keys}}]}
+            return self.skerry("run", self.write("lift.json", scene)).stdout
+        self.assertIn('collider "lift" starts at the position [0.0,0.0,-1.0] of its first key', collider([0, 0, -3]))
+        for position in ([0, 0, -1], [0, 0, 0]):
+            self.assertNotIn("lift", collider(position))
+
     def test_the_summary_is_short_and_details_are_printed_on_request(self):
         short = self.skerry("run", self.scene).stdout
         self.assertLessEqual(len(short.splitlines()), 15, short)

@@ -123,6 +123,29 @@ TEST_CASE("two bodies of one name are refused", "[unit]") {
         Catch::Contains("bodies[1].name: found \"b\", which is already the name of a body"));
 }
 
+TEST_CASE("a pin names the nodes of a mesh file by their numbers in the file", "[unit]") {
+    const TemporaryFolder folder;
+    // The nodes 0 and 3 of the file, counted from 0, belong to no tetrahedron.
+    folder.write("m.node", "6 3 0 0\n1 5 5 5\n2 0 0 0\n3 1 0 0\n4 9 9 9\n5 0 1 0\n6 0 0 1\n");
+    folder.write("m.ele", "1 4 0\n1 2 3 5 6\n");
+    const auto plan_with = [&](const std::string& nodes) {
+        return plan_scene(folder.write("s.json", R"({"materials": {"m": {}}, "bodies": [{"name": "b", "material": "m",
+            "mesh": {"file": "m.ele"}, "pin": {"nodes": )" +
+                                                     nodes + "}}]}"));
+    };
+    const ScenePlan plan = plan_with("[1, 4, 5]");
+    std::vector<Vec3> held;
+    for (const Index n : plan.bodies[0].pins[0].nodes)
+        held.push_back(plan.meshes[0].nodes[static_cast<std::size_t>(n)]);
+    CHECK(held == std::vector<Vec3>{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    CHECK_THROWS_WITH(plan_with("[1, 0]"),
+                      Catch::Contains("body \"b\": bodies[0].pin.nodes[1]: found node 0, which no tetrahedron of the "
+                                      "mesh file uses, expected the number of a node of a tetrahedron, from 1 to 5"));
+    CHECK_THROWS_WITH(plan_with("[3]"), Catch::Contains("node 3, which no tetrahedron"));
+    CHECK_THROWS_WITH(plan_with("[6]"), Catch::Contains("node 6"));
+    CHECK_THROWS_WITH(plan_with("[5, 5]"), Catch::Contains("node 5 for the second time"));
+}
+
 TEST_CASE("pins take the nodes inside their box, and say when there are none", "[unit]") {
     const TemporaryFolder folder;
     const ScenePlan plan = plan_scene(folder.write(

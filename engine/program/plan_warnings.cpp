@@ -1,0 +1,134 @@
+#include "engine/program/plan_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/program/number_text.h"
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+namespace {
+
+// Limits beyond which a value cannot be meant. A body may sag by the first limit times its height: the estimate is
+// linear, and the softest gels reach about 1. Of all materials, aerogels are the lightest and osmium is the heaviest;
+// diamond is the stiffest. The largest centrifuges reach an acceleration of some 10,000 m/s^2.
+constexpr Real most_sag = 2;
+constexpr Real least_density = 2, most_density = 25000;  // [kg/m^3]
+constexpr Real most_modulus = 1.3e12;                    // [Pa]
+constexpr Real most_gravity = 5000;                      // [m/s^2]
+constexpr Real most_size_ratio = 999;                    // longest over shortest body of a scene
+
+struct Extent {
+    Real size = 0;    // longest edge of the bounding box [m]
+    Real height = 0;  // extent along the direction of gravity [m]
+};
+
+Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity) {
+    if (mesh.nodes.empty()) return {};
+    const Vec3 down = rotation_matrix(body.rotation).transpose() * gravity.normalized();
+    Vec3 lower = mesh.nodes.front(), upper = lower;
+    Real lowest = infinity, highest = -infinity;
+    for (const Vec3& node : mesh.nodes) {
+        lower = lower.cwiseMin(node);
+        upper = upper.cwiseMax(node);
+        lowest = std::min(lowest, down.dot(node));
+        highest = std::max(highest, down.dot(node));
+    }
+    return {(upper - lower).maxCoeff(), highest - lowest};
+}
+
+/// Formats an estimate with two digits, for example "20,000" or "3.9".
+std::string rough(Real value) {
+    if (value < 100) return short_number(value, 2);
+    const Real unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return count_text(std::round(value / unit) * unit);
+}
+
+/// Returns the materials of a body: its own, and the materials by label.
+std::vector<std::size_t> materials_of(const BodyPlan& body) {
+    std::vector<std::size_t> materials{body.material};
+    for (const auto& [label, material] : body.materials) materials.push_back(material);
+    return materials;
+}
+
+void warn_of_sag(const ScenePlan& plan, const BodyPlan& body, Real height, std::vector<std::string>& warnings) {
+    if (body.settings.dynamics == BodyDynamics::rigid) return;
+    Real sag = infinity;
+    const MaterialSettings* sagging = nullptr;
+    for (const std::size_t m : materials_of(body)) {
+        const MaterialSettings& material = plan.materials[m].second;
+        const Real of_material = material.density * plan.settings.gravity.norm() * height / material.young_modulus;
+        if (of_material >= sag) continue;
+        sag = of_material;
+        sagging = &material;
+    }
+    if (sagging == nullptr || !(sag > most_sag)) return;
+    warnings.push_back("body \"" + body.settings.name + "\" sags by about " + rough(sag) +
+                       " times its height under its own weight (height " + with_unit(height, "m") + ", E " +
+                       short_number(sagging->young_modulus) + " Pa, density " + short_number(sagging->density) +
+                       " kg/m^3): is E in Pa, the density in kg/m^3, and the mesh in m (mesh.scale)?");
+}
+
+void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, std::vector<std::string>& warnings) {
+    const auto by_size = [](const Extent& a, const Extent& b) { return a.size < b.size; };
+    const auto [least, most] = std::ranges::minmax_element(extents, by_size);
+    if (least == extents.end() || !(least->size > 0) || !(most->size > most_size_ratio * least->size)) return;
+    const auto name = [&](auto place) {
+        return "body \"" + plan.bodies[static_cast<std::size_t>(place - extents.begin())].settings.name + "\"";
+    };
+    warnings.push_back(name(most) + " is " + with_unit(most->size, "m") + " long, but " + name(least) + " only " +
+                       with_unit(least->size, "m") +
+                       ": are all lengths in m? For a mesh file in millimetres set mesh.scale to 0.001");
+}
+
+void warn_of_material(const std::string& name, const MaterialSettings& material, std::vector<std::string>& warnings) {
+    const std::string whose =
+        "material \"" + name + "\" has a density of " + short_number(material.density) + " kg/m^3, ";
+    if (material.density < least_density)
+        warnings.push_back(whose + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
+    if (material.density > most_density)
+        warnings.push_back(whose + "more than any material: is it in kg/m^3? Water has 1000 kg/m^3");
+    if (material.young_modulus > most_modulus)
+        warnings.push_back("material \"" + name + "\" has a Young's modulus of " +
+                           short_number(material.young_modulus) + " Pa, more than diamond: is it in Pa?");
+}
+
+/// Warns if a collider has another pose than its keys. The run uses the keys.
+void warn_of_pose(const ColliderSettings& collider, std::vector<std::string>& warnings) {
+    if (collider.motion.keys.empty() || collider.position.isZero(0)) return;
+    const Vec3& first = collider.motion.keys.front().position;
+    if (collider.position.isApprox(first)) return;
+    const auto text = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}.dump(); };
+    warnings.push_back("collider \"" + collider.name + "\" starts at the position " + text(first) +
+                       " of its first key, not at its \"position\" " + text(collider.position) +
+                       ": keys are poses of the collider itself; correct the keys, or delete \"position\"");
+}
+
+}  // namespace
+
+std::vector<std::string> plan_warnings(const ScenePlan& plan) {
+    std::vector<std::string> warnings;
+    const Vec3& gravity = plan.settings.gravity;
+    if (gravity.norm() > most_gravity)
+        warnings.push_back("settings.gravity is " + short_number(gravity.norm()) +
+                           " m/s^2: is it in m/s^2? The Earth has 9.81 m/s^2");
+    std::vector<Extent> extents;
+    std::vector<bool> used(plan.materials.size(), false);
+    const BodyPlan* before = nullptr;
+    for (const BodyPlan& body : plan.bodies) {
+        for (const std::size_t m : materials_of(body)) used[m] = true;
+        const bool copy = before != nullptr && body.mesh == before->mesh && body.material == before->material &&
+                          body.settings.rotation == before->settings.rotation;
+        extents.push_back(copy ? extents.back() : extent_of(plan.meshes[body.mesh], body.settings, gravity));
+        if (!copy) warn_of_sag(plan, body, extents.back().height, warnings);
+        before = &body;
+    }
+    warn_of_sizes(plan, extents, warnings);
+    for (std::size_t m = 0; m < used.size(); ++m)
+        if (used[m]) warn_of_material(plan.materials[m].first, plan.materials[m].second, warnings);
+    for (const ColliderPlan& collider : plan.colliders) warn_of_pose(collider.settings, warnings);
+    return warnings;
+}
+
+}  // namespace skerry

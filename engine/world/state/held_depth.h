@@ -1,0 +1,22 @@
+// Overlap of surfaces that no contact can move.
+#pragma once
+
+#include <cstdint>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// Largest overlap of surfaces whose nodes no contact can move, because attachments or scripts lead them.
+struct HeldDepth {
+    static constexpr std::uint64_t no_pair = ~std::uint64_t{0};
+
+    Real depth = 0;                // [m]
+    std::uint64_t pair = no_pair;  // ContactKey::pair of the overlapping objects; no_pair if one of them was removed
+
+    void take(const HeldDepth& other) {
+        if (other.depth > depth) *this = other;
+    }
+};
+
+}  // namespace skerry

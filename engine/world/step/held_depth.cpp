@@ -1,0 +1,88 @@
+// Measures how deep held nodes are inside other objects. Contacts between nodes that cannot move are no part of the
+// contact table, so measure_contacts does not see these overlaps.
+#include <algorithm>
+
+#include "engine/world/query/fitted_tree.h"
+#include "engine/world/step/step.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/collision/narrow/winding_number.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+bool is_held(const Model& model, Index node) {
+    return !(model.nodes.inverse_mass[static_cast<std::size_t>(node)] > 0);
+}
+
+bool has_held_nodes(const Model& model, Index body) {
+    return model.bodies.pinned_count[static_cast<std::size_t>(body)] > 0;
+}
+
+/// Calls visit(attachment, node) for each held node of a body, with rows of AttachmentTable and NodeTable. `body`: row
+/// of BodyTable.
+void for_each_held(const Model& model, Index body, auto&& visit) {
+    for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
+        if (model.attachments.body[a] != body) continue;
+        for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[a])) visit(a, node);
+    }
+}
+
+/// Adds the depth of the held nodes of one body inside the held part of the surface of another body. Only points behind
+/// the nearest triangle are tested for being inside, because that test takes a sum over all triangles.
+void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
+    const Model& model = world.model;
+    const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));
+    if (tree.tree.size() == 0) return;
+    const CollisionInputs inputs =
+        CollisionInputs::bind({}, model.bodies, model.colliders, model.surface, model.materials, model.bvh,
+                              model.bvh_leaves, model.nodes, model.disabled_pairs);
+    for_each_held(model, body, [&](std::size_t, Index node) {
+        const Vec3& point = model.nodes.position[static_cast<std::size_t>(node)];
+        const std::optional<TrianglePoint> found = nearest_point(tree, point, infinity);
+        if (!found || !(found->distance > deepest.depth)) return;
+        const auto& [a, b, c] = model.surface.triangles.node[static_cast<std::size_t>(found->triangle)];
+        if (!is_held(model, a) || !is_held(model, b) || !is_held(model, c)) return;
+        if (is_outside(inputs, other, point)) return;
+        deepest.take({found->distance, pair});
+    });
+}
+
+}  // namespace
+
+HeldDepth held_in_shapes(const WorldState& world, bool all) {
+    const Model& model = world.model;
+    const PairTable& pairs = world.cache.pairs;
+    HeldDepth deepest;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        if (pairs.kind[p] != PairKind::collider || !has_held_nodes(model, pairs.first[p])) continue;
+        const auto c = static_cast<std::size_t>(pairs.second[p]);
+        const bool moves = all || !model.colliders.motion[c].stands_still();
+        const RigidPose pose =
+            pose_at(model.colliders.script[c], model.colliders.keyframe, model.colliders.initial[c], world.clock.time);
+        const RigidMotion now{pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
+        for_each_held(model, pairs.first[p], [&](std::size_t a, Index node) {
+            if (!moves && model.attachments.motion[a].stands_still()) return;
+            const Vec3& point = model.nodes.position[static_cast<std::size_t>(node)];
+            deepest.take({-distance_to_collider(model.colliders.geometry[c], now, point).distance, pairs.key[p]});
+        });
+    }
+    return deepest;
+}
+
+HeldDepth held_in_surfaces(WorldState& world) {
+    const Model& model = world.model;
+    const PairTable& pairs = world.cache.pairs;
+    HeldDepth deepest;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+        const Index first = pairs.first[p], second = pairs.second[p];
+        if (pairs.kind[p] != PairKind::bodies || !has_held_nodes(model, first) || !has_held_nodes(model, second))
+            continue;
+        add_nodes_inside(world, first, second, pairs.key[p], deepest);
+        add_nodes_inside(world, second, first, pairs.key[p], deepest);
+    }
+    return deepest;
+}
+
+}  // namespace skerry
