@@ -101,10 +101,10 @@ public:
                 return thin ? std::optional(std::move(column)) : std::nullopt;
             }
             face = beyond(exit->first);
+            if (face.tetrahedron == no_index) return std::nullopt;
             // A ray through a node or an edge can run in a circle because of rounding errors.
-            const bool again = std::ranges::any_of(column.crossings, [&](const Crossing& known) {
-                return face.tetrahedron == no_index || known.tetrahedron == number(face);
-            });
+            const bool again =
+                std::ranges::find(column.crossings, number(face), &Crossing::tetrahedron) != column.crossings.end();
             if (again) return std::nullopt;
         }
     }
