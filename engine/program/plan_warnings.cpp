@@ -66,7 +66,7 @@ void warn_of_sag(const ScenePlan& plan, const BodyPlan& body, Real height, std::
     if (sagging == nullptr || !(sag > most_sag)) return;
     warnings.push_back("body \"" + body.settings.name + "\" sags by about " + rough(sag) +
                        " times its height under its own weight (height " + with_unit(height, "m") + ", E " +
-                       short_number(sagging->young_modulus) + " Pa, density " + short_number(sagging->density) +
+                       short_number(sagging->young_modulus) + " Pa, density " + short_number(sagging->density, 4) +
                        " kg/m^3): is E in Pa, the density in kg/m^3, and the mesh in m (mesh.scale)?");
 }
 
@@ -84,7 +84,7 @@ void warn_of_sizes(const ScenePlan& plan, const std::vector<Extent>& extents, st
 
 void warn_of_material(const std::string& name, const MaterialSettings& material, std::vector<std::string>& warnings) {
     const std::string whose =
-        "material \"" + name + "\" has a density of " + short_number(material.density) + " kg/m^3, ";
+        "material \"" + name + "\" has a density of " + short_number(material.density, 4) + " kg/m^3, ";
     if (material.density < least_density)
         warnings.push_back(whose + "about that of air: is it in g/cm^3? 1 g/cm^3 is 1000 kg/m^3");
     if (material.density > most_density)

@@ -114,14 +114,22 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
+    // Forces act for another time on implicit bodies than on other bodies, if the step length changes.
+    Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {
         if (pair.key.bodies || pair.key.second != collider.slot) continue;
         touched = true;
         awake = awake || !rests(world_->model, pair.key);
+        const Real seconds = ledger.seconds_of(world_->model, pair.key);
+        shortest = std::min(shortest, seconds);
+        longest = std::max(longest, seconds);
         add(pair.sums, PairSide::second, report);
     }
-    report.measured = report.seconds > 0 && ((touched && !awake) || ledger.shows_contacts());
+    if (touched) report.seconds = longest;
+    constexpr Real small_share = 0.01;  // error of the mean force that two different times may cause
+    const bool even = !touched || longest - shortest <= small_share * longest;
+    report.measured = report.seconds > 0 && even && ((touched && !awake) || ledger.shows_contacts());
     return report;
 }
 

@@ -1,5 +1,6 @@
 // Measures how deep held nodes are inside other objects. Contacts between nodes that cannot move are no part of the
 // contact table, so measure_contacts does not see these overlaps.
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "engine/world/query/fitted_tree.h"
@@ -20,17 +21,31 @@ bool has_held_nodes(const Model& model, Index body) {
     return model.bodies.pinned_count[static_cast<std::size_t>(body)] > 0;
 }
 
-/// Calls visit(attachment, node) for each held node of a body, with rows of AttachmentTable and NodeTable. `body`: row
-/// of BodyTable.
-void for_each_held(const Model& model, Index body, auto&& visit) {
-    for (std::size_t a = 0; a < model.attachments.slot.size(); ++a) {
-        if (model.attachments.body[a] != body) continue;
-        for (const Index node : rows_of(model.attachments.node, model.attachments.nodes[a])) visit(a, node);
-    }
+/// True if an attachment of the body moves in this step.
+bool is_led(const Model& model, Index body) {
+    for (std::size_t a = 0; a < model.attachments.slot.size(); ++a)
+        if (model.attachments.body[a] == body && !model.attachments.motion[a].stands_still()) return true;
+    return false;
 }
 
-/// Adds the depth of the held nodes of one body inside the held part of the surface of another body. Only points behind
-/// the nearest triangle are tested for being inside, because that test takes a sum over all triangles.
+/// Calls visit(node) for each held node on the surface of a body, with rows of NodeTable. `body`: row of BodyTable.
+void for_each_held(const Model& model, Index body, auto&& visit) {
+    const Range vertices = model.bodies.vertices[static_cast<std::size_t>(body)];
+    for (Index v = vertices.begin; v < vertices.end; ++v)
+        if (const Index node = model.surface.vertices.node[static_cast<std::size_t>(v)]; is_held(model, node))
+            visit(node);
+}
+
+/// True if a point is in front of the triangle that is nearest to it, and not over an edge of this triangle.
+bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& point) {
+    const auto& [a, b, c] = model.surface.triangles.node[static_cast<std::size_t>(nearest.triangle)];
+    const auto at = [&](Index n) -> const Vec3& { return model.nodes.position[static_cast<std::size_t>(n)]; };
+    const bool over_face = std::ranges::all_of(nearest.weight, [](Real weight) { return weight > 0; });
+    return over_face && (at(b) - at(a)).cross(at(c) - at(a)).dot(point - at(a)) > 0;
+}
+
+/// Adds the depth of the held nodes of one body inside the held part of the surface of another body. A point in front
+/// of the nearest face is not tested for being inside, because that test takes a sum over all triangles.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));
@@ -38,13 +53,13 @@ void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t 
     const CollisionInputs inputs =
         CollisionInputs::bind({}, model.bodies, model.colliders, model.surface, model.materials, model.bvh,
                               model.bvh_leaves, model.nodes, model.disabled_pairs);
-    for_each_held(model, body, [&](std::size_t, Index node) {
+    for_each_held(model, body, [&](Index node) {
         const Vec3& point = model.nodes.position[static_cast<std::size_t>(node)];
         const std::optional<TrianglePoint> found = nearest_point(tree, point, infinity);
         if (!found || !(found->distance > deepest.depth)) return;
         const auto& [a, b, c] = model.surface.triangles.node[static_cast<std::size_t>(found->triangle)];
         if (!is_held(model, a) || !is_held(model, b) || !is_held(model, c)) return;
-        if (is_outside(inputs, other, point)) return;
+        if (is_in_front(model, *found, point) || is_outside(inputs, other, point)) return;
         deepest.take({found->distance, pair});
     });
 }
@@ -58,12 +73,11 @@ HeldDepth held_in_shapes(const WorldState& world, bool all) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         if (pairs.kind[p] != PairKind::collider || !has_held_nodes(model, pairs.first[p])) continue;
         const auto c = static_cast<std::size_t>(pairs.second[p]);
-        const bool moves = all || !model.colliders.motion[c].stands_still();
+        if (!all && model.colliders.motion[c].stands_still() && !is_led(model, pairs.first[p])) continue;
         const RigidPose pose =
             pose_at(model.colliders.script[c], model.colliders.keyframe, model.colliders.initial[c], world.clock.time);
         const RigidMotion now{pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()};
-        for_each_held(model, pairs.first[p], [&](std::size_t a, Index node) {
-            if (!moves && model.attachments.motion[a].stands_still()) return;
+        for_each_held(model, pairs.first[p], [&](Index node) {
             const Vec3& point = model.nodes.position[static_cast<std::size_t>(node)];
             deepest.take({-distance_to_collider(model.colliders.geometry[c], now, point).distance, pairs.key[p]});
         });

@@ -17,8 +17,8 @@ void count_step(const StepScratch& scratch, RunCounters& counters);
 
 // held_depth.cpp
 
-/// Largest depth of held nodes inside analytic colliders now. Unless `all` is set, held nodes that stand still are not
-/// tested against colliders that stand still.
+/// Largest depth of held nodes on surfaces inside analytic colliders now. Unless `all` is set, bodies whose attachments
+/// stand still are not tested against colliders that stand still.
 HeldDepth held_in_shapes(const WorldState& world, bool all);
 /// Largest depth of held nodes behind held triangles of other bodies and of mesh colliders now. Refits the trees of the
 /// bodies that have held nodes.
