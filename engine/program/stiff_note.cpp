@@ -16,6 +16,8 @@ namespace {
 constexpr double few_steps = 1e5;
 // Least ratio of the step length without the stiff bodies to the present one for which a note is given.
 constexpr Real much_longer = 4;
+// Longest step by default in a world of rigid and implicit bodies (Settings::step_size) [s].
+constexpr Real usual_step = 1.0 / 120;
 
 /// Explicit bodies whose stable steps are close to the shortest one, and the longest step without them.
 struct ShortSteps {
@@ -60,7 +62,7 @@ std::size_t count_bad(std::vector<Real> step) {
 std::string stiff_note(const ScenePlan& plan, const World& world, double steps, double sample) {
     if (steps < few_steps || plan.bodies.empty()) return {};
     const ShortSteps stiff = short_steps(plan, world);
-    const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(infinity)});
+    const Real others = std::min({stiff.others, sample, world.settings().step_size.value_or(usual_step)});
     if (stiff.count == 0 || !(others > much_longer * stiff.step)) return {};
     const BodyPlan& body = plan.bodies[stiff.first];
     std::string text = mesh_of_body_text(plan, stiff.first);

@@ -74,6 +74,14 @@ void require_places(const SweepPlan& plan, const Json& scene) {
     }
 }
 
+/// Default folder of the results. It has the name of the sweep, so that the name must be possible for a folder.
+std::filesystem::path folder_of(const SweepFile& file) {
+    if (file.name.find('/') != std::string::npos || file.name == "." || file.name == "..")
+        file.place.key("name").refuse(in_quotes(file.name), "a name without \"/\", other than \".\" and \"..\"",
+                                      "choose the folder of the results with --out");
+    return std::filesystem::path("out") / file.name;
+}
+
 }  // namespace
 
 CaseJob SweepPlan::job(int index, bool probes) const {
@@ -96,7 +104,7 @@ CaseFile SweepPlan::read(int index) const {
 SweepPlan plan_sweep(const std::filesystem::path& file, const std::filesystem::path& folder) {
     SweepPlan plan{.file = read_sweep_file(file), .cases = {}, .folder = folder, .hashes = {}};
     plan.cases = cases_of(plan.file);
-    if (plan.folder.empty()) plan.folder = std::filesystem::path("out") / plan.file.name;
+    if (plan.folder.empty()) plan.folder = folder_of(plan.file);
     CaseHasher hasher(plan.file.scene.path);
     require_places(plan, hasher.scene());
     require_a_readable_case(plan);

@@ -323,7 +323,7 @@ class SweepTest(ProgramCase):
         self.sweep(self.cases, "--out", self.out, "--probes")
         for i in range(6):
             with open(self.out / f"case_{i:06d}.csv", newline="") as file:
-                self.assertEqual(len(list(csv.reader(file))), 1 + 1 + 36)  # names, the start, 12 frames of 3 samples
+                self.assertEqual(len(list(csv.reader(file))), 1 + 41)  # names; 0 to 200 ms in steps of 5 ms
         self.assertEqual([name for name in self.names() if "part" in name], [])
 
     def test_the_page_has_all_cases_and_cannot_be_broken_out_of(self):
