@@ -29,8 +29,8 @@ public:
 
     /// Value of the polynomial at the origin; zero without samples. `rank`: number of terms that were not dropped.
     Sample at_origin(int& rank) const {
-        // Cholesky decomposition, row by row. The diagonal after elimination of the earlier terms, over its first value,
-        // is the squared sine of the angle between a term and the earlier terms, over all samples.
+        // Cholesky decomposition, row by row. The diagonal after elimination of the earlier terms, over its first
+        // value, is the squared sine of the angle between a term and the earlier terms, over all samples.
         constexpr Real dependent = 1e-3;
         Eigen::Matrix<Real, terms, terms> lower = Eigen::Matrix<Real, terms, terms>::Zero();
         Eigen::Matrix<Real, terms, values> value = right_;
