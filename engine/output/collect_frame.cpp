@@ -1,5 +1,6 @@
 #include "engine/output/collect_frame.h"
 
+#include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -25,7 +26,8 @@ Frame collect_frame(const World& world) {
                 .bodies = {},
                 .colliders = {},
                 .contacts = world.contacts()};
-    for (const BodyHandle body : world.bodies())
+    for (const BodyHandle body : world.bodies()) {
+        NodeFields of_nodes = node_fields(world, body);
         frame.bodies.push_back({.handle = body,
                                 .name = world.name(body),
                                 .position = world.positions(body),
@@ -34,9 +36,10 @@ Frame collect_frame(const World& world) {
                                 .tetrahedra = world.tetrahedra(body),
                                 .stress = world.stress(body),
                                 .strain = world.strain(body),
-                                .node_stress = world.node_stress(body),
-                                .node_strain = world.node_strain(body),
+                                .node_stress = std::move(of_nodes.stress),
+                                .node_strain = std::move(of_nodes.strain),
                                 .material = materials_of(world, body)});
+    }
     for (const ColliderHandle collider : world.colliders())
         frame.colliders.push_back({.handle = collider,
                                    .name = world.name(collider),

@@ -1,14 +1,17 @@
 // Stress, strain and stable steps of bodies, for each tetrahedron or node.
 #include <algorithm>
+#include <numeric>
 
 #include "engine/world/edit/edit_model.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
+#include "engine/world/node_fields.h"
 #include "engine/world/validate.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/elements/build_elements.h"
 #include "systems/dynamics/elements/element_energy.h"
 #include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/recovery/recover_nodes.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
@@ -46,25 +49,27 @@ void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values
     for (Mat3& value : values) value = turn * value * turn.transpose();
 }
 
-/// Calls visit(elements, blocks, cover, positions, turn) for the elements of a body. The argument `turn` is a function
-/// that rotates tensors from the mesh frame to world axes.
+/// Calls visit(elements, blocks, cover, positions, first_node, turn) for the elements of a body. `first_node`: first
+/// node of the body in `positions`. The argument `turn` is a function that rotates tensors from the mesh frame to world
+/// axes.
 auto with_elements(const Model& model, std::size_t row, auto&& visit) {
     if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
         const ImplicitElements own(model, row);
         return visit(own.inputs(model), own.blocks, ElementCover{own.table.part, own.covered.view()},
-                     std::span<const Vec3>(own.shape),
+                     std::span<const Vec3>(own.shape), Index{0},
                      [&](std::span<Mat3> values) { turn_with_frame(model, row, values); });
     }
     const Range blocks = model.bodies.blocks[row];
     const ElementCover cover{rows_of(model.elements.part, blocks), model.body_records[row].element_tetrahedra.view()};
-    return visit(model.all_elements(), blocks, cover, model.nodes.position.span(), [](std::span<Mat3>) {});
+    return visit(model.all_elements(), blocks, cover, model.nodes.position.span(), model.bodies.nodes[row].begin,
+                 [](std::span<Mat3>) {});
 }
 
 std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfElements of_elements,
                                     OfTetrahedra of_tetrahedra) {
     return with_elements(model, row,
                          [&](const ElementInputs& elements, Range blocks, const ElementCover& cover,
-                             std::span<const Vec3> position, auto&& turn) {
+                             std::span<const Vec3> position, Index, auto&& turn) {
                              std::vector<Mat3> values(static_cast<std::size_t>(blocks.size()) * element_lanes);
                              of_elements(elements, blocks, position, values);
                              turn(values);
@@ -73,38 +78,33 @@ std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfEleme
                          });
 }
 
-Real volume_of(const Model& model, std::size_t row, std::size_t tetrahedron) {
-    const auto first = static_cast<std::size_t>(model.bodies.tetrahedron_blocks[row].begin);
-    return model.tetrahedra.volume[first + tetrahedron / element_lanes][tetrahedron % element_lanes];
+/// Stress and strain at the given nodes of a body.
+NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
+    const BodyRecord& record = model.body_records[row];
+    return with_elements(model, row,
+                         [&](const ElementInputs& elements, Range blocks, const ElementCover& cover,
+                             std::span<const Vec3> position, Index first_node, auto&& turn) {
+                             NodeFields fields = recover_nodes(
+                                 {.elements = elements,
+                                  .blocks = blocks,
+                                  .cover = cover,
+                                  .tetrahedra = record.tetrahedra,
+                                  .surface = record.surface,
+                                  .material_of_tetrahedra = record.tetrahedron_material,
+                                  .rest_position = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
+                                  .position = position,
+                                  .first_node = first_node},
+                                 nodes, kernels().element_fields);
+                             turn(fields.stress);
+                             turn(fields.strain);
+                             return fields;
+                         });
 }
 
-/// Stress at the given nodes of a body, averaged over the tetrahedra around each node. No node may be given twice.
-std::vector<Mat3> stress_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
-    return with_elements(
-        model, row,
-        [&](const ElementInputs& elements, Range blocks, const ElementCover& cover, std::span<const Vec3> position,
-            auto&& turn) {
-            const ElementsAround around = elements_around(cover, model.body_records[row].tetrahedra, nodes,
-                                                          static_cast<std::size_t>(model.bodies.nodes[row].size()));
-            std::vector<Mat3> values(around.block.size() * element_lanes);
-            kernels().cauchy_stress_of_blocks(elements, blocks, around.block, position, values);
-            turn(values);
-            const std::vector<Mat3> of_tetrahedra =
-                kernels().stress_of_tetrahedra({around.part, around.covered.view()}, values, around.tetrahedron.size());
-            std::vector<Real> volume;
-            for (const Index t : around.tetrahedron)
-                volume.push_back(volume_of(model, row, static_cast<std::size_t>(t)));
-            std::vector<Mat3> mean = kernels().means_of_nodes(around.corners, volume, of_tetrahedra, nodes.size() + 1);
-            mean.pop_back();  // removes the last value, which is the mean of all nodes that were not requested
-            return mean;
-        });
-}
-
-std::vector<Mat3> node_field(const Model& model, std::size_t row, std::span<const Mat3> of_tetrahedra) {
-    std::vector<Real> volume(of_tetrahedra.size());
-    for (std::size_t t = 0; t < volume.size(); ++t) volume[t] = volume_of(model, row, t);
-    return kernels().means_of_nodes(model.body_records[row].tetrahedra, volume, of_tetrahedra,
-                                    static_cast<std::size_t>(model.bodies.nodes[row].size()));
+NodeFields fields_of_nodes(const Model& model, std::size_t row) {
+    std::vector<Index> nodes(static_cast<std::size_t>(model.bodies.nodes[row].size()));
+    std::iota(nodes.begin(), nodes.end(), Index{0});
+    return fields_of_nodes(model, row, nodes);
 }
 
 }  // namespace
@@ -119,28 +119,38 @@ std::vector<Mat3> World::strain(BodyHandle body) const {
                              kernels().element_strains, kernels().strain_of_tetrahedra);
 }
 
+NodeFields node_fields(const World& world, BodyHandle body) {
+    const Model& model = WorldAccess::state_of(world).model;
+    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_fields")));
+}
+
 std::vector<Mat3> World::node_stress(BodyHandle body) const {
-    const auto row = static_cast<std::size_t>(state_->model.row(body, "node_stress"));
-    return node_field(state_->model, row, stress(body));
+    const Model& model = state_->model;
+    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_stress"))).stress;
 }
 
 std::vector<Mat3> World::node_stress(BodyHandle body, std::span<const Index> nodes) const {
     const Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(body, "node_stress"));
     require_nodes("node_stress", nodes, model.bodies.nodes[row].size());
-    std::vector<Index> once(nodes.begin(), nodes.end());
-    std::ranges::sort(once);
-    once.erase(std::unique(once.begin(), once.end()), once.end());
-    const std::vector<Mat3> of_once = stress_of_nodes(model, row, once);
-    std::vector<Mat3> stress;
-    for (const Index n : nodes)
-        stress.push_back(of_once[static_cast<std::size_t>(std::ranges::lower_bound(once, n) - once.begin())]);
-    return stress;
+    return fields_of_nodes(model, row, nodes).stress;
 }
 
 std::vector<Mat3> World::node_strain(BodyHandle body) const {
-    const auto row = static_cast<std::size_t>(state_->model.row(body, "node_strain"));
-    return node_field(state_->model, row, strain(body));
+    const Model& model = state_->model;
+    return fields_of_nodes(model, static_cast<std::size_t>(model.row(body, "node_strain"))).strain;
+}
+
+std::vector<Real> World::node_von_mises_stress(BodyHandle body) const {
+    std::vector<Real> of_nodes;
+    for (const Mat3& cauchy : node_stress(body)) of_nodes.push_back(von_mises(cauchy));
+    return of_nodes;
+}
+
+std::vector<Vec3> World::node_principal_stresses(BodyHandle body) const {
+    std::vector<Vec3> of_nodes;
+    for (const Mat3& cauchy : node_stress(body)) of_nodes.push_back(principal_stresses(cauchy));
+    return of_nodes;
 }
 
 std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {

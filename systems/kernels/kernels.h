@@ -43,11 +43,10 @@ struct Kernels {
     decltype(&skerry::elastic_energy) elastic_energy;
     decltype(&skerry::elastic_power) elastic_power;
     decltype(&skerry::cauchy_stress) cauchy_stress;
-    decltype(&skerry::cauchy_stress_of_blocks) cauchy_stress_of_blocks;
+    decltype(&skerry::element_fields) element_fields;
     decltype(&skerry::element_strains) element_strains;
     decltype(&skerry::stress_of_tetrahedra) stress_of_tetrahedra;
     decltype(&skerry::strain_of_tetrahedra) strain_of_tetrahedra;
-    decltype(&skerry::means_of_nodes) means_of_nodes;
     decltype(&skerry::advance_positions) advance_positions;
     decltype(&skerry::damp_velocity) damp_velocity;
     decltype(&skerry::measure_displacement) measure_displacement;

@@ -52,9 +52,9 @@ int inner_floor(const std::string& path) {
         {"systems/collision/cylinders/", 4}, {"systems/dynamics/kinds/", 1},    {"systems/dynamics/elements/", 2},
         {"systems/dynamics/stability/", 3},  {"systems/dynamics/motion/", 4},   {"systems/dynamics/checks/", 5},
         {"systems/dynamics/clusters/", 4},   {"systems/dynamics/rigid/", 3},    {"systems/dynamics/implicit/", 4},
-        {"systems/solver/inputs/", 1},       {"systems/solver/local/", 2},      {"systems/solver/equations/", 3},
-        {"systems/solver/operators/", 4},    {"systems/solver/methods/", 5},    {"systems/solver/lanes/", 6},
-        {"systems/solver/coloured/", 6},     {"systems/solver/regions/", 7},
+        {"systems/dynamics/recovery/", 3},   {"systems/solver/inputs/", 1},     {"systems/solver/local/", 2},
+        {"systems/solver/equations/", 3},    {"systems/solver/operators/", 4},  {"systems/solver/methods/", 5},
+        {"systems/solver/lanes/", 6},        {"systems/solver/coloured/", 6},   {"systems/solver/regions/", 7},
     };
     constexpr int top = 100;
     for (const Place& place : places)

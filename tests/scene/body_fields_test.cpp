@@ -30,9 +30,10 @@ TEST_CASE("a body whose strain is the same everywhere says so, with every kind o
         World world(settings);
         const auto material = world.add_material(
             test::lossless({.young_modulus = modulus, .poisson_ratio = nu, .model = MaterialModel::linear}));
-        const auto body = world.add_body({nodes, tetrahedra}, {.material = material, .element = kind});
+        const auto body =
+            world.add_body({nodes, tetrahedra}, {.material = material, .rotation = {0.3, -0.2, 0.5}, .element = kind});
         std::vector<Vec3> velocity;
-        for (const Vec3& x : nodes) velocity.push_back(rate * x);
+        for (const Vec3& x : world.positions(body)) velocity.push_back(rate * x);
         world.set_velocities(body, velocity);
         // The body is free of stress: the first step moves every node by h times its velocity.
         const Real h = world.stable_step() / 2;
@@ -52,31 +53,30 @@ TEST_CASE("a body whose strain is the same everywhere says so, with every kind o
     }
 }
 
-TEST_CASE("a node has the mean stress of its tetrahedra by volume", "[scene]") {
+TEST_CASE("a node with too few others around it has the mean of its elements", "[scene]") {
+    // All nodes of a row of cells are at edges of the surface, so that there is nothing to extrapolate from.
     Settings settings;
     settings.gravity = Vec3::Zero();
     World world(settings);
-    const auto [nodes, tetrahedra] = test::jittered_box({2, 2, 2}, 0.1, 0.25, 1);
-    const auto body = world.add_body({nodes, tetrahedra}, {.material = world.add_material(test::lossless({}))});
-    std::vector<Vec3> velocity;
-    for (const Vec3& x : nodes) velocity.push_back(10 * x.squaredNorm() * Vec3(1, -2, 0.5));
-    world.set_velocities(body, velocity);
-    REQUIRE(world.advance(10 * world.stable_step()).ok());
-
+    const auto [nodes, tetrahedra] = test::jittered_box({3, 1, 1}, 0.1, 0.25, 1);
+    const auto body = world.add_body(
+        {nodes, tetrahedra}, {.material = world.add_material(test::lossless({})), .element = ElementKind::linear});
+    std::vector<Vec3> moved;
+    for (const Vec3& x : nodes) moved.emplace_back(x + 0.1 * x.squaredNorm() * Vec3(1, -2, 0.5));
+    world.set_positions(body, moved);
     const std::vector<Mat3> stress = world.stress(body), of_nodes = world.node_stress(body);
-    constexpr Index node = 13;  // the inner node
-    Mat3 sum = Mat3::Zero();
-    Real weight = 0;
-    for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
-        if (std::ranges::count(tetrahedra[t], node) == 0) continue;
-        const auto at = [&](std::size_t k) -> const Vec3& { return nodes[static_cast<std::size_t>(tetrahedra[t][k])]; };
-        const Real volume = (at(1) - at(0)).cross(at(2) - at(0)).dot(at(3) - at(0)) / 6;
-        sum += volume * stress[t];
-        weight += volume;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        Mat3 sum = Mat3::Zero();
+        Real weight = 0;
+        for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+            if (std::ranges::count(tetrahedra[t], static_cast<Index>(n)) == 0) continue;
+            const Real volume = test::volume_of({nodes, tetrahedra}, tetrahedra[t]);
+            sum += volume * stress[t];
+            weight += volume;
+        }
+        REQUIRE(of_nodes[n].norm() > 0);
+        CHECK((of_nodes[n] - sum / weight).norm() <= 1e-12 * of_nodes[n].norm());
     }
-    REQUIRE(stress.front().norm() > 0);
-    CHECK((of_nodes[node] - sum / weight).norm() <= 1e-12 * of_nodes[node].norm());
-    CHECK((stress.front() - stress.front().transpose()).norm() <= 1e-12 * stress.front().norm());
 }
 
 TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scene][long]") {

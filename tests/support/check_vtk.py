@@ -89,6 +89,8 @@ def check_bodies(path, frame):
         same(name, array(data, name), [six(m) for m in frame[expected]], FLOAT)
     for array, expected in [(cell_array, "stress"), (point_array, "node_stress")]:
         same("von_mises", array(data, "von_mises"), [von_mises(np.array(m)) for m in frame[expected]], FLOAT)
+    same("principal_stresses", point_array(data, "principal_stresses"),
+         [np.linalg.eigvalsh(np.array(m))[::-1] for m in frame["node_stress"]], FLOAT)
     same("body", cell_array(data, "body"), frame["body"], 0)
     same("material", cell_array(data, "material"), frame["material"], 0)
     for number, nodes in enumerate(frame["cells"]):

@@ -119,9 +119,9 @@ public:
     std::span<const std::array<Index, 3>> surface(BodyHandle body) const;     // node numbers of boundary triangles
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
     /// Cauchy stress [Pa], without the relaxing part of the viscous stress, and Green strain. The value of a
-    /// tetrahedron is the mean over the elements that cover it. The value of a node is the volume-weighted mean over
-    /// its tetrahedra (docs/methods/elasticity.md 7.5). Between two materials the stress jumps; nodes on the interface
-    /// have the mean of both sides.
+    /// tetrahedron is the mean over the elements that cover it. Values of nodes are recovered from the elements around,
+    /// and from the traction on the surface (docs/methods/elasticity.md 7.8). Between two materials the stress jumps;
+    /// nodes on the interface have the mean of both sides.
     std::vector<Mat3> stress(BodyHandle body) const;       // by tetrahedron
     std::vector<Mat3> strain(BodyHandle body) const;       // by tetrahedron
     std::vector<Mat3> node_stress(BodyHandle body) const;  // by node
@@ -129,7 +129,9 @@ public:
     /// Stress at the given nodes, in the given order, computed from the elements around these nodes only. The values
     /// are bitwise those of node_stress(body). Throws SceneError if the body has no such node.
     std::vector<Mat3> node_stress(BodyHandle body, std::span<const Index> nodes) const;
-    std::vector<Real> von_mises_stress(BodyHandle body) const;  // by tetrahedron [Pa]
+    std::vector<Real> von_mises_stress(BodyHandle body) const;         // by tetrahedron [Pa]
+    std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // by node [Pa]
+    std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]
     /// Step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest element
     /// that covers the tetrahedron. The shortest of these steps is the stable step of the body. To lengthen it, repair
     /// the tetrahedra with the shortest step.

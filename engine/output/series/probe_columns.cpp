@@ -59,12 +59,17 @@ ForceReport force_of(const Forces& forces, const ReactionProbe& probe) {
     return forces.by(probe.attachment);
 }
 
-Real largest_stress(const World& world, const StressProbe& probe) {
-    Real largest = 0;
+/// Largest von Mises stress, then largest and smallest principal stress, of the nodes of a probe [Pa].
+std::array<Real, 3> extreme_stresses(const World& world, const StressProbe& probe) {
+    Real largest = 0, tension = -infinity, pressure = infinity;
     for (const Mat3& of_node :
-         probe.nodes.empty() ? world.node_stress(probe.body) : world.node_stress(probe.body, probe.nodes))
+         probe.nodes.empty() ? world.node_stress(probe.body) : world.node_stress(probe.body, probe.nodes)) {
+        const Vec3 principal = principal_stresses(of_node);
         largest = std::max(largest, von_mises(of_node));
-    return largest;
+        tension = std::max(tension, principal[0]);
+        pressure = std::min(pressure, principal[2]);
+    }
+    return {largest, tension, pressure};
 }
 
 Real smallest_volume(const World& world, BodyHandle body) {
@@ -179,7 +184,10 @@ void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns)
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
                           },
-                          [&](const StressProbe&) { one("largest_von_mises", "Pa"); },
+                          [&](const StressProbe&) {
+                              for (const char* which : {"largest_von_mises", "largest_principal", "smallest_principal"})
+                                  one(which, "Pa");
+                          },
                           [&](const VolumeProbe&) { one("smallest_volume_ratio", "1"); }},
                probe.what);
 }
@@ -204,7 +212,10 @@ void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values)
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
             },
-            [&](const StressProbe& stress) { values.push_back(largest_stress(world, stress)); },
+            [&](const StressProbe& stress) {
+                const std::array<Real, 3> extreme = extreme_stresses(world, stress);
+                values.insert(values.end(), extreme.begin(), extreme.end());
+            },
             [&](const VolumeProbe& volume) { values.push_back(smallest_volume(world, volume.body)); }},
         probe.probe.what);
 }

@@ -273,6 +273,9 @@ void VtkSeries::write_bodies(const Frame& frame, const std::string& name) const 
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(b.velocity[n].norm()); }));
     file.array<float>("von_mises", 1, points,
                       of_nodes([](auto& put, const BodyFrame& b, std::size_t n) { put(von_mises(b.node_stress[n])); }));
+    file.array<float>("principal_stresses", 3, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
+                          put_vector(put, principal_stresses(b.node_stress[n]));
+                      }));
     file.array<float>("stress", 6, points, of_nodes([](auto& put, const BodyFrame& b, std::size_t n) {
                           put_symmetric(put, b.node_stress[n]);
                       }));

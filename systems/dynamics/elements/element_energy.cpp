@@ -1,5 +1,6 @@
 #include "systems/dynamics/elements/element_energy.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -116,9 +117,9 @@ void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const 
                    });
 }
 
-void cauchy_stress_of_blocks(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
-                             std::span<const Vec3> position, std::span<Mat3> stress) {
-    SKERRY_CHECK(stress.size() >= asked.size() * element_lanes);
+void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+                    std::span<const Vec3> position, std::span<ElementFields> fields) {
+    SKERRY_CHECK(fields.size() >= asked.size() * element_lanes);
     if (asked.empty()) return;
     std::size_t next = 0;
     const auto asks = [&](std::size_t b) {
@@ -128,8 +129,12 @@ void cauchy_stress_of_blocks(const ElementInputs& elements, Range blocks, std::s
     for_each_block_of(elements, up_to_last, position, asks,
                       [&](std::size_t, const MaterialConstants& material, const Real8& volume, const LaneMat3<Real8>& F,
                           const LaneMat3<Real8>& R) {
-                          put_cauchy_stress(volume, F, stress_of(material, F, R),
-                                            stress.subspan(next * element_lanes, element_lanes));
+                          const LaneMat3<Real8> P = stress_of(material, F, R);
+                          std::array<Mat3, element_lanes> cauchy;
+                          put_cauchy_stress(volume, F, P, cauchy);
+                          for (std::size_t l = 0; l < element_lanes; ++l)
+                              fields[next * element_lanes + l] = {lane_of(F, static_cast<int>(l)),
+                                                                  lane_of(P, static_cast<int>(l)), cauchy[l]};
                           ++next;
                       });
 }
@@ -152,6 +157,12 @@ void element_strains(const ElementInputs& elements, Range blocks, std::span<cons
 Real von_mises(const Mat3& cauchy) {
     const Mat3 deviator = cauchy - (cauchy.trace() / 3) * Mat3::Identity();
     return std::sqrt(1.5 * deviator.squaredNorm());
+}
+
+Vec3 principal_stresses(const Mat3& cauchy) {
+    return Eigen::SelfAdjointEigenSolver<Mat3>((cauchy + cauchy.transpose()) / 2, Eigen::EigenvaluesOnly)
+        .eigenvalues()
+        .reverse();
 }
 
 }  // namespace skerry

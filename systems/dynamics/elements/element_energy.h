@@ -20,11 +20,16 @@ Real elastic_power(const ElementInputs& elements, Range blocks, std::span<const 
 /// relaxing part of the stress is not included.
 void cauchy_stress(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, std::span<Mat3> stress);
 
-/// Writes the Cauchy stress of the elements in some blocks of a range [Pa]. `asked`: these blocks, ascending and
-/// counted from blocks.begin. Block asked[i] is written to stress[8 i + lane]. The values are bitwise those of
-/// cauchy_stress for the whole range.
-void cauchy_stress_of_blocks(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
-                             std::span<const Vec3> position, std::span<Mat3> stress);
+struct ElementFields {
+    Mat3 gradient;                       // deformation gradient F
+    Mat3 nominal_stress, cauchy_stress;  // nominal: first Piola-Kirchhoff; both without the relaxing part [Pa]
+};
+
+/// Writes the fields of the elements in some blocks of a range. `asked`: these blocks, ascending and counted from
+/// blocks.begin. Block asked[i] is written to fields[8 i + lane]. The values do not depend on which other blocks are
+/// asked.
+void element_fields(const ElementInputs& elements, Range blocks, std::span<const Index> asked,
+                    std::span<const Vec3> position, std::span<ElementFields> fields);
 
 /// Writes Green's strain (F^T F - I) / 2 of each element, in the order of cauchy_stress; zero in lanes without volume.
 void element_strains(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
@@ -32,5 +37,8 @@ void element_strains(const ElementInputs& elements, Range blocks, std::span<cons
 
 /// Von Mises stress of a Cauchy stress tensor [Pa].
 Real von_mises(const Mat3& cauchy);
+
+/// Principal stresses of a Cauchy stress tensor, the largest first; tension is positive [Pa].
+Vec3 principal_stresses(const Mat3& cauchy);
 
 }  // namespace skerry

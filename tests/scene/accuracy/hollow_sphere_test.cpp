@@ -1,9 +1,8 @@
 // A thick hollow sphere under internal pressure with each kind of element (docs/methods/accuracy.md 37).
 #include <catch2/catch.hpp>
-#include <map>
 
 #include "tests/support/accuracy.h"
-#include "tests/support/mapped_box.h"
+#include "tests/support/hollow_sphere.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::hollow_sphere_test {
@@ -13,41 +12,6 @@ namespace {
 constexpr Real inner = 1, outer = 2, modulus = 1e6, pressure = 100;  // m, m, Pa, Pa
 constexpr Real a3 = inner * inner * inner, b3 = outer * outer * outer;
 constexpr Real mean_stress = pressure * a3 / (b3 - a3);  // the same everywhere [Pa]
-
-/// Six boxes of `across` x `across` x `layers` cells, one on each side of a cube, rounded and joined. The thickness of
-/// layers grows with their radius. The numbers are even, so that mirrored cells meet with the same diagonals.
-Mesh hollow_sphere(int across, int layers) {
-    Mesh whole;
-    std::map<std::array<long, 3>, Index> known;  // node at each place
-    for (int axis = 0; axis < 3; ++axis)
-        for (const Real side : {-1.0, 1.0}) {
-            Mat3 turn = Mat3::Zero();  // the outward direction is the third column
-            turn(axis, 2) = side;
-            turn((axis + 1) % 3, 0) = side;
-            turn((axis + 2) % 3, 1) = 1;
-            const Mesh patch = mapped_box({across, across, layers}, [&](const Vec3& s) {
-                const Real quarter = std::numbers::pi / 4;
-                const Vec3 on_cube(std::tan(quarter * (2 * s.x() - 1)), std::tan(quarter * (2 * s.y() - 1)), 1);
-                return Vec3(turn * on_cube.normalized() * inner * std::pow(outer / inner, s.z()));
-            });
-            std::vector<Index> row;
-            for (const Vec3& x : patch.nodes) {
-                const auto [place, fresh] =
-                    known.try_emplace({std::lround(x.x() * 1e6), std::lround(x.y() * 1e6), std::lround(x.z() * 1e6)},
-                                      static_cast<Index>(whole.nodes.size()));
-                if (fresh) whole.nodes.push_back(x);
-                row.push_back(place->second);
-            }
-            for (auto t : patch.tetrahedra) {
-                for (Index& n : t) n = row[static_cast<std::size_t>(n)];
-                whole.tetrahedra.push_back(t);
-            }
-        }
-    const MeshReport report = inspect(whole);
-    REQUIRE(report.closed_manifold);
-    REQUIRE(report.components == 1);
-    return whole;
-}
 
 struct Widened {
     Real displacement;  // mean outward displacement of the inner surface [m]
@@ -61,7 +25,7 @@ Widened widen(ElementKind kind, Real nu) {
     // The damping is about critical for the slowest change of shape.
     const auto material = world.add_material(
         lossless({.young_modulus = modulus, .poisson_ratio = nu, .damping = 40, .model = MaterialModel::linear}));
-    const Mesh mesh = hollow_sphere(8, 4);
+    const Mesh mesh = hollow_sphere(inner, outer, 8, 4);
     const auto shell = world.add_body(mesh, {.material = material, .element = kind});
     const auto inside = [](const Vec3& x) { return x.norm() < inner * (1 + 1e-6); };
     world.set_loads(shell, surface_loads(mesh, world.surface(shell), inside,

@@ -4,8 +4,6 @@
 #include <map>
 #include <numbers>
 
-#include "systems/dynamics/elements/recover_fields.h"
-
 namespace skerry {
 namespace {
 
@@ -43,6 +41,21 @@ struct Icosphere {
         triangles = std::move(finer);
     }
 };
+
+/// Mean at each node over the tetrahedra around it.
+std::vector<Mat3> means_of_nodes(std::span<const std::array<Index, 4>> tetrahedra, std::span<const Mat3> value,
+                                 std::size_t node_count) {
+    std::vector<Mat3> mean(node_count, Mat3::Zero());
+    std::vector<Real> count(node_count);
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+        for (const Index n : tetrahedra[t]) {
+            mean[static_cast<std::size_t>(n)] += value[t];
+            ++count[static_cast<std::size_t>(n)];
+        }
+    for (std::size_t n = 0; n < node_count; ++n)
+        if (count[n] > 0) mean[n] /= count[n];
+    return mean;
+}
 
 }  // namespace
 
@@ -159,10 +172,8 @@ const Frame& OutputSample::frame(int number) {
         BodyFrame& body = frame_.bodies.back();
         body.stress = b.stress;
         body.strain = b.strain;
-        body.node_stress =
-            means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.stress, b.position.size());
-        body.node_strain =
-            means_of_nodes(tetrahedra_, std::vector<Real>(tetrahedra_.size(), 1), b.strain, b.position.size());
+        body.node_stress = means_of_nodes(tetrahedra_, b.stress, b.position.size());
+        body.node_strain = means_of_nodes(tetrahedra_, b.strain, b.position.size());
     }
     frame_.contacts = contacts_;
     const std::array<MotionKey, 5> pose{{{},

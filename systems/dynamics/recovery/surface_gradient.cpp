@@ -1,0 +1,98 @@
+#include "systems/dynamics/recovery/surface_gradient.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "systems/material/material_law.h"
+
+namespace skerry {
+
+namespace {
+
+/// Change of the first Piola-Kirchhoff stress by a change of F [Pa].
+Mat3 change_of_stress(const Tangent& tangent, const Mat3& of_F) {
+    const Mat3 x = tangent.left.transpose() * of_F * tangent.right;
+    Mat3 change = Mat3::Zero();
+    change.diagonal() = tangent.normal * x.diagonal();
+    for (Index i = 0; i < 3; ++i)
+        for (Index j = 0; j < 3; ++j)
+            if (i != j) {
+                const Index pair = 3 - i - j;
+                change(i, j) = (tangent.flip[pair] + tangent.twist[pair]) / 2 * x(i, j) +
+                               (tangent.flip[pair] - tangent.twist[pair]) / 2 * x(j, i);
+            }
+    return tangent.left * change * tangent.right.transpose();
+}
+
+/// Two orthonormal vectors orthogonal to the unit vector `normal`.
+Eigen::Matrix<Real, 3, 2> plane_of(const Vec3& normal) {
+    Index axis = 0;
+    normal.cwiseAbs().minCoeff(&axis);
+    Eigen::Matrix<Real, 3, 2> plane;
+    plane.col(0) = normal.cross(Vec3::Unit(axis)).normalized();
+    plane.col(1) = normal.cross(plane.col(0));
+    return plane;
+}
+
+}  // namespace
+
+SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
+                             std::span<const Vec3> rest, std::span<const Vec3> position) {
+    // least cosine of the angle between a triangle and the mean surface; edges of 60 degrees and more are edges
+    constexpr Real least_cosine = 0.866;
+    const auto corner = [&](Index t, std::size_t k) {
+        return static_cast<std::size_t>(surface[static_cast<std::size_t>(t)][k]);
+    };
+    const auto twice_area = [&](Index t) -> Vec3 {
+        const Vec3& origin = rest[corner(t, 0)];
+        return (rest[corner(t, 1)] - origin).cross(rest[corner(t, 2)] - origin);
+    };
+    SurfaceAround around;
+    for (const Index t : triangles) around.area += twice_area(t) / 6;
+    if (!(around.area.squaredNorm() > 0)) return around;
+    around.normal = around.area.normalized();
+    around.smooth = true;
+    for (const Index t : triangles) {
+        const Vec3 n = twice_area(t);
+        const Real square = n.squaredNorm();
+        if (!(square > 0)) continue;
+        const Real area = std::sqrt(square) / 2;
+        around.smooth = around.smooth && n.dot(around.normal) >= least_cosine * 2 * area;
+        const Vec3 along1 = rest[corner(t, 1)] - rest[corner(t, 0)], along2 = rest[corner(t, 2)] - rest[corner(t, 0)];
+        const Vec3 &x0 = position[corner(t, 0)], &x1 = position[corner(t, 1)], &x2 = position[corner(t, 2)];
+        around.projector += area * (Mat3::Identity() - n * n.transpose() / square);
+        around.stretch +=
+            area / square * ((x1 - x0) * along2.cross(n).transpose() + (x2 - x0) * n.cross(along1).transpose());
+    }
+    return around;
+}
+
+std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
+                                     const Vec3& traction, const Vec3& start) {
+    // The F of least squared difference from the triangles is base + b (x) across, where b = F N is free.
+    const Eigen::Matrix<Real, 3, 2> plane = plane_of(around.normal);
+    const Mat3 inverse = plane * (plane.transpose() * around.projector * plane).inverse() * plane.transpose();
+    const Mat3 base = around.stretch * inverse;
+    const Vec3 across = around.normal - inverse * around.projector * around.normal;
+
+    constexpr int most_passes = 20;
+    constexpr Real accuracy = 1e-12, rounding = 16 * std::numeric_limits<Real>::epsilon();
+    const Real modulus = 2 * material.shear_modulus + std::abs(material.lame_lambda);
+    Vec3 b = start;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        const Mat3 F = base + b * across.transpose(), P = stress(material, F);
+        const Vec3 excess = P * around.normal - traction;
+        if (excess.norm() <= accuracy * P.norm() + rounding * modulus)
+            return F.determinant() > 0 ? std::optional(F) : std::nullopt;
+        const Tangent tangent = skerry::tangent(material, F);
+        Mat3 slope;
+        for (Index j = 0; j < 3; ++j)
+            slope.col(j) = change_of_stress(tangent, Vec3::Unit(j) * across.transpose()) * around.normal;
+        b -= slope.fullPivLu().solve(excess);
+        if (!b.allFinite()) break;
+    }
+    return std::nullopt;
+}
+
+}  // namespace skerry
