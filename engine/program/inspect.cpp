@@ -175,10 +175,12 @@ SceneCost try_steps(World& world, Real overlap) {
         cost.turning = turning_text(report);
     const Stopwatch watch;
     const Real begin = world.time();
-    const StepReport steps = world.advance(timed_steps * world.stable_step(),
-                                           [&](const StepReport&) { return watch.seconds() < longest_timing; });
+    const Real duration = timed_steps * world.stable_step();
+    const StepReport steps =
+        world.advance(duration, [&](const StepReport&) { return watch.seconds() < longest_timing; });
     if (!steps.ok() && steps.status != StepStatus::stopped) cost.failure = steps.message();
-    cost.seconds_per_second = watch.seconds() / (world.time() - begin);
+    const Real made = world.time() - begin;  // less than `duration` if the steps took long, 0 if the first one failed
+    cost.seconds_per_second = watch.seconds() / (made > 0 ? made : duration);
     return cost;
 }
 
