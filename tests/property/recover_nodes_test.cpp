@@ -1,4 +1,4 @@
-// Fits from which fields at nodes are recovered (docs/methods/elasticity.md 7.8).
+// Fits from which fields at nodes are recovered (docs/methods/elasticity.md 7.9).
 #include <catch2/catch.hpp>
 
 #include "systems/dynamics/recovery/polynomial_fit.h"

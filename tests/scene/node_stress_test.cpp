@@ -1,4 +1,4 @@
-// Stress recovered at nodes, on the surface and inside, against exact solutions (docs/methods/elasticity.md 7.8).
+// Stress recovered at nodes, on the surface and inside, against exact solutions (docs/methods/elasticity.md 7.9).
 #include <catch2/catch.hpp>
 
 #include "tests/support/element_kinds.h"

@@ -120,7 +120,7 @@ public:
     std::span<const std::array<Index, 4>> tetrahedra(BodyHandle body) const;  // node numbers of tetrahedra
     /// Cauchy stress [Pa], without the relaxing part of the viscous stress, and Green strain. The value of a
     /// tetrahedron is the mean over the elements that cover it. Values of nodes are recovered from the elements around,
-    /// and from the traction on the surface (docs/methods/elasticity.md 7.8). Between two materials the stress jumps;
+    /// and from the traction on the surface (docs/methods/elasticity.md 7.9). Between two materials the stress jumps;
     /// nodes on the interface have the mean of both sides.
     std::vector<Mat3> stress(BodyHandle body) const;       // by tetrahedron
     std::vector<Mat3> strain(BodyHandle body) const;       // by tetrahedron

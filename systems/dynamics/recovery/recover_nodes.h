@@ -1,4 +1,4 @@
-// Recovers stress and strain at the nodes of a body from the values of its elements (docs/methods/elasticity.md 7.8).
+// Recovers stress and strain at the nodes of a body from the values of its elements (docs/methods/elasticity.md 7.9).
 #pragma once
 
 #include <array>

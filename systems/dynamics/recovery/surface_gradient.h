@@ -24,7 +24,7 @@ SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std:
                              std::span<const Vec3> rest, std::span<const Vec3> position);
 
 /// Deformation gradient F with P(F) N = traction for the outward normal N, and otherwise the least squared difference
-/// from the deformation gradients within the triangles (docs/methods/elasticity.md 7.8). `start`: first guess of F N.
+/// from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `start`: first guess of F N.
 /// The surface must be smooth. Empty if Newton's method finds no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
                                      const Vec3& traction, const Vec3& start);

@@ -331,7 +331,7 @@ TEST_CASE("quadrilaterals of an .obj become two triangles, and wrong corners are
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("c.obj", square + "f 1 2 0\n")), Contains("node: found 0"));
     CHECK_THROWS_WITH(mesh::read_surface(folder.write("d.obj", square)), Contains("no triangles"));
     CHECK_THROWS_WITH(mesh::read(folder.write("e.obj", square)),
-                      Contains("found the extension .obj, expected the extension .msh, .vtk, .node or .ele"));
+                      Contains("found the extension .obj, expected the extension .msh, .vtk, .vtu, .node or .ele"));
 }
 
 TEST_CASE("polygons of a VTK file become triangles, its lines are passed over", "[unit]") {
