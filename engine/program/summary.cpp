@@ -36,9 +36,12 @@ std::string time_text(const RunResult& result) {
 
 std::string penetration_text(const RunResult& result) {
     const Real depth = result.report.max_penetration;
-    if (!(depth > 0)) return "none: no surfaces overlapped";
-    return "at most " + with_unit(depth, "m") +
-           (result.mean_edge > 0 ? " (" + percent(depth / result.mean_edge) + " of the mean edge length)" : "");
+    const std::string share =
+        result.mean_edge > 0 ? " (" + percent(depth / result.mean_edge) + " of the mean edge length)" : "";
+    return (depth > 0 ? "at most " + with_unit(depth, "m") + share : "none in any contact") +
+           (result.report.self_crossings.empty()
+                ? "; no surface crosses itself"
+                : "; a surface crosses itself, to a depth that is not measured (see the warning)");
 }
 
 std::string balance_text(const WorldReport& r) {
