@@ -49,6 +49,16 @@ struct NearCandidate {
     Real distance;    // distance of the features at the start of the step [m]
 };
 
+/// Positions at the last search of a body for contacts with itself, and bounds on the motion of its parts since then
+/// (self_motion.h). All columns are empty while no body is paired with itself.
+struct SelfSearch {
+    Column<Vec3> origin;  // by node: position at the last search [m]; saved with the role `memory`
+    // Working memory. By node: displacement since the last search, or at the end of the step [m].
+    Column<Vec3> moved;
+    // Boxes of `origin`, of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
+    Column<Aabb> origin_box, moved_box, speed_box;
+};
+
 /// One row per pair of objects whose bounding boxes were close at the last broad search, in the order of
 /// ContactKey::pair. The candidate list of each pair is a separate column. One pair can therefore be searched again
 /// without moving the lists of other pairs. Lists with an index of size() or more are spare memory.
@@ -94,6 +104,7 @@ struct PairTable {
     std::vector<Column<NearCandidate>> near;
     // For each block of find_contacts: lower bound of the distances of all tested features [m].
     Column<Real> block_nearest;
+    SelfSearch self;
 
     /// Visits the columns with one row per pair. The set of overlapping pairs is state, because a broad search can only
     /// recover the pairs that do not overlap. The candidate lists have the role `memory`; this function does not visit

@@ -66,10 +66,17 @@ std::unique_ptr<Writer> statistics_file(const std::filesystem::path& file, const
 Json statistics_of(const RunResult& result) {
     const WorldReport& r = result.report;
     Json stages = Json::object(), probes = Json::object(), limits = Json::array(), failed = Json::object();
-    Json moves = Json::array();
+    Json moves = Json::array(), self_crossings = Json::array();
     for (const auto& [option, failure] : result.outputs_failed) failed[option] = failure;
     for (const StartMove& move : r.start_moves)
         moves.push_back({{"body", move.name}, {"translation", vector_json(move.translation)}});
+    for (const SelfCrossing& of : r.self_crossings)
+        self_crossings.push_back({{"body", of.name},
+                                  {"self_contact", of.self_contact},
+                                  {"first_time", of.first_time},
+                                  {"last_time", of.last_time},
+                                  {"last_places", of.last_places},
+                                  {"most_places", of.most_places}});
     for (const StepLimitReport& of : r.step_limits)
         limits.push_back({{"limit", name_of(of.limit)},
                           {"body", of.body_name},
@@ -164,6 +171,7 @@ Json statistics_of(const RunResult& result) {
           {"dissipated", r.energy.dissipated}}},
         {"momentum", vector_json(r.momentum)},
         {"angular_momentum", vector_json(r.angular_momentum)},
+        {"self_crossings", self_crossings},
         {"max_penetration", r.max_penetration},
         {"max_gap_violation", r.max_gap_violation},
         {"mean_edge", result.mean_edge},

@@ -49,7 +49,10 @@ std::string penetration_text(const RunResult& result) {
     std::string text;
     if (r.max_penetration > 0) text = deep(r.max_penetration);
     if (r.held_penetration > 0) text += (text.empty() ? "" : "; ") + ("held surfaces " + deep(r.held_penetration));
-    return text.empty() ? "none: no surfaces overlapped" : text;
+    if (text.empty()) text = "none in any contact";
+    return text + (r.self_crossings.empty()
+                       ? "; no surface crosses itself"
+                       : "; a surface crosses itself, to a depth that is not measured (see the warning)");
 }
 
 std::string contacts_text(const RunResult& result) {

@@ -66,6 +66,14 @@ void warn_of_balance(const WorldReport& r, const std::string& shorter, std::vect
                            ", which is larger than rounding errors: please report this as a bug and attach the scene");
 }
 
+void warn_of_self_crossings(const WorldReport& r, const std::string& shorter, std::vector<std::string>& warnings) {
+    for (const SelfCrossing& crossing : r.self_crossings)
+        warnings.push_back(crossing.message() + ": " +
+                           (crossing.self_contact ? shorter
+                                                  : "set \"self_contact\" of this body to true (the body must then be "
+                                                    "explicit)"));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const RunResult& result) {
@@ -92,6 +100,7 @@ std::vector<std::string> warnings_of(const RunResult& result) {
     if (r.crossed > 0)
         warnings.push_back("surfaces passed through each other, at " + grouped(r.crossed) +
                            " nodes or edges: " + shorter);
+    warn_of_self_crossings(r, shorter, warnings);
     const bool arose = r.max_penetration > 1.01 * r.start_penetration;
     if (arose && result.mean_edge > 0 && r.max_penetration > visible_share * result.mean_edge)
         warnings.push_back("surfaces overlapped during the run by up to " +

@@ -241,6 +241,9 @@ WorldReport World::report() const {
     note_fastest_turn(world.model, report);
     report.start_overlaps = world.record.start_overlaps;
     report.start_moves = world.record.start_moves;
+    report.self_crossings = world.record.self_crossings;
+    find_self_crossings(*state_->executor, state_->model, report.time, state_->scratch.self_crossing_places,
+                        report.self_crossings);
     report.step_limits = world.record.limits.report();
     for (const StageStats& stage : world.graph.stats())
         report.stages.push_back({stage.name, stage.seconds, stage.runs, stage.skipped});

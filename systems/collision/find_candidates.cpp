@@ -9,6 +9,7 @@
 #include "systems/collision/inputs/contact_reach.h"
 #include "systems/collision/search/find_pairs.h"
 #include "systems/collision/search/search_pair.h"
+#include "systems/collision/search/self_motion.h"
 #include "systems/collision/search/step_reach.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/bvh.h"
@@ -109,12 +110,22 @@ void list_bodies(SearchMemory& memory) {
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
 }
 
-void list_expired(Executor& executor, const CollisionInputs& inputs, Real h, SearchMemory& memory, PairTable& pairs) {
+/// True if the candidate list of a pair is complete for the step that begins.
+bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, PairTable& pairs) {
+    if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
+    if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > this_step_only))
+        return false;
+    return holds_for_step(self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h), pairs.self);
+}
+
+void list_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
+                  SearchMemory& memory, PairTable& pairs) {
     pairs.fresh.resize(pairs.size());
+    if (std::ranges::find(pairs.kind, PairKind::self) != pairs.kind.end()) resize(inputs, pairs.self);
     parallel_for(executor, pairs.size(), bounded_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             bound_travel(inputs, memory, h, static_cast<Index>(p), pairs);
-            pairs.fresh[p] = !(pairs.travel_bound[p] < pairs.valid_until[p]);
+            pairs.fresh[p] = !is_valid(inputs, settings, h, static_cast<Index>(p), pairs);
         }
     });
     // The loop has no branch, because a branch would be hard to predict.
@@ -205,9 +216,11 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
     });
 }
 
-void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, std::span<const Aabb> box, Index p,
-                  const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
+void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> box,
+                  Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
+    const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pair.first, h);
+    bool lasts = true;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
         // distance.
@@ -215,8 +228,18 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pairs.state[p] = crossing ? PairState::overlapping : PairState::apart;
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
+    if (pair.kind == PairKind::self) {
+        pair.longer_motion = std::max(pairs.longer_motion[p], Real(0));
+        pair.self_motion = &parts;
+        pair.self = &pairs.self;
+        store_origin(inputs, pair.first, pairs.self);
+        // If parts move so fast that the list would be invalid in the next step, a shorter list suffices.
+        lasts = holds_for_step(parts, pairs.self) || pair.longer_motion > 0;
+        pair.margin = lasts ? parts.skin : short_margin * parts.skin;
+    }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
-    pairs.valid_until[p] = search_pair(inputs, pair, box, found);
+    const Real valid_until = search_pair(inputs, pair, box, found);
+    pairs.valid_until[p] = lasts ? valid_until : this_step_only;
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -227,7 +250,7 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
 
 /// Searches the expired pairs. Each block searches one near pair, which takes some ten microseconds, and an equal share
 /// of the far pairs, which take almost no time. All blocks thus have about the same amount of work.
-void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
+void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                     std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
     const std::size_t blocks = std::max(near, (far + far_pairs_per_block - 1) / far_pairs_per_block);
@@ -235,7 +258,7 @@ void search_expired(Executor& executor, const CollisionInputs& inputs, const Col
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const auto search = [&](Index p) {
-                search_again(inputs, settings, box, p, memory, pairs, memory.found[k]);
+                search_again(inputs, settings, h, box, p, memory, pairs, memory.found[k]);
             };
             if (k < near) search(memory.near[k]);
             for (std::size_t i = far * k / blocks; i < far * (k + 1) / blocks; ++i) search(memory.far[i]);
@@ -286,13 +309,13 @@ bool find_candidates(Executor& executor, const CollisionInputs& inputs, const Co
         // For a rotating plane, the travel bounds depend on the present positions of the bodies.
         bound_collider_travels(inputs, h, memory);
     }
-    list_expired(executor, inputs, h, memory, pairs);
+    list_expired(executor, inputs, settings, h, memory, pairs);
     if (!broad && memory.expired.empty()) return false;
 
     fit_expired(executor, inputs, box, memory);
     list_refits(inputs, settings, box, memory, pairs);
     refit_trees(executor, inputs, box, memory);
-    search_expired(executor, inputs, settings, box, memory, pairs);
+    search_expired(executor, inputs, settings, h, box, memory, pairs);
     request_new_origins(inputs, settings, memory, pairs);
     search.pair_searches += memory.expired.size();
     search.candidate_count = count_candidates(executor, pairs);

@@ -13,6 +13,7 @@
 #include "systems/collision/narrow/collider_distance.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/pair_crossings.h"
+#include "systems/collision/search/self_motion.h"
 #include "systems/geometry/closest_points.h"
 #include "systems/geometry/time_of_contact.h"
 
@@ -202,22 +203,29 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
 }
 
 /// True if a pair moves further in this step than the distance for which its candidate list is valid.
-bool is_beyond_list(const CollisionInputs& inputs, const PairTable& pairs, Index p, Real h) {
+bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion, Index p,
+                    PairTable& pairs) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
     // A candidate list is valid up to the travel T - 2 d0 + m. T is the travel and d0 the displacement at the time of
     // the search, and m is the margin of the search. If the list was made from the positions of this step, nothing has
     // moved since the search. The list is then valid up to T + m, so 2 d0 is added.
     const Real drifted =
         pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
-    return !(reach_of(inputs, pairs, p, h).travel_bound < pairs.valid_until[p] + drifted);
+    if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
+    if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
+    SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
+    if (pairs.valid_until[p] == this_step_only) parts.skin *= short_margin;
+    return !holds_for_motion(parts, motion, pairs.fresh[p] != 0, pairs.self);
 }
 
 /// True if any pair moves further than its candidate list is valid for. This happens almost never.
-bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const PairTable& pairs, Real h) {
+bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
+                     const StepMotion& motion, PairTable& pairs) {
     std::atomic<bool> any{false};
     parallel_for(executor, pairs.size(), checked_pairs_per_block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
-            if (is_beyond_list(inputs, pairs, static_cast<Index>(p), h)) any.store(true, std::memory_order_relaxed);
+            if (is_beyond_list(inputs, settings, motion, static_cast<Index>(p), pairs))
+                any.store(true, std::memory_order_relaxed);
     });
     return any;
 }
@@ -225,17 +233,18 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Pa
 /// Requests candidate lists with a longer validity for the pairs that move further than their present lists allow.
 /// Returns the number of requests. `hopeless` counts the pairs for which no list is requested. The reason is that the
 /// list was already made for such a motion, that the motion is not finite, or that requests are not `allowed`.
-Index extend_lists(const CollisionInputs& inputs, Real h, bool allowed, PairTable& pairs, Index& hopeless) {
+Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
+                   bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;
     for (Index p = 0; p < static_cast<Index>(pairs.size()); ++p) {
-        if (!is_beyond_list(inputs, pairs, p, h)) continue;
-        const Real motion = reach_of(inputs, pairs, p, h).motion;
-        const bool made_for_it = pairs.fresh[p] && motion <= -pairs.longer_motion[p];
-        if (made_for_it || !allowed || !std::isfinite(motion)) {
+        if (!is_beyond_list(inputs, settings, motion, p, pairs)) continue;
+        const Real length = reach_of(inputs, pairs, p, motion.h).motion;
+        const bool made_for_it = pairs.fresh[p] && length <= -pairs.longer_motion[p];
+        if (made_for_it || !allowed || !std::isfinite(length)) {
             ++hopeless;
             continue;
         }
-        pairs.longer_motion[p] = motion;
+        pairs.longer_motion[p] = length;
         pairs.valid_until[p] = -infinity;
         ++count;
     }
@@ -263,8 +272,9 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     crossings.beyond_lists = false;
     if (!settings.continuous) return 0;
     Index hopeless = 0;
-    const Index extended = any_beyond_list(executor, inputs, pairs, h)
-                               ? extend_lists(inputs, h, crossings.extends_lists, pairs, hopeless)
+    const StepMotion motion{velocity_next, push_out, h};
+    const Index extended = any_beyond_list(executor, inputs, settings, motion, pairs)
+                               ? extend_lists(inputs, settings, motion, crossings.extends_lists, pairs, hopeless)
                                : 0;
     if (extended > 0) {
         crossings.beyond_lists = true;
@@ -272,7 +282,6 @@ Index find_crossings(Executor& executor, const CollisionInputs& inputs, const Co
     }
     if (blocks == 0) return crossings.last_try ? 0 : hopeless;
     if (crossings.found.size() < blocks) crossings.found.resize(blocks);
-    const StepMotion motion{velocity_next, push_out, h};
     std::atomic<std::uint64_t> tested{0};
     for (auto& found : crossings.found) found.clear();
     parallel_for(executor, blocks, 1, [&](std::size_t begin, std::size_t end) {

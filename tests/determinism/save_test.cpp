@@ -8,7 +8,9 @@
 #include "engine/world/tuning.h"
 #include "engine/world/world_state.h"
 #include "skerry/scene.h"
+#include "tests/support/crossing_ring.h"
 #include "tests/support/lively_scene.h"
+#include "tests/support/mapped_box.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
 
@@ -56,6 +58,17 @@ void check_same_report(const WorldReport& a, const WorldReport& b) {
     CHECK(a.energy_error_share == b.energy_error_share);
     CHECK((a.momentum_error == b.momentum_error || (std::isnan(a.momentum_error) && std::isnan(b.momentum_error))));
     CHECK(a.balanced_steps == b.balanced_steps);
+    REQUIRE(a.self_crossings.size() == b.self_crossings.size());
+    for (std::size_t i = 0; i < a.self_crossings.size(); ++i) {
+        const SelfCrossing &one = a.self_crossings[i], &other = b.self_crossings[i];
+        CHECK(one.body.slot == other.body.slot);
+        CHECK(one.name == other.name);
+        CHECK(one.self_contact == other.self_contact);
+        CHECK(one.first_time == other.first_time);
+        CHECK(one.last_time == other.last_time);
+        CHECK(one.last_places == other.last_places);
+        CHECK(one.most_places == other.most_places);
+    }
     REQUIRE(a.step_limits.size() == b.step_limits.size());
     for (std::size_t i = 0; i < a.step_limits.size(); ++i) {
         CHECK(a.step_limits[i].body.slot == b.step_limits[i].body.slot);  // world numbers differ between runs
@@ -284,6 +297,36 @@ TEST_CASE("equal meshes are saved once", "[determinism]") {
     const Mesh ball = mesh::ball(0.1, 8);
     const std::size_t of_mesh = sizeof(ball.nodes[0]) * ball.nodes.size() + 16 * ball.tetrahedra.size();
     CHECK(bytes(0.1) + of_mesh < bytes(0.11));
+}
+
+TEST_CASE("a body that folds onto itself goes on with the bits and the searches of the run that was not saved",
+          "[determinism]") {
+    const auto start = [] {
+        Settings settings;
+        settings.gravity = Vec3::Zero();
+        World world(settings);
+        const Mesh sheet = mesh::box({0.2, 0.06, 0.01}, {16, 4, 1});
+        const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0.3, .damping = 30});
+        const BodyHandle body = world.add_body(sheet, {.material = rubber, .self_contact = true});
+        world.attach(body, nodes_where(sheet, [](const Vec3& x) { return x.x() < -0.091; }));
+        world.attach(body, nodes_where(sheet, [](const Vec3& x) { return x.x() > 0.091; }),
+                     {.angular_velocity = {0, -17, 0}}, {0, 0, 0.012});
+        return world;
+    };
+    check_restarts({start, 0.0107, 15}, 6, 4, 9);
+}
+
+TEST_CASE("a saved world knows which body has crossed itself", "[determinism]") {
+    const TemporaryFolder folder;
+    CrossingRing ring;
+    ring.close();
+    REQUIRE(ring.world.advance(0.6).ok());
+    ring.open();
+    ring.world.save(folder.path() / "ring.h5");
+    const WorldReport report = World::load(folder.path() / "ring.h5").report();
+    REQUIRE(report.self_crossings.size() == 1);
+    CHECK(report.self_crossings[0].body == ring.body);
+    check_same_report(report, ring.world.report());
 }
 
 }  // namespace skerry::test::save_test

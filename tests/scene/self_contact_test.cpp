@@ -1,6 +1,7 @@
 // Bodies that touch themselves under strong deformation.
 #include <catch2/catch.hpp>
 
+#include "tests/support/crossing_ring.h"
 #include "tests/support/mapped_box.h"
 #include "tests/support/surfaces_cross.h"
 #include "tests/support/worlds.h"
@@ -15,6 +16,7 @@ struct Driven {
     World world;
     BodyHandle body;
     int crossed = 0, most_contacts = 0;
+    Real first_crossed = 0;  // time of the first crossing [s]
 
     static Settings weightless() {
         Settings settings;
@@ -30,7 +32,8 @@ struct Driven {
     void run(Real seconds) {
         for (Real t = 0; t < seconds - 1e-9; t += 0.01) {
             REQUIRE(world.advance(0.01).ok());
-            crossed += self_crossings({world.positions(body), world.surface(body)}) > 0;
+            const bool crosses = self_crossings({world.positions(body), world.surface(body)}) > 0;
+            if (crosses && crossed++ == 0) first_crossed = world.time();
             most_contacts = std::max(most_contacts, static_cast<int>(world.contacts().size()));
         }
     }
@@ -76,7 +79,16 @@ TEST_CASE("a twisted and buckled bar with self-contact does not go through itsel
     CHECK(with.crossed == 0);
     CHECK(with.most_contacts > 5);
     CHECK(with.world.report().crossed == 0);
-    CHECK(twisted_bar(false).crossed > 0);  // without self-contact it does, so the test can fail
+    CHECK(with.world.report().self_crossings.empty());
+    const Driven without = twisted_bar(false);  // without self-contact it does, so the test can fail
+    CHECK(without.crossed > 0);
+    const std::vector<SelfCrossing> found = without.world.report().self_crossings;
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].body == without.body);
+    CHECK(!found[0].self_contact);
+    // Surfaces are checked every 256 steps.
+    CHECK(found[0].first_time > without.first_crossed - 0.011);
+    CHECK(found[0].first_time < without.first_crossed + 0.1);
 }
 
 TEST_CASE("a sheet folded onto itself and pressed down does not go through itself", "[scene][long]") {
@@ -85,6 +97,33 @@ TEST_CASE("a sheet folded onto itself and pressed down does not go through itsel
     CHECK(with.most_contacts > 10);
     CHECK(with.world.report().crossed == 0);
     CHECK(folded_sheet(false).crossed > 0);
+}
+
+TEST_CASE("a body that crosses itself is reported with the times, and no other body is", "[scene]") {
+    CrossingRing ring;
+    World& world = ring.world;
+    REQUIRE(world.advance(0.1).ok());
+    CHECK(world.report().self_crossings.empty());
+    ring.close();
+    REQUIRE(world.advance(0.6).ok());
+    std::vector<SelfCrossing> found = world.report().self_crossings;
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].body == ring.body);
+    CHECK(found[0].name == "ring");
+    CHECK(!found[0].self_contact);
+    CHECK(found[0].first_time > 0.1);
+    CHECK(found[0].first_time < 0.5);
+    CHECK(found[0].last_time == world.time());
+    CHECK(found[0].last_places > 0);
+    CHECK(found[0].most_places == found[0].last_places);
+    CHECK_THAT(found[0].message(), Catch::Contains("the surface of body 'ring' crosses itself in up to ") &&
+                                       Catch::Contains("last at 0.7 s"));
+    ring.open();
+    found = world.report().self_crossings;
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].last_places == 0);
+    CHECK(found[0].most_places > 0);
+    CHECK(found[0].last_time < world.time());
 }
 
 }  // namespace skerry::test::self_contact_test

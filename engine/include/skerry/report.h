@@ -228,6 +228,23 @@ struct StartMove {
     Vec3 translation = Vec3::Zero();  // [m]
 };
 
+/// A deformable body whose surface was found to cross itself. Surfaces are checked every 256 steps (every 128 steps if
+/// there are clusters) and by World::report.
+struct SelfCrossing {
+    BodyHandle body{};
+    std::string name;                    // name of the body when the crossing was found
+    bool self_contact = false;           // true if the body had self-contact when the crossing was last found
+    Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
+    // Number of places where an edge passes through a triangle, at the last check that found the surface crossing and
+    // at most in all checks; the first is 0 if a later check found none. Places whose features are at most two mean
+    // edge lengths apart in the rest shape do not count, because crushed elements cause such places.
+    Index last_places = 0, most_places = 0;
+
+    /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and
+    /// last at 1 s".
+    std::string message() const;
+};
+
 /// Sums and maxima over all steps since the world was made.
 struct RunCounters {
     std::uint64_t steps = 0;
@@ -286,6 +303,8 @@ struct WorldReport : RunCounters {
     // step after an object was added or moved by the user.
     std::vector<StartOverlap> start_overlaps;
     std::vector<StartMove> start_moves;
+    // Bodies whose surface was found to cross itself, in the order in which they were found.
+    std::vector<SelfCrossing> self_crossings;
     std::vector<StepLimitReport> step_limits;  // one entry per cause, sorted by number of steps, the largest first
     std::vector<StageReport> stages;           // stages in the order of the step
     // Averages: contacts per step, regions per step, and sweeps per solved region.

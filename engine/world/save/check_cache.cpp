@@ -63,6 +63,9 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
                           "the same body as in /pairs/first, because the pair is a self-contact");
     }
 
+    const std::size_t origins = pairs.self.origin.size();
+    if (origins != 0) expect_size(file, "/pairs/self_origin", origins, model.nodes.position.size());
+
     // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
     // searches all pairs.
     const SearchState& search = cache.search;

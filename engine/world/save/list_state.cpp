@@ -89,6 +89,7 @@ void list_cache(ContactCache& cache, SavedRows& saved, Archive& archive) {
     archive.column("/pairs/candidates/offset", saved.candidates.offset);
     archive.column("/pairs/candidates", saved.candidates.item);
     archive.column("/pairs/candidates/asleep_until", saved.asleep_until);
+    archive.column("/pairs/self_origin", cache.pairs.self.origin);
     SearchState& search = cache.search;
     archive.column("/search/body_valid_until", search.body_valid_until);
     archive.column("/search/collider_valid_until", search.collider_valid_until);
@@ -123,6 +124,12 @@ void list_run(WorldState& world, SavedRows& saved, Archive& archive) {
     archive.column("/run/start/moved", start.moved);
     list_ragged("/run/start/moved_name", start.moved_name, archive);
     archive.column("/run/start/translation", start.translation);
+    SavedSelfCrossings& crossings = saved.self_crossings;
+    archive.column("/run/self_crossings/body", crossings.body);
+    list_ragged("/run/self_crossings/name", crossings.name, archive);
+    archive.column("/run/self_crossings/self_contact", crossings.self_contact);
+    archive.column("/run/self_crossings/time", crossings.time);
+    archive.column("/run/self_crossings/places", crossings.places);
     archive.value("/last_step/kick", world.scratch.parameters.kick);
     // these contacts belong to one step only, but users can read them until the next step
     const AnyTable contacts(saved.contacts);

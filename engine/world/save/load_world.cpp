@@ -186,6 +186,7 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     world.cache.search.memory.sphere.resize(model.bodies.slot.size());
     put_limits(saved, file, world.record.limits);
     put_start(saved, file, world.record);
+    put_self_crossings(saved, file, world.record);
     world.scratch.contacts = saved.contacts;
     check_contacts(file, model, world.scratch.contacts);
     check_resting_contacts(file, model, world.cache.resting);

@@ -283,6 +283,13 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.limit_tries.push_back(entry.tries);
         saved.limit_seconds.push_back(entry.seconds);
     }
+    for (const SelfCrossing& crossing : world.record.self_crossings) {
+        saved.self_crossings.body.push_back({crossing.body.slot, crossing.body.generation});
+        append_text(crossing.name, saved.self_crossings.name);
+        saved.self_crossings.self_contact.push_back(crossing.self_contact);
+        saved.self_crossings.time.push_back({crossing.first_time, crossing.last_time});
+        saved.self_crossings.places.push_back({crossing.last_places, crossing.most_places});
+    }
     // After a refused step the contacts are not saved: they may not be finite, and users cannot see them.
     if (world.scratch.findings.verdict.fault == StepFault::none) saved.contacts = world.scratch.contacts;
     return saved;
@@ -448,6 +455,24 @@ void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record) 
         record.start_moves.push_back({.body = handle_of<BodyHandle>(start.moved[i][0], start.moved[i][1], saved.world),
                                       .name = text_of(start.moved_name[i]),
                                       .translation = start.translation[i]});
+}
+
+void put_self_crossings(const SavedRows& saved, const Hdf5File& file, RunRecord& record) {
+    const SavedSelfCrossings& found = saved.self_crossings;
+    const std::size_t count = found.body.size();
+    constexpr const char* of = "bodies that cross themselves";
+    expect_ragged(file, "/run/self_crossings/name", found.name, count, of);
+    expect_rows(file, "/run/self_crossings/self_contact", found.self_contact.size(), count, of);
+    expect_rows(file, "/run/self_crossings/time", found.time.size(), count, of);
+    expect_rows(file, "/run/self_crossings/places", found.places.size(), count, of);
+    for (std::size_t i = 0; i < count; ++i)
+        record.self_crossings.push_back({.body = handle_of<BodyHandle>(found.body[i][0], found.body[i][1], saved.world),
+                                         .name = text_of(found.name[i]),
+                                         .self_contact = found.self_contact[i] != 0,
+                                         .first_time = found.time[i][0],
+                                         .last_time = found.time[i][1],
+                                         .last_places = found.places[i][0],
+                                         .most_places = found.places[i][1]});
 }
 
 }  // namespace skerry

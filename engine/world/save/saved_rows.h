@@ -31,6 +31,15 @@ struct SavedStart {
     Column<Vec3> translation;  // [m]
 };
 
+/// Bodies whose surface was found to cross itself (WorldReport::self_crossings).
+struct SavedSelfCrossings {
+    Column<std::array<std::uint32_t, 2>> body;  // slot and generation
+    Ragged<std::uint8_t> name;
+    Column<std::uint8_t> self_contact;
+    Column<std::array<Real, 2>> time;     // of the first and of the last check that found a crossing [s]
+    Column<std::array<Index, 2>> places;  // at the last check that found a crossing, and at most
+};
+
 struct SavedRows {
     Real step_size = 0;  // value of Settings::step_size [s]; 0 if it is not set
     SavedMeshes meshes;
@@ -55,6 +64,7 @@ struct SavedRows {
     Column<std::uint64_t> limit_steps, limit_tries;
     Column<Real> limit_seconds;
     SavedStart start;
+    SavedSelfCrossings self_crossings;
     ContactTable contacts;  // contacts of the last step; empty if the step was refused
 };
 
@@ -69,5 +79,6 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
 void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
 void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
 void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);
+void put_self_crossings(const SavedRows& saved, const Hdf5File& file, RunRecord& record);
 
 }  // namespace skerry

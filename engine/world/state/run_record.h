@@ -27,6 +27,7 @@ struct RunRecord {
     RunCounters counters;
     std::vector<StartOverlap> start_overlaps;  // overlaps that the last check has found
     std::vector<StartMove> start_moves;
+    std::vector<SelfCrossing> self_crossings;  // see WorldReport::self_crossings
     StepLimits limits;
     HeldDepth held;  // largest overlap of held surfaces in any step
     Balance balance;

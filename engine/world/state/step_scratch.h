@@ -135,9 +135,10 @@ struct StepScratch {
     Column<ExternalWork> work_parts;  // used by measure_work
     InversionMemory inversions;       // used by find_inversions
     Column<WatchPart> watch_parts;    // used by watch_stable_steps
-    Column<WatchPieces> watch_pieces;  // used by store_shapes
-    Column<Real> viscous_parts;        // used by measure_viscosity
-    RestingMemory resting_memory;      // used by keep_resting_contacts
+    Column<WatchPieces> watch_pieces;    // used by store_shapes
+    Column<Real> viscous_parts;          // used by measure_viscosity
+    RestingMemory resting_memory;        // used by keep_resting_contacts
+    Column<Index> self_crossing_places;  // used by find_self_crossings
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }
     bool taken() const { return can_be_taken(findings.verdict, findings.crossings, findings.inversions, parameters); }

@@ -214,6 +214,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
     world.cache.crossings.row.clear();
     if (world.record.counters.steps == 0 && left > 0)
         check_balance(model, lag_between_steps(world), world.record.balance);
+    world.scratch.self_crossing_places.resize(model.bodies.slot.size());
     // force elements read all nodes in every step, so these nodes must be up to date
     world.scratch.parameters.draws_late = !model.forced;
     Real stiffened = 0;  // energy that clusters have gained since the last committed step [J]
@@ -279,6 +280,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         world.record.balance.work += std::exchange(stiffened, Real(0));
         if (keep_watch(world)) {
             world.draw();
+            if (!world.scratch.left_out)
+                find_self_crossings(*world.executor, model, clock.time, world.scratch.self_crossing_places,
+                                    world.record.self_crossings);
             if (clock.offset == 0)
                 check_balance_after_motion(world);
             else

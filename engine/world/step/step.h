@@ -119,6 +119,14 @@ void forget_forces_of_step(const Model& model, ForceScratch& forces);
 /// Checks the balance of energy and momentum (check_balance), unless nothing has moved since the last check.
 void check_balance_after_motion(WorldState& world);
 
+// find_self_crossings.cpp
+
+/// Updates the list of bodies whose surface crosses itself (WorldReport::self_crossings) for the present positions.
+/// Skips bodies that cannot have changed: rigid, sleeping and unstrained ones. Writes the boxes of the trees in
+/// `model`. `places`: working memory with a row for each body.
+void find_self_crossings(Executor& executor, Model& model, Real time, Column<Index>& places,
+                         std::vector<SelfCrossing>& crossings);
+
 // drift_state.cpp
 
 /// Moves positions, colliders and attachments by a drift. Afterwards the positions are `offset` seconds ahead of the

@@ -8,19 +8,12 @@
 
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/tree/leaf_boxes.h"
-#include "systems/geometry/lane_vec3.h"
+#include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
 /// Coordinates of eight points: vectors of the x, y and z coordinates [m].
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
-
-inline LaneVec3<Real8> load(const PointLanes& points) {
-    return {load(points[0]), load(points[1]), load(points[2])};
-}
-inline LaneVec3<Real8> spread(const Vec3& point) {
-    return {Real8{} + point[0], Real8{} + point[1], Real8{} + point[2]};
-}
 
 [[gnu::always_inline]] inline Real8 lane_min(const Real8& a, const Real8& b) {
     return a < b ? a : b;
@@ -41,15 +34,15 @@ inline PointLanes lanes_of_points(std::span<const Vec3> position, const std::arr
     return lanes;
 }
 
-/// Corners of the triangles in a leaf. Unused lanes repeat the first triangle.
-struct LeafCorners {
+/// Boxes of the triangles in a leaf. Unused lanes repeat the first triangle.
+struct LeafTriangleBoxes {
     Index leaf = no_index;  // row of BvhLeafTable
-    std::array<PointLanes, 3> corner;
-    LeafBoxes box;  // boxes of the triangles
+    LeafBoxes box;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
         const LeafNodes& nodes = inputs.leaf_nodes[static_cast<std::size_t>(leaf)];
+        std::array<PointLanes, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) corner[k] = lanes_of_points(inputs.position, nodes.corner[k]);
         for (std::size_t i = 0; i < 3; ++i) {
             const Real8 a = load(corner[0][i]), b = load(corner[1][i]), c = load(corner[2][i]);
@@ -107,7 +100,6 @@ struct LeafEdges {
     Index leaf = no_index;  // row of BvhLeafTable
     const LeafFeatures* list = nullptr;
     std::array<LeafBoxes, 3> box;  // groups of eight edges; lanes after the last edge repeat the last edge
-    std::array<std::array<PointLanes, 2>, 3> end;
 
     void fill(const CollisionInputs& inputs, Index of_leaf) {
         leaf = of_leaf;
@@ -119,9 +111,10 @@ struct LeafEdges {
                     list->edge[std::min(leaf_lanes * group + l, static_cast<std::size_t>(list->edge_count) - 1)];
                 for (std::size_t k = 0; k < 2; ++k) node[k][l] = edge.node[k];
             }
-            for (std::size_t k = 0; k < 2; ++k) end[group][k] = lanes_of_points(inputs.position, node[k]);
+            std::array<PointLanes, 2> end;
+            for (std::size_t k = 0; k < 2; ++k) end[k] = lanes_of_points(inputs.position, node[k]);
             for (std::size_t i = 0; i < 3; ++i) {
-                const Real8 a = load(end[group][0][i]), b = load(end[group][1][i]);
+                const Real8 a = load(end[0][i]), b = load(end[1][i]);
                 store(lane_min(a, b), box[group].lower[i]);
                 store(lane_max(a, b), box[group].upper[i]);
             }

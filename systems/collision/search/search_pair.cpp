@@ -7,13 +7,13 @@
 #include "components/ask_for_lines.h"
 #include "components/node_block_table.h"
 #include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/search/leaf_features.h"
 #include "systems/collision/search/sort_found.h"
 #include "systems/collision/tree/box.h"
 #include "systems/collision/tree/leaf_boxes.h"
 #include "systems/collision/tree/leaf_pairs.h"
-#include "systems/geometry/closest_lanes.h"
 
 namespace skerry {
 
@@ -43,26 +43,43 @@ public:
           pair_(pair),
           box_(box),
           found_(found),
-          radius_(pair.scale.zone + pair.margin),
-          radius_squared_(radius_ * radius_),
-          edge_radius_squared_((pair.scale.edge_depth + pair.margin) * (pair.scale.edge_depth + pair.margin)),
           self_(pair.kind == PairKind::self),
           first_is_point_(is_point(inputs.body.core_nodes[pair.first])),
-          second_is_point_(is_point(inputs.body.core_nodes[pair.second])) {}
+          second_is_point_(is_point(inputs.body.core_nodes[pair.second])) {
+        set_margin(pair.margin);
+    }
 
     void run() {
         any_leaf_pair(
             inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
-            self_, [&](Index a, Index b) { return distance_squared(box_[a], box_[b]) < radius_squared_; },
+            self_,
+            [&](Index a, Index b) {
+                const Real radius = pair_.scale.zone + margin_of(a, b);
+                return distance_squared(box_[a], box_[b]) < radius * radius;
+            },
             [&](Index a, Index b) {
                 add_near(a, b);
                 return false;
             });
         compare_near();
+        empty_queue(FeaturePair::point_triangle);
+        empty_queue(FeaturePair::edge_edge);
     }
 
 private:
     static bool is_point(Index core_nodes) { return core_nodes == 1 || core_nodes == cylinder_core_nodes; }
+
+    /// Margin of the list for features below two nodes of the trees [m].
+    Real margin_of(Index a, Index b) const {
+        if (pair_.self_motion == nullptr) return pair_.margin;
+        return pair_.margin + std::max(pair_.self_motion->reach_of(*pair_.self, a, b), pair_.longer_motion);
+    }
+
+    void set_margin(Real margin) {
+        margin_ = margin;
+        radius_squared_ = (pair_.scale.zone + margin) * (pair_.scale.zone + margin);
+        edge_radius_squared_ = (pair_.scale.edge_depth + margin) * (pair_.scale.edge_depth + margin);
+    }
 
     const BvhNode& node(Index row) const { return inputs_.bvh_node[row]; }
     const Vec3& position(Index n) const { return inputs_.position[n]; }
@@ -91,6 +108,7 @@ private:
     void compare_near() {
         for (std::size_t i = 0; i < near_count_; ++i) {
             const auto [a, b] = near_[i];
+            if (self_) set_margin(margin_of(a, b));
             if (a == b)
                 compare_within(a);
             else
@@ -160,79 +178,104 @@ private:
 
     /// Compares a point with the triangles of a leaf.
     void compare_point(Index n, Index vertex, Index other, bool of_second) {
-        const LeafCorners& corners = features_of(other, corners_[!of_second]);
+        const LeafBoxes& boxes = features_of(other, boxes_[!of_second]).box;
         const Vec3& at = position(n);
         const unsigned near =
-            used_lanes(node(other).count, 0) & lanes_below(distance_squared(corners.box, {at, at}), radius_squared_);
-        if (near == 0) return;
-        Lanes<Real, leaf_lanes> squared;
-        store(point_triangle_distance(spread(at), load(corners.corner[0]), load(corners.corner[1]),
-                                      load(corners.corner[2]))
-                  .distance_squared,
-              squared);
-        for_each_lane(near & lanes_below(load(squared), radius_squared_), [&](std::size_t lane) {
+            used_lanes(node(other).count, 0) & lanes_below(distance_squared(boxes, {at, at}), radius_squared_);
+        for_each_lane(near, [&](std::size_t lane) {
             const Index triangle = leaf_triangle(other)[lane];
-            if (self_ && excluded_at_rest(n, triangle_.node[triangle])) return;
-            add({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
+            const auto& corner = triangle_.node[triangle];
+            if (self_ && share_node(corner, n)) return;
+            put({point_triangle_feature(of_second && !self_, vertex - vertices(of_second).begin,
                                         triangle - triangles(of_second).begin),
                  vertex, triangle},
-                squared[lane], pair_.scale.zone);
+                {n, corner[0], corner[1], corner[2]});
         });
     }
 
     /// Compares edge i of one leaf with those edges of another leaf whose bits are set in `with`.
     void compare_edge(const LeafEdges& a, std::size_t i, const LeafEdges& b, const std::array<unsigned, 3>& with) {
         const Aabb box = lane_of(a.box[i / leaf_lanes], i % leaf_lanes);
-        const LaneVec3<Real8> a0 = spread(position(a.node(i)[0])), a1 = spread(position(a.node(i)[1]));
+        const auto& own = a.node(i);
         for (std::size_t group = 0; group < b.groups(); ++group) {
-            unsigned lanes = with[group];
-            if (lanes != 0) lanes &= lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
-            if (lanes == 0) continue;
-            Lanes<Real, leaf_lanes> squared;
-            store(segment_distance_squared(a0, a1, load(b.end[group][0]), load(b.end[group][1])), squared);
-            for_each_lane(lanes & lanes_below(load(squared), edge_radius_squared_), [&](std::size_t lane) {
+            if (with[group] == 0) continue;
+            const unsigned lanes = with[group] & lanes_below(distance_squared(b.box[group], box), edge_radius_squared_);
+            for_each_lane(lanes, [&](std::size_t lane) {
                 const std::size_t j = leaf_lanes * group + lane;
-                if (!self_ || !excluded_at_rest(a.node(i), b.node(j))) add_edges(a.row(i), b.row(j), squared[lane]);
+                const auto& other = b.node(j);
+                if (self_ && (share_node(other, own[0]) || share_node(other, own[1]))) return;
+                put(edges_candidate(a.row(i), b.row(j)), {own[0], own[1], other[0], other[1]});
             });
         }
     }
 
-    void add_edges(Index a, Index b, Real squared) {
+    Candidate edges_candidate(Index a, Index b) const {
         if (self_ && a > b) std::swap(a, b);
         const Index first = a - inputs_.body.edges[pair_.first].begin,
                     second = b - inputs_.body.edges[pair_.second].begin;
-        add({edge_edge_feature(first, second), a, b}, squared, pair_.scale.edge_depth);
+        return {edge_edge_feature(first, second), a, b};
+    }
+
+    /// Puts two features whose boxes are close into the queue of their kind. The distances of eight pairs of features
+    /// are computed at once.
+    void put(const Candidate& candidate, const CandidateNodes& nodes) {
+        const FeaturePair kind = skerry::features_of(candidate);
+        Queue& queue = queue_[static_cast<std::size_t>(kind)];
+        queue.candidate[queue.count] = candidate;
+        queue.radius[queue.count] = zone_of(kind) + margin_;
+        set_lane(queue.node, queue.count, nodes);
+        if (++queue.count == candidate_lanes) empty_queue(kind);
+    }
+
+    /// Adds the candidates in the queue whose features are close. A candidate needs no test until the distance of its
+    /// features may be below the zone.
+    void empty_queue(FeaturePair kind) {
+        Queue& queue = queue_[static_cast<std::size_t>(kind)];
+        if (queue.count == 0) return;
+        for (auto& node : queue.node)
+            std::fill(node.begin() + static_cast<std::ptrdiff_t>(queue.count), node.end(), node[0]);
+        const auto distance = distances(kind, inputs_.position, queue.node);
+        for (std::size_t lane = 0; lane < queue.count; ++lane) {
+            if (!(distance[lane] < queue.radius[lane])) continue;
+            const auto node = [&](std::size_t i) { return queue.node[i][lane]; };
+            const bool excluded =
+                self_ && (kind == FeaturePair::edge_edge
+                              ? touched_at_rest(std::array{node(0), node(1)}, std::array{node(2), node(3)})
+                              : touched_at_rest(node(0), std::array{node(1), node(2), node(3)}));
+            if (!excluded)
+                found_.push_back({queue.candidate[lane], pair_.travel_base + distance[lane] - zone_of(kind)});
+        }
+        queue.count = 0;
+    }
+
+    Real zone_of(FeaturePair kind) const {
+        return kind == FeaturePair::edge_edge ? pair_.scale.edge_depth : pair_.scale.zone;
     }
 
     Range vertices(bool of_second) const { return inputs_.body.vertices[of_second ? pair_.second : pair_.first]; }
     Range triangles(bool of_first) const { return inputs_.body.triangles[of_first ? pair_.first : pair_.second]; }
 
-    bool excluded_at_rest(Index point, const std::array<Index, 3>& corner) const {
-        return share_node(corner, point) || touched_at_rest(point, corner);
-    }
-    bool excluded_at_rest(const std::array<Index, 2>& a, const std::array<Index, 2>& b) const {
-        return share_node(b, a[0]) || share_node(b, a[1]) || touched_at_rest(a, b);
-    }
     bool touched_at_rest(const auto& first, const auto& second) const {
         return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, first, second) <
                                                      pair_.scale.contact_distance * pair_.scale.contact_distance;
     }
 
-    /// Adds a candidate. It needs no test until the distance of its features may be below `zone`. `squared`: squared
-    /// distance of the features [m^2].
-    void add(const Candidate& candidate, Real squared, Real zone) {
-        found_.push_back({candidate, pair_.travel_base + std::sqrt(squared) - zone});
-    }
+    /// Pairs of features of one kind whose distances are still to be computed.
+    struct Queue {
+        std::size_t count = 0;
+        std::array<Candidate, candidate_lanes> candidate;
+        std::array<Real, candidate_lanes> radius;  // distance below which the candidate is added [m]
+        CandidateNodeLanes node;
+    };
 
     const CollisionInputs& inputs_;
     const TriangleTable& triangle_;
     const PairToSearch& pair_;
     std::span<const Aabb> box_;
     Column<FoundCandidate>& found_;
-    const Real radius_;
-    const Real radius_squared_;
-    // Squared search distance of edges, which is smaller than the search distance of points [m^2].
-    const Real edge_radius_squared_;
+    // Squared search distance of points, and of edges, for which it is smaller [m^2].
+    Real radius_squared_, edge_radius_squared_;
+    Real margin_;  // margin of the list for the present pair of leaves [m]
     const bool self_;
     // True for a sphere or a cylinder, whose core is a point in this search.
     const bool first_is_point_, second_is_point_;
@@ -240,10 +283,11 @@ private:
     // several leaves of the other tree.
     std::array<KeptLeaves<LeafPoints>, 2> points_;
     std::array<KeptLeaves<LeafEdges>, 2> edges_;
-    std::array<KeptLeaves<LeafCorners>, 2> corners_;
+    std::array<KeptLeaves<LeafTriangleBoxes>, 2> boxes_;
     // Collected pairs of leaves whose features are not compared yet.
     std::array<std::array<Index, 2>, most_near> near_;
     std::size_t near_count_ = 0;
+    std::array<Queue, 2> queue_;  // by FeaturePair
 };
 
 Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box,
@@ -255,7 +299,7 @@ Real search_bodies(const CollisionInputs& inputs, const PairToSearch& pair, std:
     if (apart >= pair.margin) return pair.travel_base + apart;
     BodySearch(inputs, pair, box, found).run();
     sort_by_feature(found);
-    return pair.travel_base + pair.margin;
+    return pair.travel_base + pair.margin + pair.longer_motion;
 }
 
 }  // namespace

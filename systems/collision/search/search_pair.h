@@ -4,6 +4,7 @@
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/collision/inputs/contact_reach.h"
+#include "systems/collision/search/self_motion.h"
 
 namespace skerry {
 
@@ -15,6 +16,11 @@ struct PairToSearch {
     Real travel_base;  // travel of the pair from which bounds are counted (pair_travel_base) [m]
     Real margin;       // features with a distance below scale.zone + margin are listed [m]
     Real apart;        // lower bound of the distance between the two bodies [m]
+    // For a body paired with itself: the reach of two of its parts in this step is added to `margin`, or longer_motion
+    // [m] if that is larger.
+    const SelfMotion* self_motion = nullptr;
+    const SelfSearch* self = nullptr;
+    Real longer_motion = 0;
 };
 
 /// Lists the close features of a pair in feature order, each combination of two features once. For two bodies, these
@@ -34,5 +40,10 @@ Real search_collider(const CollisionInputs& inputs, const PairToSearch& pair, Co
 /// computed from the present positions. Surfaces that only touch do not cross. If a body is paired with itself,
 /// features that are close to each other in the rest shape do not count.
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box);
+
+/// Counts the pairs of an edge and a triangle of one body whose edge passes through the triangle. Features that are
+/// close to each other in the rest shape do not count. The boxes of the tree must be computed from the present
+/// positions.
+Index count_self_crossings(const CollisionInputs& inputs, Index body, std::span<const Aabb> box);
 
 }  // namespace skerry

@@ -1,5 +1,6 @@
 #include "systems/collision/search/search_pair.h"
 
+#include <cmath>
 #include <limits>
 
 #include "systems/collision/narrow/rest_distance.h"
@@ -11,66 +12,105 @@ namespace skerry {
 
 namespace {
 
+// Distance at rest below which features of a body belong to the same piece when its crossings are counted, as a
+// multiple of the mean edge. Features that are closer pass through each other where a few elements are crushed or
+// inverted.
+constexpr Real own_piece_edges = 2;
+
 class CrossingSearch {
 public:
-    CrossingSearch(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box)
-        : inputs_(inputs), pair_(pair), box_(box) {}
+    /// `own_piece`: features of one body that are at most this far apart at rest are left out [m].
+    CrossingSearch(const CollisionInputs& inputs, PairKind kind, Index first, Index second, Real own_piece,
+                   std::span<const Aabb> box)
+        : inputs_(inputs), kind_(kind), first_(first), second_(second), own_piece_(own_piece), box_(box) {}
 
-    bool run() const {
-        const bool self = pair_.kind == PairKind::self;
+    /// Calls visit(edge owner, side, triangle) for the sides of triangles that pass through another triangle, until
+    /// visit returns true. Returns true if a visit returned true. An edge that two triangles share is visited twice.
+    bool any(auto&& visit) const {
+        const Range first = inputs_.body.bvh_nodes[first_], second = inputs_.body.bvh_nodes[second_];
+        if (first.size() == 0 || second.size() == 0) return false;
+        const bool self = kind_ == PairKind::self;
         return any_leaf_pair(
-            inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
-            self, [&](Index a, Index b) { return !(distance_squared(box_[a], box_[b]) > 0); },
-            [&](Index a, Index b) { return leaves_cross(inputs_.bvh_node[a], inputs_.bvh_node[b], self && a == b); });
+            inputs_.bvh_node, first.begin, second.begin, self,
+            [&](Index a, Index b) { return !(distance_squared(box_[a], box_[b]) > 0); },
+            [&](Index a, Index b) {
+                return any_in_leaves(inputs_.bvh_node[a], inputs_.bvh_node[b], self && a == b, visit);
+            });
     }
 
 private:
-    bool leaves_cross(const BvhNode& own, const BvhNode& other, bool same) const {
+    bool any_in_leaves(const BvhNode& own, const BvhNode& other, bool same, auto&& visit) const {
         // Upper limit of the squared distance of overlapping boxes. Denormal numbers may count as 0.
         constexpr Real overlap = std::numeric_limits<Real>::min();
         const LeafBoxes first = boxes_of(own), second = boxes_of(other);
-        bool crossing = false;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !crossing; ++i) {
+        bool found = false;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(own.count) && !found; ++i) {
             unsigned lanes = lanes_below(distance_squared(second, lane_of(first, i)), overlap);
             if (same) lanes &= ~0U << (i + 1);  // each pair is tested once
             for_each_lane(lanes, [&](std::size_t j) {
-                crossing = crossing ||
-                           triangles_cross(inputs_.leaf_triangle[own.leaf][i], inputs_.leaf_triangle[other.leaf][j]);
+                const Index a = inputs_.leaf_triangle[own.leaf][i], b = inputs_.leaf_triangle[other.leaf][j];
+                found = found || any_side(a, b, visit) || any_side(b, a, visit);
             });
         }
-        return crossing;
+        return found;
     }
 
     LeafBoxes boxes_of(const BvhNode& node) const {
         return boxes_of_triangles(inputs_.leaf_nodes[node.leaf], node.count, inputs_.position);
     }
 
-    bool triangles_cross(Index a, Index b) const { return edges_pass(a, b) || edges_pass(b, a); }
-
-    bool edges_pass(Index owner, Index through) const {
+    bool any_side(Index owner, Index through, auto&& visit) const {
         const auto &edge = inputs_.surface.triangles.node[owner], &face = inputs_.surface.triangles.node[through];
         const auto& x = inputs_.position;
         for (std::size_t k = 0; k < 3; ++k) {
             const Index p = edge[k], q = edge[(k + 1) % 3];
             if (!passes_through(x[p], x[q], x[face[0]], x[face[1]], x[face[2]])) continue;
-            if (pair_.kind != PairKind::self) return true;
-            if (was_far_at_rest(inputs_, pair_.scale, p, face) && was_far_at_rest(inputs_, pair_.scale, q, face))
-                return true;
+            if (kind_ == PairKind::self && !counts_in_self(p, q, face)) continue;
+            if (visit(owner, k)) return true;
         }
         return false;
     }
 
+    bool was_far_at_rest(Index point, const std::array<Index, 3>& face) const {
+        return !inputs_.rest_position.empty() && rest_distance_squared(inputs_, point, face) > own_piece_ * own_piece_;
+    }
+
+    /// True if an edge pq that passes through a face of its own body counts as a crossing. Both ends must be far from
+    /// the face at rest, and must not lie in the plane of the face up to rounding errors, as in a flat side of the
+    /// body.
+    bool counts_in_self(Index p, Index q, const std::array<Index, 3>& face) const {
+        constexpr Real rounding = 1e-9;  // least height of an end above the plane, as a fraction of own_piece_
+        const auto& x = inputs_.position;
+        const Vec3 &a = x[face[0]], normal = (x[face[1]] - a).cross(x[face[2]] - a);
+        const Real least = rounding * own_piece_ * normal.norm();
+        return std::abs(normal.dot(x[p] - a)) > least && std::abs(normal.dot(x[q] - a)) > least &&
+               was_far_at_rest(p, face) && was_far_at_rest(q, face);
+    }
+
     const CollisionInputs& inputs_;
-    const PairToSearch& pair_;
+    const PairKind kind_;
+    const Index first_, second_;
+    const Real own_piece_;
     std::span<const Aabb> box_;
 };
 
 }  // namespace
 
 bool surfaces_cross(const CollisionInputs& inputs, const PairToSearch& pair, std::span<const Aabb> box) {
-    const Range first = inputs.body.bvh_nodes[pair.first], second = inputs.body.bvh_nodes[pair.second];
-    if (first.size() == 0 || second.size() == 0) return false;
-    return CrossingSearch(inputs, pair, box).run();
+    const Real own_piece = 2 * pair.scale.face_depth;  // as in rest_distance.h
+    return CrossingSearch(inputs, pair.kind, pair.first, pair.second, own_piece, box).any([](Index, std::size_t) {
+        return true;
+    });
+}
+
+Index count_self_crossings(const CollisionInputs& inputs, Index body, std::span<const Aabb> box) {
+    Index count = 0;
+    const Real own_piece = own_piece_edges * inputs.body.mean_edge[body];
+    CrossingSearch(inputs, PairKind::self, body, body, own_piece, box).any([&](Index owner, std::size_t side) {
+        count += inputs.surface.triangles.owned_edges[owner] >> side & 1;
+        return false;
+    });
+    return count;
 }
 
 }  // namespace skerry

@@ -10,15 +10,14 @@ namespace skerry {
 /// Visits pairs of leaves, one below node a of a tree and one below node b of another tree, until visit returns true.
 /// Returns true if a visit returned true. A pair of leaves is visited if near(c, d) is true for the two leaves and for
 /// all pairs of nodes c and d above them. `self`: a and b belong to the same tree, which is paired with itself; each
-/// leaf is then also visited with itself.
+/// node is then also paired with itself.
 template <class Near, class Visit>
 bool any_leaf_pair(std::span<const BvhNode> node, Index a, Index b, bool self, const Near& near, const Visit& visit) {
-    const bool same = self && a == b;
-    if (!same && !near(a, b)) return false;
+    if (!near(a, b)) return false;
     const BvhNode &own = node[a], &other = node[b];
     if (own.count > 0 && other.count > 0) return visit(a, b);
     const auto below = [&](Index c, Index d) { return any_leaf_pair(node, c, d, self, near, visit); };
-    if (same) return below(a + 1, a + 1) || below(own.right, own.right) || below(a + 1, own.right);
+    if (self && a == b) return below(a + 1, a + 1) || below(own.right, own.right) || below(a + 1, own.right);
     // The node with more descendants is split.
     if (other.count > 0 || (own.count == 0 && own.skip - a >= other.skip - b))
         return below(a + 1, b) || below(own.right, b);

@@ -103,6 +103,28 @@ class ProgramRunTest(ProgramCase):
         for position in ([0, 0, -1], [0, 0, 0]):
             self.assertNotIn("lift", collider(position))
 
+    def test_a_body_that_goes_through_itself_is_a_warning_and_penetration_is_not_claimed_to_be_zero(self):
+        # a strip whose right end turns by 0.7 revolutions, into its left half
+        end = {"lower": [0.089, -1, -1], "upper": [1, 1, 1]}
+        fold = {"name": "fold", "seconds": 0.7, "settings": {"gravity": [0, 0, 0]}, "materials": {"soft": {"E": 2e4}},
+                "bodies": [{"name": "strip", "mesh": {"box": {"size": [0.2, 0.04, 0.02], "cells": [10, 2, 1]}},
+                            "material": "soft",
+                            "pin": [{"box": {"lower": [-1, -1, -1], "upper": [-0.089, 1, 1]}},
+                                    {"box": end, "motion": {"angular_velocity": [0, -6.28, 0]},
+                                     "pivot": [0, 0, 0.015]}]}]}
+        scene = self.write("fold.json", fold)
+        stats = json.loads(self.run_with_stats(scene))
+        (found,) = stats["self_crossings"]
+        self.assertEqual((found["body"], found["self_contact"]), ("strip", False))
+        self.assertGreater(found["first_time"], 0.3)
+        self.assertGreater(found["most_places"], 0)
+        warning = next(text for text in stats["trust"]["warnings"] if "'strip' crosses itself" in text)
+        self.assertIn('set "self_contact" of this body to true', warning)
+        summary = self.skerry("run", scene).stdout
+        self.assertIn("a surface crosses itself, to a depth that is not measured", summary)
+        self.assertIn("WARNING       the surface of body 'strip' crosses itself", summary)
+        self.assertIn("; no surface crosses itself", self.skerry("run", self.scene).stdout)
+
     def test_the_summary_is_short_and_details_are_printed_on_request(self):
         short = self.skerry("run", self.scene).stdout
         self.assertLessEqual(len(short.splitlines()), 15, short)

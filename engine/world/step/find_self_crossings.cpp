@@ -1,0 +1,71 @@
+// Checks whether the surfaces of bodies cross themselves. Only bodies with self-contact are kept from doing so.
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/world/step/step.h"
+#include "jobs/parallel_for.h"
+#include "systems/collision/search/search_pair.h"
+#include "systems/collision/tree/bvh.h"
+
+namespace skerry {
+
+namespace {
+
+// Stands for the number of crossings of a body that is not checked.
+constexpr Index unchanged = -1;
+
+/// True if the body may have begun to cross itself since the last check, or may have ceased to.
+bool may_have_changed(const Model& model, std::size_t b) {
+    return model.bodies.kind[b] == BodyKind::deformable && !model.is_rigid(b) && !model.bodies.asleep[b] &&
+           model.bodies.unstrained[b] == 0;
+}
+
+Index count_crossings(Model& model, const CollisionInputs& inputs, Index body) {
+    refit_bvh(model.bodies.bvh_nodes[body], model.bvh.node, model.bvh_leaves.nodes, model.nodes.position,
+              model.bvh.box);
+    return count_self_crossings(inputs, body, model.bvh.box);
+}
+
+void note(const Model& model, std::size_t b, Real time, Index places, std::vector<SelfCrossing>& crossings) {
+    const BodyHandle body = model.body_map.handle_of_slot(model.bodies.slot[b]);
+    auto entry = std::ranges::find(crossings, body, &SelfCrossing::body);
+    if (entry == crossings.end()) {
+        if (places <= 0) return;
+        entry =
+            crossings.insert(entry, SelfCrossing{.body = body, .name = model.body_records[b].name, .first_time = time});
+    }
+    if (places != unchanged) entry->last_places = places;
+    if (entry->last_places == 0) return;
+    entry->self_contact = model.bodies.self_contact[b] != 0;
+    entry->last_time = time;
+    entry->most_places = std::max(entry->most_places, places);
+}
+
+}  // namespace
+
+void find_self_crossings(Executor& executor, Model& model, Real time, Column<Index>& places,
+                         std::vector<SelfCrossing>& crossings) {
+    const CollisionInputs inputs =
+        CollisionInputs::bind({}, model.bodies, model.colliders, model.surface, model.materials, model.bvh,
+                              model.bvh_leaves, model.nodes, model.disabled_pairs);
+    places.resize(model.bodies.slot.size());
+    parallel_for(executor, places.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b)
+            places[b] = may_have_changed(model, b) ? count_crossings(model, inputs, static_cast<Index>(b)) : unchanged;
+    });
+    for (std::size_t b = 0; b < places.size(); ++b)
+        if (places[b] != 0 || !crossings.empty()) note(model, b, time, places[b], crossings);
+}
+
+std::string SelfCrossing::message() const {
+    const auto seconds = [](Real time) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g s", time);
+        return std::string(text);
+    };
+    return "the surface of body '" + name + "' crosses itself in up to " + std::to_string(most_places) +
+           (most_places == 1 ? " place" : " places") + ", first found at " + seconds(first_time) + " and last at " +
+           seconds(last_time);
+}
+
+}  // namespace skerry
