@@ -48,14 +48,12 @@ double RunPlan::steps(const World& world) const {
     const long counted = std::min(frames(), 1000L);
     const double longest = longest_step(world);
     double count = 0, time = 0;
-    const auto add_call = [&](double duration) { count += std::ceil(duration / longest - slack); };
     for (long frame = 0; frame < counted; ++frame) {
         const double length = length_of(frame);
         const std::vector<double> ends = ends_in(frame);
-        if (ends.empty())
-            for (int call = 0; call < samples; ++call) add_call(length / samples);
+        if (ends.empty()) count += samples * std::ceil(length / samples / longest - slack);
         double before = static_cast<double>(frame) * frame_step;
-        for (const double end : ends) add_call(end - std::exchange(before, end));
+        for (const double end : ends) count += std::ceil((end - std::exchange(before, end)) / longest - slack);
         time += length;
     }
     return count * std::max(0.0, seconds - world.time()) / time;
