@@ -236,8 +236,8 @@ struct SelfCrossing {
     bool self_contact = false;           // true if the body had self-contact when the crossing was last found
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
     // Number of places where an edge passes through a triangle, at the last check that found the surface crossing and
-    // at most in all checks; the first is 0 if a later check found none. Places whose features are at most two mean
-    // edge lengths apart in the rest shape do not count, because crushed elements cause such places.
+    // at most in all checks; the first is 0 if a later check found none. Places whose features are at most one mean
+    // edge length apart in the rest shape do not count, because crushed elements cause such places.
     Index last_places = 0, most_places = 0;
 
     /// Returns a text such as "the surface of body 'knot' crosses itself in up to 312 places, first found at 0.41 s and

@@ -15,7 +15,7 @@ namespace {
 // Distance at rest below which features of a body belong to the same piece when its crossings are counted, as a
 // multiple of the mean edge. Features that are closer pass through each other where a few elements are crushed or
 // inverted.
-constexpr Real own_piece_edges = 2;
+constexpr Real own_piece_edges = 1;
 
 class CrossingSearch {
 public:

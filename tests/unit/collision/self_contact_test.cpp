@@ -153,7 +153,7 @@ TEST_CASE("the counted places where a body crosses itself are those that brute f
         strip.steer(angle, 0.4, angle == 0 ? 0 : 5);
         strip.w.drift(h);
         const CollisionInputs inputs = strip.w.inputs();
-        const Real piece = 2 * strip.w.body.mean_edge[strip.body];
+        const Real piece = strip.w.body.mean_edge[strip.body];
         refit_bvh(strip.w.body.bvh_nodes[strip.body], inputs.bvh_node, inputs.leaf_nodes, inputs.position,
                   strip.w.bvh.box);
         int expected = 0;
