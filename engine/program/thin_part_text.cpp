@@ -18,7 +18,7 @@ constexpr Real reported_stiffness = 1.25;
 constexpr Real accepted_excess = 0.1;
 
 /// Elements of a body: tetrahedra by material, and the constants of these materials.
-struct BodyElements {
+struct ElementsOfThinBody {
     std::vector<MaterialZone> zones;
     std::vector<mesh::ElasticConstants> materials;
 
@@ -35,8 +35,8 @@ std::string coordinate(Real value, const mesh::ThinPart& part) {
     return short_number(std::abs(value) < rounding * part.length ? 0 : value);
 }
 
-BodyElements elements_of_body(const Mesh& mesh, const StepCase& of) {
-    BodyElements elements;
+ElementsOfThinBody elements_of_body(const Mesh& mesh, const StepCase& of) {
+    ElementsOfThinBody elements;
     elements.add(of.material, of.body.element);
     std::map<int, std::size_t> zone_of;
     for (const auto& [label, material] : of.labelled) {
@@ -53,7 +53,7 @@ BodyElements elements_of_body(const Mesh& mesh, const StepCase& of) {
 }  // namespace
 
 std::string thin_part_text(const Mesh& mesh, std::span<const std::array<Index, 3>> boundary, const StepCase& of) {
-    const BodyElements elements = elements_of_body(mesh, of);
+    const ElementsOfThinBody elements = elements_of_body(mesh, of);
     std::vector<mesh::ThinPart> parts = mesh::thin_parts(mesh, boundary, elements.zones, elements.materials);
     std::erase_if(parts, [](const mesh::ThinPart& part) { return part.stiffness < reported_stiffness; });
     if (parts.empty()) return {};
