@@ -80,7 +80,8 @@ class ProgramRunTest(ProgramCase):
         self.assertEqual(len(sag), 1)
         self.assertIn('body "block" sags by about 49,000 times its height under its own weight', sag[0])
         self.assertIn("is E in Pa", sag[0])
-        self.assertIn("times its height", warnings("bodies[0].mesh.scale=200", "bodies[0].position=[0,0,25]")[0])
+        large = warnings("bodies[0].mesh.scale=200", "bodies[0].position=[0,0,25]", "probes=[]")
+        self.assertIn("times its height", large[0])
         self.assertIn("is it in g/cm^3?", warnings("materials.rubber.rho=1")[0])
         self.assertIn("more than any material", warnings("materials.rubber.rho=1e6", "materials.rubber.E=1e8")[0])
         self.assertIn("more than diamond", warnings("materials.rubber.E=2e14")[0])
@@ -101,7 +102,7 @@ class ProgramRunTest(ProgramCase):
             return self.skerry("run", self.write("lift.json", scene)).stdout
         self.assertIn('collider "lift" starts at the position [0.0,0.0,-1.0] of its first key', collider([0, 0, -3]))
         for position in ([0, 0, -1], [0, 0, 0]):
-            self.assertNotIn("lift", collider(position))
+            self.assertNotIn('"lift" starts', collider(position))
 
     def test_a_body_that_goes_through_itself_is_a_warning_and_penetration_is_not_claimed_to_be_zero(self):
         # a strip whose right end turns by 0.7 revolutions, into its left half
