@@ -119,6 +119,7 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
     for (const BodyPlan& body : plan.bodies) {
         for (const std::size_t m : materials_of(body)) used[m] = true;
         const bool copy = before != nullptr && body.mesh == before->mesh && body.material == before->material &&
+                          body.materials == before->materials && body.settings.dynamics == before->settings.dynamics &&
                           body.settings.rotation == before->settings.rotation;
         extents.push_back(copy ? extents.back() : extent_of(plan.meshes[body.mesh], body.settings, gravity));
         if (!copy) warn_of_sag(plan, body, extents.back().height, warnings);

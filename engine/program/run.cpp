@@ -86,10 +86,11 @@ public:
             const double length = plan_.length_of(frame);
             const bool longer = frame == first && cut_short(plan_, frame, planned);
             std::vector<double> ends = plan_.ends_in(frame);
-            if (longer) std::erase_if(ends, [&](double end) { return !(end > world_.time() + slack_of_time()); });
+            const auto is_past = [&](double end) { return !(end > world_.time() + slack_of_time()); };
+            if (longer && !ends.empty()) sample = static_cast<int>(std::ranges::count_if(ends, is_past));
             const int calls = ends.empty() ? plan_.samples : static_cast<int>(ends.size());
             double duration = length / calls;
-            if (longer)
+            if (longer && ends.empty())
                 duration = (static_cast<double>(frame) * plan_.frame_step + length - world_.time()) / (calls - sample);
             const Real begin = world_.time();
             for (; sample < calls && result_.status == "ok"; ++sample) {
@@ -184,7 +185,7 @@ void count_bodies(const World& world, RunResult& result) {
 std::vector<std::string> thin_parts(const ScenePlan& plan, const World& world) {
     std::vector<std::string> found;
     std::set<std::tuple<std::size_t, std::size_t, std::vector<std::pair<int, std::size_t>>, ElementKind>> seen;
-    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
+    const std::vector<BodyHandle> bodies = bodies_in_order(world);
     for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
         const BodyPlan& body = plan.bodies[b];
         if (world.dynamics(bodies[b]) == BodyDynamics::rigid ||

@@ -160,7 +160,6 @@ StepCase step_case(const ScenePlan& plan, const BodyPlan& body) {
                 .material = plan.materials[body.material].second,
                 .body = body.settings,
                 .labelled = {}};
-    of.body.dynamics = BodyDynamics::explicit_elastic;
     for (const auto& [label, material] : body.materials) of.labelled.emplace(label, plan.materials[material].second);
     return of;
 }

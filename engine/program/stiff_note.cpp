@@ -28,7 +28,7 @@ struct ShortSteps {
 
 ShortSteps short_steps(const ScenePlan& plan, const World& world) {
     const Model& model = WorldAccess::state_of(world).model;
-    const std::vector<BodyHandle> bodies = world.bodies();  // same order as ScenePlan::bodies
+    const std::vector<BodyHandle> bodies = bodies_in_order(world);
     std::vector<Real> step(bodies.size(), infinity);
     ShortSteps stiff;
     for (std::size_t b = 0; b < step.size(); ++b) {
@@ -71,7 +71,7 @@ std::string stiff_note(const ScenePlan& plan, const World& world, double steps, 
             plan.materials[body.material].first + "\", and " + (stiff.count > 1 ? "need" : "needs") + " steps of " +
             with_unit(stiff.step, "s") + ": about " + count_text(steps) + " steps, " +
             short_number(others / stiff.step) + " times as many as otherwise; ";
-    const std::vector<Real> each = world.tetrahedron_steps(world.bodies()[stiff.first]);
+    const std::vector<Real> each = world.tetrahedron_steps(bodies_in_order(world)[stiff.first]);
     if (const std::size_t bad = count_bad(each); bad > 0)
         return text + "the cause: " + grouped(bad) + " of " + grouped(each.size()) +
                " tetrahedra, the worst tetrahedron " + std::to_string(std::ranges::min_element(each) - each.begin()) +

@@ -50,9 +50,12 @@ std::string penetration_text(const RunResult& result) {
     if (r.max_penetration > 0) text = deep(r.max_penetration);
     if (r.held_penetration > 0) text += (text.empty() ? "" : "; ") + ("held surfaces " + deep(r.held_penetration));
     if (text.empty()) text = "none in any contact";
-    return text + (r.self_crossings.empty()
-                       ? "; no surface crosses itself"
-                       : "; a surface crosses itself, to a depth that is not measured (see the warning)");
+    if (!r.self_crossings.empty()) {
+        const bool now = std::ranges::any_of(r.self_crossings, [](const auto& of) { return of.last_places > 0; });
+        return text + "; a surface " + (now ? "crosses" : "crossed") +
+               " itself, to a depth that is not measured (see the warning)";
+    }
+    return text + (r.crossed > 0 ? "" : "; no surface crosses itself");
 }
 
 std::string contacts_text(const RunResult& result) {

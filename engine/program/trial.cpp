@@ -22,7 +22,8 @@ void measure(World& world, const RunPlan& plan, SceneCost& cost) {
     const Stopwatch watch;
     TimeLeft left(plan.seconds, world.time());
     while (!cost.whole) {
-        const StepReport report = world.advance(std::min(plan.longest_call(), plan.seconds - world.time()), go_on);
+        const StepReport report =
+            world.advance(std::clamp(plan.seconds - world.time(), 0.0, plan.longest_call()), go_on);
         cost.steps += static_cast<double>(report.steps);
         left.reach(watch.seconds(), world.time());
         if (report.status == StepStatus::stopped) break;

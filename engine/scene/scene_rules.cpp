@@ -69,7 +69,7 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("name", &BodyEntry::name, {.meaning = "name in messages, output and probes; default: body_NUMBER"})
             .key("mesh", &BodyEntry::mesh, {.meaning = "tetrahedral mesh of the body"})
             .key("shape", &BodyEntry::shape,
-                 {.meaning = "shape of a rigid body without a mesh; needs \"dynamics\": \"rigid\""})
+                 {.meaning = "shape of a rigid body without a mesh; \"dynamics\" may be left out or \"rigid\""})
             .key("material", &BodyEntry::material, {.meaning = "name of one of the materials", .required = true})
             .key("materials", &BodyEntry::materials,
                  {.meaning = "names of materials by label of the tetrahedra in the mesh file, {LABEL: NAME}. All "
@@ -92,7 +92,8 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("dynamics", &BodyEntry::dynamics,
                  {.meaning =
                       "model of the motion. \"automatic\" (default): implicit if the body is stiff, without "
-                      "self-contact and pins, and this more than halves the predicted cost, otherwise explicit; "
+                      "self-contact, pins and a set loss_factor, and this more than halves the predicted cost, "
+                      "otherwise explicit; "
                       "\"explicit\": any deformation, short steps; \"implicit\": small deformation, any step size, for "
                       "stiff bodies; \"rigid\": no deformation, with the mass and inertia of the mesh"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)

@@ -256,7 +256,7 @@ namespace {
 
 /// `shape`: "sphere", ...
 void require_round(const std::string& shape, const BodySettings& body, const std::string& object) {
-    if (body.dynamics != BodyDynamics::rigid)
+    if (body.dynamics != BodyDynamics::rigid && body.dynamics != BodyDynamics::automatic)
         refuse(object, "dynamics", std::string(name_of(body.dynamics)),
                "rigid, because a " + shape + " does not deform");
     if (body.self_contact) refuse(object, "self_contact", "true for a " + shape, "false");

@@ -157,6 +157,7 @@ World World::clone() const {
     to.scratch.contacts = from.scratch.contacts;
     to.record.counters = from.record.counters;
     to.record.limits = from.record.limits;
+    to.record.self_crossings = from.record.self_crossings;
     to.record.balance = from.record.balance;
     to.record.held = from.record.held;
     to.record.start_overlaps = from.record.start_overlaps;
@@ -214,14 +215,16 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
                   .angular_velocity = body.angular_velocity};
     DynamicsEstimate choice;
     std::optional<KnownElements> trial;
-    if (body.dynamics == BodyDynamics::automatic) {
+    if (core.nodes > 0) {
+        fresh.dynamics = BodyDynamics::rigid;
+    } else if (body.dynamics == BodyDynamics::automatic) {
         // Removed bodies must not limit the step. Without removals the stored results of earlier bodies are kept.
         if (!state.edits.bodies_gone.empty()) state.settle();
         fresh.dynamics = BodyDynamics::explicit_elastic;
         fresh.dynamics = choose_dynamics(model, fresh, choice, trial);
     }
     if (fresh.dynamics == BodyDynamics::implicit_elastic && sets_losses(model, material, tetrahedron_material))
-        refuse_losses(body.name.empty() ? "body" : body.name);
+        refuse_losses(body.name);
     const BodyHandle handle = model.body_map.insert(static_cast<Index>(model.bodies.slot.size()));
     fresh.slot = handle.slot;
     append_body(model, state.scratch.stiffness_sum, fresh, trial ? &*trial : nullptr);
@@ -298,6 +301,7 @@ ColliderHandle World::add_collider(const Shape& shape, const ColliderSettings& c
 }
 
 AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, const Motion& motion, const Vec3& pivot) {
+    state_->require_between_steps("attach");
     Model& model = state_->model;
     const Index row = model.row(body, "attach");
     const auto b = static_cast<std::size_t>(row);

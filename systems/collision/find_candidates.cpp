@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "components/check.h"
 #include "jobs/parallel_for.h"
@@ -219,7 +220,8 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> box,
                   Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
-    const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pair.first, h);
+    const PairState before = pairs.state[p];
+    std::optional<SelfMotion> parts;
     bool lasts = true;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
@@ -229,13 +231,14 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
     if (pair.kind == PairKind::self) {
+        parts.emplace(self_motion_of(inputs, settings, before, pair.first, h));
         pair.longer_motion = std::max(pairs.longer_motion[p], Real(0));
-        pair.self_motion = &parts;
+        pair.self_motion = &*parts;
         pair.self = &pairs.self;
         store_origin(inputs, pair.first, pairs.self);
         // If parts move so fast that the list would be invalid in the next step, a shorter list suffices.
-        lasts = holds_for_step(parts, pairs.self) || pair.longer_motion > 0;
-        pair.margin = lasts ? parts.skin : short_margin * parts.skin;
+        lasts = holds_for_step(*parts, pairs.self) || pair.longer_motion > 0;
+        pair.margin = lasts ? parts->skin : short_margin * parts->skin;
     }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
     const Real valid_until = search_pair(inputs, pair, box, found);

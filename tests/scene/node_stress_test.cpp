@@ -64,7 +64,7 @@ struct PressedSphere {
 
 }  // namespace
 
-TEST_CASE("stress at the surfaces of a thick sphere under pressure is within 3 per cent", "[scene][implicit]") {
+TEST_CASE("stress at the surfaces of a thick sphere under pressure is within 3 per cent", "[scene][implicit][long]") {
     struct Case {
         int layers;
         Real nu;

@@ -86,7 +86,7 @@ struct ElasticBody {
                 .frame_bound = elements.frame_bound};
     }
 
-    /// Computes element forces. Viscous strain relaxes for `h`, the time since the last evaluation [s]. Returns the
+    /// Computes element forces. Springs relax for `h`, the time since the last evaluation [s]. Returns the
     /// dissipated energy [J].
     Real compute_elements(Executor& executor, Real h = 0) {
         return compute_element_forces(executor, inputs(), position, velocity, h, elements.rotation,

@@ -63,8 +63,8 @@ public:
     MaterialHandle add_material(const MaterialSettings& material);
     BodyHandle add_body(const Mesh& mesh, const BodySettings& body);
     /// Adds a rigid sphere. Contacts and queries use the exact sphere. Its nodes, faces and tetrahedra are for output
-    /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid. The sphere cannot
-    /// be attached or become another kind of body.
+    /// only (mesh::sphere_picture), and the first node is the centre. `body.dynamics` must be rigid or automatic, and
+    /// the sphere is rigid. It cannot be attached or become another kind of body.
     BodyHandle add_body(const Sphere& sphere, const BodySettings& body);
     /// Adds a rigid capsule. The rules for a sphere apply, see add_body() above. The axis is z of the capsule's frame,
     /// and the first two nodes are the ends of the axis (mesh::capsule_picture). `capsule.length` must be > 0.
@@ -199,19 +199,20 @@ public:
     /// it becomes explicit or implicit again, its rest shape is still that of its mesh. A body that becomes explicit
     /// starts with fully relaxed viscous stress, as if it had been in its shape for a long time. Throws SceneError for
     /// `automatic`; for a body that is attached, has a joint, or is a sphere, capsule or cylinder; for a body with
-    /// self-contact that is to become rigid or implicit; and for a body with inverted tetrahedra that is to become
-    /// rigid.
+    /// self-contact that is to become rigid or implicit; for a body with a set loss factor that is to become implicit;
+    /// and for a body with inverted tetrahedra that is to become rigid.
     void set_dynamics(BodyHandle body, BodyDynamics dynamics);
     /// Puts a body back into its rest shape, without velocity, at the pose of its BodySettings or at the given pose of
-    /// its mesh. The body keeps no memory: viscous strain, sleep, and the stored impulses of its contacts and joints
-    /// are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even if it
-    /// was frozen in it. Settings::start_overlaps applies to new overlaps.
+    /// its mesh. The body keeps no memory: strains of its losses, sleep, and the stored impulses of its contacts and
+    /// joints are reset. Attached nodes are held at their new positions; loads stay. A rigid body keeps its shape, even
+    /// if it was frozen in it. Settings::start_overlaps applies to new overlaps.
     void reset(BodyHandle body);
     void reset(BodyHandle body, const Pose& pose);
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
-    /// Continues from the state of `saved`, which must be a clone() of this world. Handles stay valid. Threads and
-    /// callbacks of this world stay.
+    /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
+    /// stay valid; handles of objects that were added later must no longer be used. Threads and callbacks of this world
+    /// stay. Whether forces are measured is taken from `saved`.
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);

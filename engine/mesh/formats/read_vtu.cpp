@@ -52,7 +52,8 @@ private:
                 pieces_.push_back({tag});
             } else if (tag.name == "DataArray" && tag.opens) {
                 take_array(tag, section);
-            } else if (tag.name != "DataArray" && tag.name != "Array") {
+            } else if (tag.name == "Points" || tag.name == "Cells" || tag.name == "CellData" ||
+                       tag.name == "PointData" || tag.name == "FieldData") {
                 section = tag.opens && !tag.closes ? std::string(tag.name) : std::string();
             }
         }

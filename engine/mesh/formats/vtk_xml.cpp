@@ -263,7 +263,9 @@ XmlTag next_tag(FileReader& reader) {
         begin = place_of("<", place_of(end, begin, reader) + end.size(), reader);
     }
     reader.go_to(begin);
-    const std::size_t end = place_of(">", begin, reader);
+    // A quoted value may contain the character that ends a tag.
+    std::size_t end = place_of(">", begin, reader);
+    while (std::ranges::count(bytes.substr(begin, end - begin), '"') % 2 != 0) end = place_of(">", end + 1, reader);
     std::string_view inner = bytes.substr(begin + 1, end - begin - 1);
     XmlTag tag;
     tag.place = begin;

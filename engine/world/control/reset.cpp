@@ -35,7 +35,8 @@ void forget_impulses(WorldState& world, std::size_t body) {
     }
 }
 
-/// Makes the viscous strain of the elements of a body zero. `turn`: rotation of the body since it was added.
+/// Makes the strains of the springs of a body zero, and sets its frames. `turn`: rotation of the body since it was
+/// added.
 void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     ElementBlockTable& elements = model.elements;
     const Range blocks = model.bodies.blocks[body];

@@ -96,9 +96,14 @@ bool sets_losses(const Model& model, Index material, std::span<const Index> tetr
     return tetrahedron_material.empty() ? sets(material) : std::ranges::any_of(tetrahedron_material, sets);
 }
 
-void refuse_losses(const std::string& object) {
-    refuse(object, "loss_factor", "a material of an implicit body that sets a loss factor above 0",
-           "no loss_factor, because implicit bodies have no such losses; remove it, or make the body explicit");
+void refuse_losses(const std::string& body) {
+    Complaint{.file = {},
+              .object = body.empty() ? "body" : "body '" + body + "'",
+              .field = "loss_factor",
+              .found = "a material of an implicit body that sets a loss factor above 0",
+              .expected = "no loss_factor, because implicit bodies have no such losses",
+              .hint = "remove it from the material, or make the body explicit"}
+        .raise();
 }
 
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,

@@ -72,8 +72,8 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
 /// True if a material of a body sets a loss factor above 0. `tetrahedron_material`: material of each tetrahedron; empty
 /// if all have `material`.
 bool sets_losses(const Model& model, Index material, std::span<const Index> tetrahedron_material);
-/// Throws SceneError: `object` is an implicit body with a loss factor.
-[[noreturn]] void refuse_losses(const std::string& object);
+/// Throws SceneError: the body with this name is implicit and has a loss factor.
+[[noreturn]] void refuse_losses(const std::string& body);
 
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
 /// `estimate`. If the costs depend on elements of which no results are stored, computes these and writes them to

@@ -303,6 +303,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         if (forces.on()) forces.begin_call(model, step_before, world.scratch);
     } else {
         drift(0);
+        world.query_trees.forget();  // a query during the steps may have fitted the trees to other positions
         note_held(held_in_surfaces(world), world, report);
         // otherwise the next call would make this update and gain its energy
         stiffened += follow_stiffening(model);
