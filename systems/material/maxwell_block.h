@@ -14,13 +14,13 @@ namespace skerry {
 
 /// Vector type of this code: two components of a strain with wide registers, else one.
 #ifdef __AVX512VL__
-typedef float KernelFloat __attribute__((vector_size(2 * sizeof(Float8))));
+inline constexpr std::size_t components_together = 2;
 #else
-using KernelFloat = Float8;
+inline constexpr std::size_t components_together = 1;
 #endif
+typedef float KernelFloat __attribute__((vector_size(components_together * sizeof(Float8))));
 typedef float KernelFloatInMemory
     __attribute__((vector_size(sizeof(KernelFloat)), aligned(alignof(Float8)), may_alias));
-inline constexpr std::size_t components_together = sizeof(KernelFloat) / sizeof(Float8);
 
 /// The six components of a symmetric matrix in the order xx, yy, zz, xy, yz, zx, for all lanes of a block.
 struct SixFloats {

@@ -136,6 +136,18 @@ TEST_CASE("a bad .vtu file is refused with the array, the field and the reason",
     refused(hit, {"compressed block", "zlib"});
 }
 
+TEST_CASE("information keys of an array hide none of the arrays that follow", "[unit]") {
+    const TemporaryFolder folder;
+    const std::string key =
+        "<InformationKey name=\"a > b\" location=\"vtkDataArray\" length=\"1\">"
+        "<Value index=\"0\">1</Value></InformationKey>";
+    const std::string array = "<DataArray type=\"Float64\" Name=\"q\" format=\"ascii\">1 2 3" + key + "</DataArray>";
+    for (const char* parent : {"<CellData>", "<Cells>"}) {
+        const std::string text = replaced(vtu_file(sample(), {}), parent, parent + array);
+        expect_sample(mesh::read(folder.write("keys.vtu", text)), true);
+    }
+}
+
 TEST_CASE("elements that are no tetrahedra are named with their kinds", "[unit]") {
     const std::string file = vtu_file(sample(), {});
     const std::size_t types = file.find("Name=\"types\"");

@@ -93,6 +93,17 @@ class ProgramRunTest(ProgramCase):
         inspected = self.skerry("inspect", self.scene, "--set", "materials.rubber.E=0.02").stdout
         self.assertIn("sags by about 49,000 times its height", inspected)
 
+    def test_a_thin_part_is_named_where_a_later_body_changed_the_order_of_bodies(self):
+        # The second body makes the first one explicit, and World::bodies() then lists the first one last.
+        def body(name, size, cells, height, **more):
+            return {"name": name, "mesh": {"box": {"size": size, "cells": cells}}, "material": "stiff",
+                    "position": [0, 0, height], **more}
+        scene = {"name": "order", "seconds": 1e-5, "materials": {"stiff": {"E": 1e9}},
+                 "bodies": [body("plate", [1, 0.2, 0.05], [20, 4, 1], 1),
+                            body("crumb", [0.01, 0.01, 0.01], [1, 1, 1], 1.5, dynamics="explicit")]}
+        warnings = json.loads(self.run_with_stats(self.write("order.json", scene)))["trust"]["warnings"]
+        self.assertTrue(any(text.startswith("body 'plate': a part 50 mm thick") for text in warnings), warnings)
+
     def test_a_position_that_keys_replace_is_a_warning(self):
         def collider(position):
             keys = [{"time": 0, "position": [0, 0, -1]}, {"time": 1, "position": [0, 0, -2]}]
