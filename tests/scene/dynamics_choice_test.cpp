@@ -65,7 +65,7 @@ TEST_CASE("implicit bodies have no losses: a set loss_factor makes automatic exp
     CHECK(world.dynamics(chosen) == BodyDynamics::explicit_elastic);
     CHECK(world.dynamics_choice(chosen).reason == DynamicsReason::losses);
 
-    const std::string refusal = "cube: loss_factor";
+    const std::string refusal = "'cube': loss_factor";
     const std::uint64_t before = world.state_hash();
     CHECK_THROWS_WITH(add(with_losses, BodyDynamics::implicit_elastic), Catch::Contains(refusal));
     CHECK_THROWS_WITH(world.set_dynamics(chosen, BodyDynamics::implicit_elastic), Catch::Contains("loss_factor"));

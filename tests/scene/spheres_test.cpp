@@ -429,8 +429,12 @@ TEST_CASE("spheres that overlap at the start are refused or moved apart", "[scen
 TEST_CASE("what a sphere cannot be is refused by name", "[scene]") {
     Spheres s(steps_of(1e-3));
     using Catch::Contains;
-    CHECK_THROWS_WITH(s.world.add_body(Sphere{radius}, {.material = s.material, .name = "soft"}),
-                      Contains("'soft'") && Contains("dynamics"));
+    CHECK_THROWS_WITH(
+        s.world.add_body(Sphere{radius},
+                         {.material = s.material, .dynamics = BodyDynamics::explicit_elastic, .name = "soft"}),
+        Contains("'soft'") && Contains("dynamics"));
+    CHECK(s.world.dynamics(s.world.add_body(Sphere{radius}, {.material = s.material, .position = {9, 0, 0}})) ==
+          BodyDynamics::rigid);
     CHECK_THROWS_WITH(
         s.world.add_body(Sphere{0}, {.material = s.material, .dynamics = BodyDynamics::rigid, .name = "none"}),
         Contains("'none'") && Contains("radius"));

@@ -275,7 +275,10 @@ TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {
     CHECK(built.world.positions(body)[0] == Vec3(0, 0, 2));
 
     using Catch::Contains;
-    CHECK_THROWS_WITH(build_scene(plan_scene(scene(sphere))), Contains("dynamics") && Contains("rigid"));
+    const Scene chosen = build_scene(plan_scene(scene(sphere)));
+    CHECK(chosen.world.dynamics(chosen.world.bodies()[0]) == BodyDynamics::rigid);
+    CHECK_THROWS_WITH(build_scene(plan_scene(scene(sphere + R"(, "dynamics": "explicit")"))),
+                      Contains("dynamics") && Contains("rigid"));
     CHECK_THROWS_WITH(plan_scene(scene(R"("dynamics": "rigid")")), Contains("mesh") && Contains("shape"));
     CHECK_THROWS_WITH(plan_scene(scene(sphere + R"(, "mesh": {"ball": {"radius": 1, "resolution": 3}})")),
                       Contains("mesh") && Contains("shape"));
