@@ -2,6 +2,7 @@
 
 #include "engine/world/node_fields.h"
 #include "engine/world/world_state.h"
+#include "jobs/parallel_for.h"
 
 namespace skerry {
 
@@ -26,8 +27,13 @@ Frame collect_frame(const World& world) {
                 .bodies = {},
                 .colliders = {},
                 .contacts = world.contacts()};
-    for (const BodyHandle body : world.bodies()) {
-        NodeFields of_nodes = node_fields(world, body);
+    const std::vector<BodyHandle> bodies = world.bodies();
+    std::vector<NodeFields> fields(bodies.size());
+    parallel_for(*WorldAccess::state_of(world).executor, bodies.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) fields[b] = node_fields(world, bodies[b]);
+    });
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const BodyHandle body = bodies[b];
         frame.bodies.push_back({.handle = body,
                                 .name = world.name(body),
                                 .position = world.positions(body),
@@ -36,8 +42,8 @@ Frame collect_frame(const World& world) {
                                 .tetrahedra = world.tetrahedra(body),
                                 .stress = world.stress(body),
                                 .strain = world.strain(body),
-                                .node_stress = std::move(of_nodes.stress),
-                                .node_strain = std::move(of_nodes.strain),
+                                .node_stress = std::move(fields[b].stress),
+                                .node_strain = std::move(fields[b].strain),
                                 .material = materials_of(world, body)});
     }
     for (const ColliderHandle collider : world.colliders())
