@@ -163,7 +163,7 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
         }
         std::vector<Vec3> velocity_next = body.velocity;
         const double elements = median_seconds(repeats, [&](int r) {
-            compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0, 0, body.elements.rotation,
+            compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0, body.elements.rotation,
                                    {.rotation = body.elements.rotation_next}, body.patch_forces());
             swap(body.elements.rotation, body.elements.rotation_next);
         });
