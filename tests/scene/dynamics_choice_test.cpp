@@ -235,7 +235,7 @@ TEST_CASE("the elements of equal bodies are tried once", "[scene]") {
     std::optional<KnownElements> trial;
     REQUIRE(choose_dynamics(model, body, first, trial) == BodyDynamics::implicit_elastic);
     REQUIRE(trial);
-    // The first body becomes implicit. It has no elements, and what the trial found is kept all the same.
+    // The first body becomes implicit and has no elements. The results of its trial are stored all the same.
     world.add_body(mesh, {.material = steel});
     REQUIRE(model.known_elements.size() == 1);
     CHECK(model.known_elements[0].rest_step == trial->rest_step);
