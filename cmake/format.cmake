@@ -3,6 +3,7 @@
 #     lint, lint_changed        clang-tidy over all sources, or over those that changed lately
 #     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
 #     check_profiling           the profiling programs compile, for syntax only
+#     check_kernels             machine code of hot kernels and peak loops: calls, accesses to the stack (GCC, x86-64)
 # This file is also the script that the targets run: it looks for the files then, so that a new one does not configure
 # the build anew.
 set(code_folders components jobs systems engine examples profiling tests)
@@ -41,3 +42,7 @@ set(run python3 ${checks}/check_syntax.py ${PROJECT_BINARY_DIR})
 add_custom_target(check_includes COMMAND ${run} --all VERBATIM)
 add_custom_target(check_includes_changed COMMAND ${run} VERBATIM)
 add_custom_target(check_profiling COMMAND ${run} --precompiled profiling VERBATIM)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+    add_custom_target(check_kernels COMMAND python3 ${checks}/check_kernels.py ${PROJECT_BINARY_DIR} VERBATIM)
+    add_dependencies(check_kernels skerry_parts)
+endif()

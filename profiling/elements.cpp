@@ -1,28 +1,28 @@
 // profile_elements: nanoseconds per tetrahedron of the elastic kernels, in cache and from memory, beside a bound given
 // by the machine.
 //
-// The bound is the larger of bytes / bandwidth and flops / flop rate, both measured in the same run on as many workers.
-// Bandwidth is that of a triad a = b + s c over a working set of the same size as the mesh, counting the line that a
-// store fetches first. The flop rate is that of separate multiplications and additions: the project compiles without
-// contraction, so a fused multiply-add is not available.
+// The bound is the larger of bytes / bandwidth and flops / flop rate, both measured in the same run on as many workers
+// and for the instruction set of the kernels (profiling/roofline). Bandwidth is that of a triad in the smallest level
+// of memory that holds the data of the mesh. The flop rate is that of separate multiplications and additions, because
+// the project compiles without contraction and so has no fused multiply-add. Set SKERRY_INSTRUCTION_SET to choose the
+// kernels.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "engine/world/kernels.h"
 #include "jobs/executor.h"
-#include "jobs/parallel_for.h"
-#include "systems/dynamics/motion/predict_velocity.h"
-#include "systems/material/lane_math.h"
+#include "profiling/measure.h"
+#include "profiling/roofline/roofline.h"
 #include "systems/material/with_law.h"
 #include "tests/support/elastic_body.h"
 
 namespace {
 
 using namespace skerry;
+using profiling::Roofline;
 
 /// Numbers of elements, of their nodes, and of slots of the patches, per tetrahedron.
 struct Density {
@@ -55,72 +55,18 @@ Cost gather_cost(const Density& of) {
 
 template <class Work>
 double median_seconds(int repeats, Work&& work) {
+    work(0);  // warms up
     std::vector<double> seconds;
-    for (int r = 0; r < repeats + 1; ++r) {
-        const auto start = std::chrono::steady_clock::now();
+    for (int r = 1; r <= repeats; ++r) {
+        const double start = profiling::wall_seconds();
         work(r);
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(profiling::wall_seconds() - start);
     }
-    seconds.erase(seconds.begin());  // the first warms up
-    std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
-    return seconds[static_cast<std::size_t>(repeats / 2)];
+    return profiling::median(seconds);
 }
-
-/// Bandwidth of a triad whose three arrays fill `bytes` [bytes/s].
-double triad_bandwidth(Executor& executor, std::size_t bytes, int repeats) {
-    const std::size_t count = bytes / (3 * sizeof(Real));
-    Column<Real> a, b, c;
-    for (auto* column : {&a, &b, &c}) column->resize(count, 1);
-    const int inner = bytes < (std::size_t{16} << 20) ? 20 : 1;
-    const double seconds = median_seconds(repeats, [&](int r) {
-        for (int i = 0; i < inner; ++i)
-            parallel_for(executor, count, 32768, [&](std::size_t begin, std::size_t end) {
-                const Real s = r + i;
-                Real* to = a.data();
-                const Real *x = b.data(), *y = c.data();
-#pragma omp simd
-                for (std::size_t k = begin; k < end; ++k) to[k] = x[k] + s * y[k];
-            });
-    });
-    return 4.0 * sizeof(Real) * static_cast<double>(count) * inner / seconds;
-}
-
-constexpr int chains = 12;  // registers of 8 reals: enough to hide the latency
-constexpr int rounds = 20000;
-
-#define SKERRY_ROUNDS                                                                                             \
-    Real8 x0 = x, x1 = x + 1, x2 = x + 2, x3 = x + 3, x4 = x + 4, x5 = x + 5, x6 = x + 6, x7 = x + 7, x8 = x + 8, \
-          x9 = x + 9, xa = -x, xb = 2 * x;                                                                        \
-    for (int i = 0; i < rounds; ++i) {                                                                            \
-        x0 = x0 * a + b, x1 = x1 * a + b, x2 = x2 * a + b, x3 = x3 * a + b, x4 = x4 * a + b, x5 = x5 * a + b;     \
-        x6 = x6 * a + b, x7 = x7 * a + b, x8 = x8 * a + b, x9 = x9 * a + b, xa = xa * a + b, xb = xb * a + b;     \
-    }                                                                                                             \
-    x = x0 + x1 + x2 + x3 + x4 + x5 + x6 + x7 + x8 + x9 + xa + xb
-
-[[gnu::noinline]] void multiply_and_add(Real8& x, const Real8& a, const Real8& b) {
-    SKERRY_ROUNDS;
-}
-/// Contracted version of multiply_and_add: the only place in the project that allows contraction.
-[[gnu::noinline, gnu::optimize("fp-contract=fast")]] void fused_multiply_add(Real8& x, const Real8& a, const Real8& b) {
-    SKERRY_ROUNDS;
-}
-#undef SKERRY_ROUNDS
-
-/// Rate of independent multiplications and additions on one worker [flops/s].
-double flop_rate(void (*work)(Real8&, const Real8&, const Real8&), int repeats) {
-    Real8 x = Real8{} + 1.0;
-    const Real8 a = Real8{} + (1 - 1e-9), b = Real8{} + 1e-9;
-    const double seconds = median_seconds(repeats, [&](int) { work(x, a, b); });
-    return 2.0 * element_lanes * chains * rounds / seconds;
-}
-
-struct Machine {
-    double triad_cached, triad_large;  // [B/s]
-    double flops, flops_fused;         // of all workers [1/s]
-};
 
 struct Row {
-    std::string mesh, element, model, pass;
+    std::string mesh, element, model, pass, level;
     double nanoseconds, bound;  // per tetrahedron [ns]
 };
 
@@ -133,17 +79,16 @@ void kick(Executor& executor, test::ElasticBody& body, std::span<Vec3> velocity_
         end.push_back(std::min(n + nodes_per_block, count));
     }
     const std::vector<Index> of_body(begin.size(), 0);
-    predict_velocity(
+    kernels().predict_velocity(
         executor,
         {begin, end, of_body, body.patches.slots_of_node.view(), body.patches.force, body.mass, body.inverse_mass},
         body.velocity, 1e-6, body.force, velocity_next);
 }
 
 /// Measures linear elements with every law, and smoothed ones with the default law.
-void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, double bandwidth, double flops,
+void measure(Executor& executor, const test::TetMesh& mesh, const std::string& name, const Roofline& roofline,
              int repeats, std::vector<Row>& rows) {
     const double count = static_cast<double>(mesh.tetrahedra.size());
-    const auto bound = [&](const Cost& cost) { return 1e9 * std::max(cost.bytes / bandwidth, cost.flops / flops); };
     const auto measure_one = [&](ElementKind element, MaterialModel model) {
         test::ElasticBody body(mesh, material_constants(model, 1e5, 0.4, 1000), Mat3::Identity(), element);
         Density density{};
@@ -163,46 +108,62 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
         }
         std::vector<Vec3> velocity_next = body.velocity;
         const double elements = median_seconds(repeats, [&](int r) {
-            compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0, body.elements.rotation,
-                                   {.rotation = body.elements.rotation_next}, body.patch_forces());
+            kernels().compute_element_forces(executor, body.inputs(), shape[r % 2], body.velocity, 0,
+                                             body.elements.rotation, {.rotation = body.elements.rotation_next},
+                                             body.patch_forces());
             swap(body.elements.rotation, body.elements.rotation_next);
         });
         const double gather = median_seconds(repeats, [&](int) { kick(executor, body, velocity_next); });
         const std::string of_element(name_of(element)), of_model(name_of(model));
-        rows.push_back(
-            {name, of_element, of_model, "elements", 1e9 * elements / count, bound(element_cost(model, density))});
-        rows.push_back({name, of_element, of_model, "gather", 1e9 * gather / count, bound(gather_cost(density))});
+        const auto add = [&](const char* pass, double seconds, const Cost& cost) {
+            const profiling::MemoryLevel& level = roofline.level_of(cost.bytes * count);
+            const double bound = std::max(cost.bytes / level.triad, cost.flops / roofline.separate_double);
+            rows.push_back({name, of_element, of_model, pass, level.name, 1e9 * seconds / count, 1e9 * bound});
+        };
+        add("elements", elements, element_cost(model, density));
+        add("gather", gather, gather_cost(density));
     };
     for (const auto& [model, model_name] : EnumNames<MaterialModel>::table) measure_one(ElementKind::linear, model);
     for (const ElementKind element : {ElementKind::edge_smoothed, ElementKind::edge_node_smoothed})
         measure_one(element, MaterialModel::stable_neo_hookean);
 }
 
-void print(const Machine& machine, const std::vector<Row>& rows, int threads) {
-    std::printf("threads %d\n", threads);
-    std::printf("triad, in cache      %8.1f GB/s\ntriad, from memory   %8.1f GB/s\n", machine.triad_cached / 1e9,
-                machine.triad_large / 1e9);
-    std::printf("multiply and add     %8.1f GF/s\nfused multiply-add   %8.1f GF/s (not used: no contraction)\n\n",
-                machine.flops / 1e9, machine.flops_fused / 1e9);
-    std::printf("%-7s %-19s %-19s %-9s %10s %10s %10s\n", "mesh", "elements", "model", "pass", "ns/tet", "bound",
-                "of bound");
+void print(const Roofline& roofline, const std::vector<Row>& rows, int threads) {
+    std::printf("instruction set %s, threads %d\n\n", kernels().instruction_set, threads);
+    std::printf("%-22s %8s %8s\n", "GF/s", "double", "single");
+    std::printf("%-22s %8.1f %8.1f\n", "multiply and add", roofline.separate_double / 1e9,
+                roofline.separate_single / 1e9);
+    std::printf("%-22s %8.1f %8.1f  (not used: no contraction)\n\n", "fused multiply-add", roofline.fused_double / 1e9,
+                roofline.fused_single / 1e9);
+    std::printf("%-22s %8s %8s\n", "GB/s", "read", "triad");
+    for (const profiling::MemoryLevel& level : roofline.levels)
+        std::printf("%-22s %8.1f %8.1f\n", level.name.c_str(), level.read / 1e9, level.triad / 1e9);
+    std::printf("\n%-7s %-19s %-19s %-9s %-7s %10s %10s %10s\n", "mesh", "elements", "model", "pass", "level", "ns/tet",
+                "bound", "of bound");
     for (const Row& row : rows)
-        std::printf("%-7s %-19s %-19s %-9s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.element.c_str(),
-                    row.model.c_str(), row.pass.c_str(), row.nanoseconds, row.bound, 100 * row.bound / row.nanoseconds);
+        std::printf("%-7s %-19s %-19s %-9s %-7s %10.2f %10.2f %9.0f%%\n", row.mesh.c_str(), row.element.c_str(),
+                    row.model.c_str(), row.pass.c_str(), row.level.c_str(), row.nanoseconds, row.bound,
+                    100 * row.bound / row.nanoseconds);
 }
 
-void write_json(const std::string& file, const Machine& machine, const std::vector<Row>& rows, int threads) {
+void write_json(const std::string& file, const Roofline& roofline, const std::vector<Row>& rows, int threads) {
     nlohmann::json json{{"threads", threads},
-                        {"triad_cached_bytes_per_second", machine.triad_cached},
-                        {"triad_large_bytes_per_second", machine.triad_large},
-                        {"flops_per_second", machine.flops},
-                        {"flops_fused_per_second", machine.flops_fused},
+                        {"instruction_set", kernels().instruction_set},
+                        {"flops_per_second", roofline.separate_double},
+                        {"flops_fused_per_second", roofline.fused_double},
+                        {"flops_single_per_second", roofline.separate_single},
+                        {"flops_single_fused_per_second", roofline.fused_single},
+                        {"levels", nlohmann::json::array()},
                         {"rows", nlohmann::json::array()}};
+    for (const profiling::MemoryLevel& level : roofline.levels)
+        json["levels"].push_back(
+            {{"level", level.name}, {"read_bytes_per_second", level.read}, {"triad_bytes_per_second", level.triad}});
     for (const Row& row : rows)
         json["rows"].push_back({{"mesh", row.mesh},
                                 {"elements", row.element},
                                 {"model", row.model},
                                 {"pass", row.pass},
+                                {"level", row.level},
                                 {"ns_per_tetrahedron", row.nanoseconds},
                                 {"bound_ns_per_tetrahedron", row.bound},
                                 {"fraction_of_bound", row.bound / row.nanoseconds}});
@@ -229,15 +190,12 @@ int main(int argc, char** argv) {
     const auto executor = make_executor(backend, threads);
     const auto mesh_of = [](Index n) { return test::jittered_box({n, n, n}, 1.0 / n, 0.1, 1); };
     const test::TetMesh cached = mesh_of(cached_cells), large = mesh_of(large_cells);
-    // The small mesh with its forces takes about 200 bytes per tetrahedron. The triad in cache covers the same size.
-    const Machine machine{.triad_cached = triad_bandwidth(*executor, 200 * cached.tetrahedra.size(), 20 * repeats),
-                          .triad_large = triad_bandwidth(*executor, std::size_t{256} << 20, repeats),
-                          .flops = threads * flop_rate(multiply_and_add, repeats),
-                          .flops_fused = threads * flop_rate(fused_multiply_add, repeats)};
+    const Roofline roofline = profiling::measure_roofline(profiling::peak_loops_for(kernels().instruction_set),
+                                                          profiling::cache_sizes(), threads, 20);
     std::vector<Row> rows;
-    measure(*executor, cached, "cached", machine.triad_cached, machine.flops, 20 * repeats, rows);
-    measure(*executor, large, "large", machine.triad_large, machine.flops, repeats, rows);
-    print(machine, rows, threads);
-    if (!json.empty()) write_json(json, machine, rows, threads);
+    measure(*executor, cached, "cached", roofline, 20 * repeats, rows);
+    measure(*executor, large, "large", roofline, repeats, rows);
+    print(roofline, rows, threads);
+    if (!json.empty()) write_json(json, roofline, rows, threads);
     return 0;
 }
