@@ -34,11 +34,14 @@ inline constexpr Real nearer_fraction = 1e-9;
 
 /// Bit mask of the candidates that may touch in this step, for candidates_at_once candidates from index `begin` on.
 inline unsigned awake_lanes(std::span<const Real> asleep_until, Index begin, Real travel_bound) {
-    static_assert(candidates_at_once == 2 * element_lanes);
+    typedef Real InMemory __attribute__((vector_size(sizeof(KernelReal)), aligned(alignof(Real)), may_alias));
+    constexpr auto lanes = static_cast<Index>(lanes_of<KernelReal>);
+    static_assert(candidates_at_once % lanes == 0);
     const Real* const until = asleep_until.data() + begin;
-    const Real8 bound = Real8{} + travel_bound, first = *reinterpret_cast<const Real8InMemory*>(until),
-                second = *reinterpret_cast<const Real8InMemory*>(until + element_lanes);
-    return bits_of(~(bound < first)) | bits_of(~(bound < second)) << element_lanes;
+    unsigned awake = 0;
+    for (Index l = 0; l < candidates_at_once; l += lanes)
+        awake |= bits_of(~(travel_bound < *reinterpret_cast<const InMemory*>(until + l))) << l;
+    return awake;
 }
 
 /// Calls test(c) for each candidate c in a range of the list of pair p that may touch in this step, in list order.

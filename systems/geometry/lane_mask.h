@@ -13,23 +13,40 @@ namespace skerry {
 /// otherwise.
 typedef std::int64_t LaneBits __attribute__((vector_size(sizeof(Real8))));
 
-/// Bitwise or of all lanes. The halves of the register are combined, because a loop over the lanes would store the
-/// register in memory.
-[[gnu::always_inline]] inline std::int64_t any_bits(const LaneBits& mask) {
-    const LaneBits four = mask | __builtin_shufflevector(mask, mask, 4, 5, 6, 7, 0, 1, 2, 3),
-                   two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5);
-    return two[0] | two[1];
-}
+/// Result of comparing two Real4.
+typedef std::int64_t HalfBits __attribute__((vector_size(sizeof(Real4))));
 
-/// Integer in which bit l is set if lane l of the mask is set. The conversion takes one instruction with AVX-512DQ.
+/// Integer in which bit l is set if lane l of the mask is set. The conversion takes one instruction with AVX.
+[[gnu::always_inline]] inline unsigned bits_of(const HalfBits& mask) {
+#if defined(__BMI2__)  // tested instead of __AVX__, which cmake/flags.cmake hides from Eigen
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<const Real4&>(mask)));
+#else
+    // The halves of the register are combined, because a loop over the lanes would store the register in memory.
+    constexpr HalfBits bit{1, 2, 4, 8};
+    const HalfBits all = mask & bit, two = all | __builtin_shufflevector(all, all, 2, 3, 0, 1);
+    return static_cast<unsigned>(two[0] | two[1]);
+#endif
+}
+/// The same for eight lanes. The conversion takes one instruction with AVX-512DQ.
 [[gnu::always_inline]] inline unsigned bits_of(const LaneBits& mask) {
 #if defined(__AVX512DQ__)
     typedef long long Signs __attribute__((vector_size(sizeof(LaneBits))));
     return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512(__builtin_convertvector(mask, Signs)));
 #else
-    constexpr LaneBits bit{1, 2, 4, 8, 16, 32, 64, 128};
-    return static_cast<unsigned>(any_bits(mask & bit));
+    const HalfBits low = __builtin_shufflevector(mask, mask, 0, 1, 2, 3),
+                   high = __builtin_shufflevector(mask, mask, 4, 5, 6, 7);
+    return bits_of(low) | bits_of(high) << 4;
 #endif
+}
+
+/// Bits of a comparison of all lanes of a block. compare(part) returns the mask of the lanes in one register. The
+/// compiler would compare vectors that are wider than a register lane by lane, so a block is compared by registers.
+template <class Compare>
+[[gnu::always_inline]] inline unsigned bits_of_parts(Compare&& compare) {
+    unsigned bits = 0;
+    for (std::size_t part = 0; part < kernel_parts; ++part)
+        bits |= bits_of(compare(part)) << part * lanes_of<KernelReal>;
+    return bits;
 }
 
 /// Calls visit(l) for each set bit l, in ascending order.

@@ -1,5 +1,7 @@
 #include "systems/collision/narrow/candidate_lanes.h"
 
+#include <utility>
+
 #include "systems/geometry/closest_lanes.h"
 
 namespace skerry {
@@ -8,12 +10,14 @@ namespace {
 
 using NodeLanes = std::array<Index, candidate_lanes>;
 
-[[gnu::always_inline]] inline LaneVec3<Real8> gather(std::span<const Vec3> of_node, const NodeLanes& node) {
-    const auto axis = [&](Index i) {
-        const auto at = [&](std::size_t l) { return of_node[static_cast<std::size_t>(node[l])][i]; };
-        return Real8{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+/// Positions of the nodes in one part of the lanes [m].
+[[gnu::always_inline]] inline LaneVec3<KernelReal> gather(std::span<const Vec3> position, const NodeLanes& node,
+                                                          std::size_t part) {
+    const auto axis = [&]<std::size_t... l>(Index i, std::index_sequence<l...>) {
+        return KernelReal{position[static_cast<std::size_t>(node[part * lanes_of<KernelReal> + l])][i]...};
     };
-    return {axis(0), axis(1), axis(2)};
+    constexpr std::make_index_sequence<lanes_of<KernelReal>> lanes;
+    return {axis(0, lanes), axis(1, lanes), axis(2, lanes)};
 }
 
 }  // namespace
@@ -37,13 +41,15 @@ CandidateNodes nodes_of(const SurfaceTables& surface, const Candidate& candidate
 
 Lanes<Real, candidate_lanes> distances(FeaturePair kind, std::span<const Vec3> position,
                                        const CandidateNodeLanes& node) {
-    const LaneVec3<Real8> a = gather(position, node[0]), b = gather(position, node[1]), c = gather(position, node[2]),
-                          d = gather(position, node[3]);
     Lanes<Real, candidate_lanes> distance;
-    if (kind == FeaturePair::edge_edge)
-        store(square_root(segment_distance_squared(a, b, c, d)), distance);
-    else
-        store(square_root(point_triangle_distance(a, b, c, d).distance_squared), distance);
+    for (std::size_t part = 0; part < kernel_parts; ++part) {
+        const LaneVec3<KernelReal> a = gather(position, node[0], part), b = gather(position, node[1], part),
+                                   c = gather(position, node[2], part), d = gather(position, node[3], part);
+        const KernelReal squared = kind == FeaturePair::edge_edge
+                                       ? segment_distance_squared(a, b, c, d)
+                                       : point_triangle_distance(a, b, c, d).distance_squared;
+        store_part(square_root(squared), distance, part);
+    }
     return distance;
 }
 

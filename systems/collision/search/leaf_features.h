@@ -15,11 +15,20 @@ namespace skerry {
 /// Coordinates of eight points: vectors of the x, y and z coordinates [m].
 using PointLanes = std::array<Lanes<Real, leaf_lanes>, 3>;
 
-[[gnu::always_inline]] inline Real8 lane_min(const Real8& a, const Real8& b) {
-    return a < b ? a : b;
-}
-[[gnu::always_inline]] inline Real8 lane_max(const Real8& a, const Real8& b) {
-    return a < b ? b : a;
+/// Least and greatest coordinates of the points in each lane.
+template <std::size_t Count>
+void find_bounds(const std::array<PointLanes, Count>& points, LeafBoxes& box) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t part = 0; part < kernel_parts; ++part) {
+            KernelReal lower = load_part<KernelReal>(points[0][i], part), upper = lower;
+            for (std::size_t k = 1; k < Count; ++k) {
+                const KernelReal at = load_part<KernelReal>(points[k][i], part);
+                lower = lower < at ? lower : at;
+                upper = upper < at ? at : upper;
+            }
+            store_part(lower, box.lower[i], part);
+            store_part(upper, box.upper[i], part);
+        }
 }
 
 /// Returns the positions of eight nodes.
@@ -44,25 +53,13 @@ struct LeafTriangleBoxes {
         const LeafNodes& nodes = inputs.leaf_nodes[static_cast<std::size_t>(leaf)];
         std::array<PointLanes, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) corner[k] = lanes_of_points(inputs.position, nodes.corner[k]);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Real8 a = load(corner[0][i]), b = load(corner[1][i]), c = load(corner[2][i]);
-            store(lane_min(lane_min(a, b), c), box.lower[i]);
-            store(lane_max(lane_max(a, b), c), box.upper[i]);
-        }
+        find_bounds(corner, box);
     }
 };
 
 /// Squared distances of eight points from a box; 0 for points inside the box [m^2].
-inline Real8 distance_squared(const PointLanes& point, const Aabb& to) {
-    const Real8 none{};
-    Real8 sum{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Real8 at = load(point[i]), above = at - to.upper[static_cast<Index>(i)],
-                    below = to.lower[static_cast<Index>(i)] - at, nearer = above > below ? above : below,
-                    gap = nearer > none ? nearer : none;
-        sum += gap * gap;
-    }
-    return sum;
+[[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const PointLanes& point, const Aabb& to) {
+    return distance_squared(point, point, to);
 }
 
 /// Number of groups of eight features that `count` features need. The last group may have unused lanes.
@@ -113,11 +110,7 @@ struct LeafEdges {
             }
             std::array<PointLanes, 2> end;
             for (std::size_t k = 0; k < 2; ++k) end[k] = lanes_of_points(inputs.position, node[k]);
-            for (std::size_t i = 0; i < 3; ++i) {
-                const Real8 a = load(end[0][i]), b = load(end[1][i]);
-                store(lane_min(a, b), box[group].lower[i]);
-                store(lane_max(a, b), box[group].upper[i]);
-            }
+            find_bounds(end, box[group]);
         }
     }
     std::size_t count() const { return static_cast<std::size_t>(list->edge_count); }

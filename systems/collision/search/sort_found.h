@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <limits>
 
+#include "components/lanes.h"
 #include "components/pair_table.h"
-#include "systems/geometry/lane_mask.h"
 
 namespace skerry {
 
 /// Up to this number of candidates, each candidate is sorted by its rank among the candidates of one kind. The rank is
 /// the number of candidates with a lower key. A pair of bodies has some hundreds of candidates. Comparing all of them
-/// with each other, eight at a time, takes less time than the mispredicted branches of a usual sort.
+/// with each other, a register at a time, takes less time than the mispredicted branches of a usual sort.
 inline constexpr std::size_t counted_at_most = 512;
 
 inline bool feature_before(const FoundCandidate& a, const FoundCandidate& b) {
@@ -33,14 +33,15 @@ inline std::int64_t order_of(const FoundCandidate& found) {
 }
 
 inline void sort_by_counting(Column<FoundCandidate>& found) {
-    constexpr std::size_t lanes = element_lanes, kinds = 4;
+    typedef std::int64_t Keys __attribute__((vector_size(sizeof(KernelReal))));  // fills a register
+    constexpr std::size_t lanes = lanes_of<KernelReal>, kinds = 4;
     std::array<std::array<std::uint16_t, counted_at_most>, kinds> row;
     std::array<std::size_t, kinds> count{};
     for (std::size_t i = 0; i < found.size(); ++i) {
         const std::size_t kind = kind_of(found[i]);
         row[kind][count[kind]++] = static_cast<std::uint16_t>(i);
     }
-    std::array<LaneBits, counted_at_most / lanes> order;
+    std::array<Keys, counted_at_most / lanes> order;
     std::array<FoundCandidate, counted_at_most> sorted;
     std::size_t first = 0;
     for (std::size_t kind = 0; kind < kinds; ++kind) {
@@ -49,8 +50,8 @@ inline void sort_by_counting(Column<FoundCandidate>& found) {
             order[i / lanes][i % lanes] =
                 i < count[kind] ? order_of(found[row[kind][i]]) : std::numeric_limits<std::int64_t>::max();
         for (std::size_t i = 0; i < count[kind]; ++i) {
-            const LaneBits own = LaneBits{} + order[i / lanes][i % lanes];
-            LaneBits less{};  // -1 for each candidate with a lower key
+            const Keys own = Keys{} + order[i / lanes][i % lanes];
+            Keys less{};  // -1 for each candidate with a lower key
             for (std::size_t b = 0; b < blocks; ++b) less += order[b] < own;
             std::int64_t rank = 0;
             for (std::size_t l = 0; l < lanes; ++l) rank -= less[l];

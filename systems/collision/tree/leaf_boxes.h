@@ -47,22 +47,29 @@ inline LeafBoxes boxes_of_triangles(const LeafNodes& nodes, Index count, std::sp
     return boxes;
 }
 
-/// Squared distances of eight boxes from one box, by lane; 0 for boxes that overlap the box [m^2].
-inline Real8 distance_squared(const LeafBoxes& boxes, const Aabb& to) {
-    const Real8 none{};
-    Real8 sum{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Real8 above = load(boxes.lower[i]) - to.upper[static_cast<Index>(i)],
-                    below = to.lower[static_cast<Index>(i)] - load(boxes.upper[i]);
-        const Real8 nearer = above > below ? above : below, gap = nearer > none ? nearer : none;
-        sum += gap * gap;
-    }
+/// Squared distances of eight ranges of coordinates from one box, by lane; 0 for those that overlap the box [m^2].
+[[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const std::array<Lanes<Real, leaf_lanes>, 3>& lower,
+                                                                 const std::array<Lanes<Real, leaf_lanes>, 3>& upper,
+                                                                 const Aabb& to) {
+    const KernelReal none{};
+    Parts<KernelReal> sum{};
+    for (std::size_t part = 0; part < kernel_parts; ++part)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const KernelReal above = load_part<KernelReal>(lower[i], part) - to.upper[static_cast<Index>(i)],
+                             below = to.lower[static_cast<Index>(i)] - load_part<KernelReal>(upper[i], part);
+            const KernelReal nearer = above > below ? above : below, gap = nearer > none ? nearer : none;
+            sum[part] += gap * gap;
+        }
     return sum;
+}
+/// Squared distances of eight boxes from one box, by lane; 0 for boxes that overlap the box [m^2].
+[[gnu::always_inline]] inline Parts<KernelReal> distance_squared(const LeafBoxes& boxes, const Aabb& to) {
+    return distance_squared(boxes.lower, boxes.upper, to);
 }
 
 /// Bit mask of the lanes whose value is below `limit`.
-inline unsigned lanes_below(const Real8& value, Real limit) {
-    return bits_of(value < Real8{} + limit);
+[[gnu::always_inline]] inline unsigned lanes_below(const Parts<KernelReal>& value, Real limit) {
+    return bits_of_parts([&](std::size_t part) { return value[part] < limit; });
 }
 
 }  // namespace skerry

@@ -59,8 +59,7 @@ TEST_CASE("eight distances of points and triangles are those of each alone", "[u
     Random random(11);
     for (int trial = 0; trial < 2000; ++trial) {
         const std::array<Points, 4> x = random_features(random);
-        const PointTriangleLanes found =
-            point_triangle_distance(loaded(x[0]), loaded(x[1]), loaded(x[2]), loaded(x[3]));
+        const auto found = point_triangle_distance(loaded(x[0]), loaded(x[1]), loaded(x[2]), loaded(x[3]));
         for (std::size_t l = 0; l < lanes; ++l) {
             const PointTriangle expected = closest_point_on_triangle(x[0][l], x[1][l], x[2][l], x[3][l]);
             const Vec3 normal = (x[2][l] - x[1][l]).cross(x[3][l] - x[1][l]);
@@ -80,8 +79,7 @@ TEST_CASE("eight distances of triangles that are not flat agree to rounding", "[
         std::array<Points, 4> x;
         for (Points& points : x)
             for (Vec3& point : points) point = random.vector();
-        const PointTriangleLanes found =
-            point_triangle_distance(loaded(x[0]), loaded(x[1]), loaded(x[2]), loaded(x[3]));
+        const auto found = point_triangle_distance(loaded(x[0]), loaded(x[1]), loaded(x[2]), loaded(x[3]));
         for (std::size_t l = 0; l < lanes; ++l)
             CHECK(std::sqrt(found.distance_squared[l]) ==
                   Approx(std::sqrt(closest_point_on_triangle(x[0][l], x[1][l], x[2][l], x[3][l]).distance_squared))

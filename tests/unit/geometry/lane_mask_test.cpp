@@ -15,7 +15,11 @@ TEST_CASE("a comparison of eight lanes gives the bit of each, in rising order", 
         }
         const Real8 none{};
         CHECK(bits_of(value > none) == pattern);
-        CHECK((any_bits(value > none) != 0) == (pattern != 0));
+        const Real4 low = __builtin_shufflevector(value, value, 0, 1, 2, 3);
+        CHECK(bits_of(low > Real4{}) == (pattern & 15U));
+        Lanes<Real, element_lanes> stored;
+        store(value, stored);
+        CHECK(bits_of_parts([&](std::size_t part) { return load_part<KernelReal>(stored, part) > 0.0; }) == pattern);
         for_each_lane(bits_of(value > none), [&](std::size_t l) { visited.push_back(l); });
         CHECK(visited == expected);
     }
