@@ -134,10 +134,12 @@ void keep_frames(WorldState& world) {
     keep_memory(*world.executor, awake, elements);
 }
 
-/// Clears the mark `unstrained` of all bodies. Must be called after contacts have pushed positions apart, because this
-/// can deform any body.
-void forget_unstrained(BodyTable& bodies) {
-    std::ranges::fill(bodies.unstrained, std::uint16_t{0});
+/// Clears the mark `unstrained` of all bodies in contact. Must be called after contacts have pushed positions apart,
+/// because this can deform these bodies without a change of their velocities.
+void forget_unstrained(const ContactTable& contacts, BodyTable& bodies) {
+    for (const Column<Index>* column : {&contacts.first_body, &contacts.second_body})
+        for (const Index body : *column)
+            if (body != no_index) bodies.unstrained[body] = 0;
 }
 
 void commit(WorldState& world) {
@@ -148,7 +150,7 @@ void commit(WorldState& world) {
     if (world.record.forces.on()) world.record.forces.add_step(world.model, world.transaction.asleep_before(), scratch);
     if (!scratch.left_out) {
         keep_frames(world);
-        if (scratch.regions.pushed) forget_unstrained(world.model.bodies);
+        if (scratch.regions.pushed) forget_unstrained(scratch.contacts, world.model.bodies);
         add_collider_travel(parameters.h, world.cache.search.memory.collider_extent, world.model.colliders);
     }
     count_step(scratch, world.record.counters);

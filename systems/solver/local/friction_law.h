@@ -65,9 +65,9 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
 }
 
 /// Euclidean projection of z onto the cone |z_t| <= mu z_n, for the error measures: P_K of docs/methods/friction.md
-/// 2.5.
+/// 2.5. Flattened, because gcc calls functions of Eigen for single operations otherwise, and vectors go through memory.
 template <class V>
-inline V project_onto_cone(const V& z, const V& normal, Real mu) {
+[[gnu::flatten]] inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
     const V tangential = z - along * normal;
     const Real length = tangential.norm();

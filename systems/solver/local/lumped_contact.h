@@ -74,7 +74,9 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
 
 /// Natural map F_i of docs/methods/errors.md 1: the impulse minus the impulse that the friction law gives for the
 /// velocity u. Uses the De Saxce form for a cone with equal coefficients, otherwise the residual of the contact step.
-inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse, const Vec4& u) {
+/// Flattened for the same reason as project_onto_cone.
+[[gnu::flatten]] inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse,
+                                         const Vec4& u) {
     const FrictionLimits mu = contact.friction;
     if (friction == Friction::cone && mu.stick == mu.slide) {
         const Vec4 tangential = u - contact.normal.dot(u) * contact.normal;
