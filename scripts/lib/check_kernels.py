@@ -14,11 +14,14 @@ import tempfile
 import sources
 
 # Limits for all functions whose demangled name contains a word, by instruction set. The four numbers are the counts of
-# KINDS; each limit is for the function with the highest count. The limits are the counts of the present code with GCC 12
-# at -O2, which this script prints. After a change that lowers a count, write the lower number here.
+# KINDS; each limit is for the function with the highest count. The limits are the counts of the present code with GCC
+# 12 in the preset dev, which this script prints. After a change that lowers a count, write the lower number here.
 KINDS = ("memory calls", "other calls", "stack accesses", "scalar comparisons")
 LIMITS = {
     "compute_run": {"x86-64": (0, 4, 2059, 99), "x86-64-v3": (0, 4, 360, 7), "x86-64-v4": (0, 7, 230, 5)},
+    "skerry::distances(": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
+    "sort_by_counting(": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
+    "BodySearch::compare_": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
 }
 # memcpy, memmove or memset.
 MEMORY_FUNCTION = re.compile(r"\bmem(cpy|move|set)\b")
