@@ -19,9 +19,9 @@ import sources
 KINDS = ("memory calls", "other calls", "stack accesses", "scalar comparisons")
 LIMITS = {
     "compute_run": {"x86-64": (0, 4, 2059, 99), "x86-64-v3": (0, 4, 360, 7), "x86-64-v4": (0, 7, 230, 5)},
-    "skerry::distances(": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
-    "sort_by_counting(": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
-    "BodySearch::compare_": {"x86-64": (0, 0, 0, 0), "x86-64-v3": (0, 0, 0, 0), "x86-64-v4": (0, 0, 0, 0)},
+    "skerry::distances(": {"x86-64": (0, 0, 468, 100), "x86-64-v3": (0, 0, 79, 0), "x86-64-v4": (0, 0, 2, 0)},
+    "sort_by_counting(": {"x86-64": (1, 0, 11, 4), "x86-64-v3": (1, 0, 3, 0), "x86-64-v4": (1, 0, 3, 0)},
+    "BodySearch::compare_": {"x86-64": (0, 5, 118, 57), "x86-64-v3": (0, 5, 24, 0), "x86-64-v4": (0, 5, 10, 0)},
 }
 # memcpy, memmove or memset.
 MEMORY_FUNCTION = re.compile(r"\bmem(cpy|move|set)\b")
@@ -80,6 +80,8 @@ def check_limits(build, commands):
     for command in commands:
         if "-o" in command and command[command.index("-o") + 1].startswith("systems/"):
             path = pathlib.Path(build) / command[command.index("-o") + 1]
+            if not path.exists():
+                sys.exit(f"{path}: object file: found none, expected a finished build")
             objects.setdefault(instruction_set_of(command), []).append(path)
     errors = 0
     for instruction_set, paths in sorted(objects.items()):

@@ -13,7 +13,7 @@ using NodeLanes = std::array<Index, candidate_lanes>;
 /// Positions of the nodes in one part of the lanes [m].
 [[gnu::always_inline]] inline LaneVec3<KernelReal> gather(std::span<const Vec3> position, const NodeLanes& node,
                                                           std::size_t part) {
-    const auto axis = [&]<std::size_t... l>(Index i, std::index_sequence<l...>) {
+    const auto axis = [&]<std::size_t... l>(Index i, std::index_sequence<l...>) __attribute__((always_inline)) {
         return KernelReal{position[static_cast<std::size_t>(node[part * lanes_of<KernelReal> + l])][i]...};
     };
     constexpr std::make_index_sequence<lanes_of<KernelReal>> lanes;
