@@ -116,7 +116,7 @@ void measure(Executor& executor, const test::TetMesh& mesh, const std::string& n
         const double gather = median_seconds(repeats, [&](int) { kick(executor, body, velocity_next); });
         const std::string of_element(name_of(element)), of_model(name_of(model));
         const auto add = [&](const char* pass, double seconds, const Cost& cost) {
-            const profiling::MemoryLevel& level = roofline.level_of(cost.bytes * count);
+            const profiling::MemoryLevel& level = level_of(roofline.levels, cost.bytes * count);
             const double bound = std::max(cost.bytes / level.triad, cost.flops / roofline.separate_double);
             rows.push_back({name, of_element, of_model, pass, level.name, 1e9 * seconds / count, 1e9 * bound});
         };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -110,22 +109,6 @@ std::size_t cache_size(int name) {
 
 CacheSizes cache_sizes() {
     return {cache_size(_SC_LEVEL1_DCACHE_SIZE), cache_size(_SC_LEVEL2_CACHE_SIZE), cache_size(_SC_LEVEL3_CACHE_SIZE)};
-}
-
-std::vector<MemoryLevel> memory_levels(const CacheSizes& sizes, int workers) {
-    std::vector<MemoryLevel> levels;
-    const auto add = [&](const char* name, double capacity) {
-        if (capacity > (levels.empty() ? 0 : levels.back().capacity)) levels.push_back({name, capacity});
-    };
-    add("L1", static_cast<double>(sizes.l1) * workers);
-    add("L2", static_cast<double>(sizes.l2) * workers);
-    add("L3", static_cast<double>(sizes.l3));
-    add("memory", std::numeric_limits<double>::infinity());
-    return levels;
-}
-
-const MemoryLevel& Roofline::level_of(double bytes) const {
-    return *std::ranges::find_if(levels, [&](const MemoryLevel& level) { return bytes <= level.capacity; });
 }
 
 Roofline measure_roofline(const PeakLoops& loops, const CacheSizes& sizes, int workers, int repeats) {
