@@ -29,10 +29,10 @@ struct Register {
 template <class Number>
 constexpr double lanes = register_bytes / sizeof(Number);
 
-// Each chain is a register in which each result waits for the one before. A multiplication and an addition take 8
-// cycles together on some processors, of which up to two are started in each cycle, so one pair a cycle needs 8 chains
-// and 1.5 pairs need 12. Four registers are left for factor, summand and temporary values.
-constexpr std::size_t chains = register_count == 32 ? 24 : 12;
+// A chain is a register in which each operation waits for the one before. A multiplication and an addition take 6 to 8
+// cycles together, and processors start one to two such pairs in a cycle, so 8 to 12 chains keep all units busy. Two
+// registers are left for factor and summand. With more chains, registers would go through memory.
+constexpr std::size_t chains = register_count == 32 ? 24 : 14;
 
 // The rounds of both loops. The source is the same; only the option of the function that contains it differs. Factor
 // and summand are arguments, because the compiler shortens a loop whose numbers it knows.

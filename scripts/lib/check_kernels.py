@@ -129,7 +129,7 @@ def check_peak_loops(commands):
     for instruction_set, of_set in sorted(options.items()):
         compiler = [commands[0][0], *of_set, "-ffp-contract=off", f"-I{sources.ROOT}"]
         macros = run(*compiler, "-x", "c++", "-dM", "-E", "/dev/null")
-        register, chains = ("zmm", 24) if "__AVX512F__" in macros else ("ymm" if "__AVX__" in macros else "xmm", 12)
+        register, chains = ("zmm", 24) if "__AVX512F__" in macros else ("ymm" if "__AVX__" in macros else "xmm", 14)
         with tempfile.TemporaryDirectory() as folder:
             run(*compiler, "-DSKERRY_LOOPS=loops", '-DSKERRY_LOOPS_FOR=""', "-o", f"{folder}/loops.o",
                 "-c", sources.ROOT / "profiling/roofline/peak_loops.cpp")
