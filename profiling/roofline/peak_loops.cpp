@@ -16,7 +16,8 @@ constexpr std::size_t register_bytes = 16, register_count = 32;
 #else
 constexpr std::size_t register_bytes = 16, register_count = 16;
 #endif
-#if defined(__FMA__) || defined(__aarch64__)
+// clang does not know the attribute of fused_rounds.
+#if !defined(__clang__) && (defined(__FMA__) || defined(__aarch64__))
 constexpr bool has_fused = true;
 #else
 constexpr bool has_fused = false;
