@@ -32,11 +32,11 @@ struct Array {
     double* data() { return lines.front().number; }
 };
 
-/// Sum over all workers of the best rate of each. `work_of(worker)` prepares the work of a worker, which is then called
-/// with a number of repeats and returns the amount of work done. All workers run at the same time.
+/// Best rate of all workers together, over the repeats. work_of() prepares the work of one worker, which is then called
+/// with a number of rounds and returns the amount of work done. All workers start each repeat at the same time.
 template <class WorkOf>
 double best_rate(int workers, int repeats, WorkOf&& work_of) {
-    std::vector<double> rate(static_cast<std::size_t>(workers));
+    std::vector<std::vector<double>> rate(static_cast<std::size_t>(workers));
     std::barrier together(workers);
     const auto run = [&](std::size_t worker) {
         auto work = work_of();
@@ -51,7 +51,7 @@ double best_rate(int workers, int repeats, WorkOf&& work_of) {
         for (int r = 0; r < repeats; ++r) {
             together.arrive_and_wait();
             const double seconds = seconds_of(rounds, amount);
-            rate[worker] = std::max(rate[worker], amount / seconds);
+            rate[worker].push_back(amount / seconds);
         }
         together.arrive_and_wait();
     };
@@ -59,9 +59,13 @@ double best_rate(int workers, int repeats, WorkOf&& work_of) {
     for (int worker = 1; worker < workers; ++worker) others.emplace_back(run, static_cast<std::size_t>(worker));
     run(0);
     others.clear();
-    double sum = 0;
-    for (const double one : rate) sum += one;
-    return sum;
+    double best = 0;
+    for (std::size_t r = 0; r < rate[0].size(); ++r) {
+        double sum = 0;
+        for (const std::vector<double>& of_worker : rate) sum += of_worker[r];
+        best = std::max(best, sum);
+    }
+    return best;
 }
 
 double flop_rate(FlopLoop loop, int workers, int repeats) {

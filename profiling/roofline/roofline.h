@@ -20,8 +20,8 @@ struct Roofline {
 /// Sizes of the caches as the operating system reports them.
 CacheSizes cache_sizes();
 
-/// Measures all rates with `workers` threads that run the same loop at the same time. Each rate is the best of
-/// `repeats`, because other programs can only make a loop slower.
+/// Measures all rates with `workers` threads that run the same loop at the same time. Each rate is the highest sum of
+/// all threads among the repeats, because other programs can only make a loop slower.
 Roofline measure_roofline(const PeakLoops& loops, const CacheSizes& sizes, int workers, int repeats);
 
 /// The loops for an instruction set. Throws std::invalid_argument if the build has none.
