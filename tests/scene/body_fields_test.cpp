@@ -1,5 +1,8 @@
 // Stress and strain of tetrahedra and nodes (docs/methods/elasticity.md 7.5).
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <latch>
 #include <thread>
 
 #include "engine/world/state/field_cache.h"
@@ -181,6 +184,29 @@ TEST_CASE("several threads that read fields of a new world get the same values",
         }
         for (const auto& own : found) CHECK(own == expected.node_stress(body));
     }
+}
+
+TEST_CASE("threads that ask for one plan at the same time share it", "[scene]") {
+    const FieldCache cache;
+    const std::vector<Index> nodes{3, 5};
+    std::atomic<int> made = 0;
+    {
+        std::latch start(4);
+        std::vector<std::jthread> threads;
+        for (int i = 0; i < 4; ++i)
+            threads.emplace_back([&] {
+                start.arrive_and_wait();
+                cache.plan(nodes, [&] {
+                    ++made;
+                    // long enough for the other threads to ask
+                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                    RecoveryPlan plan;
+                    plan.nodes = nodes;
+                    return plan;
+                });
+            });
+    }
+    CHECK(made == 1);
 }
 
 TEST_CASE("a plan is made once for each list of nodes, and the latest 64 lists are kept", "[scene]") {

@@ -1,15 +1,15 @@
 #include "engine/world/state/field_cache.h"
 
 #include <algorithm>
-#include <mutex>
 #include <vector>
 
+#include "jobs/lock.h"
 #include "systems/dynamics/recovery/recovery_plan.h"
 
 namespace skerry {
 
 struct FieldCache::Data {
-    std::mutex mutex;
+    Lock lock;
     std::shared_ptr<const OwnElements> elements;
     std::vector<std::shared_ptr<const RecoveryPlan>> plans;  // the latest last
 };
@@ -25,16 +25,16 @@ FieldCache& FieldCache::operator=(FieldCache&& other) noexcept = default;
 FieldCache::~FieldCache() = default;
 
 std::shared_ptr<const OwnElements> FieldCache::elements(const std::function<OwnElements()>& build) const {
-    const std::scoped_lock lock(data_->mutex);
+    const auto held = data_->lock.hold();
     if (!data_->elements) data_->elements = std::make_shared<const OwnElements>(build());
     return data_->elements;
 }
 
 std::shared_ptr<const RecoveryPlan> FieldCache::plan(std::span<const Index> nodes,
                                                      const std::function<RecoveryPlan()>& build) const {
-    // All probes of a body have lists of their own. The limit bounds the memory when lists change from call to call.
+    // Each probe of a body may have its own list. The limit bounds the memory if lists change from call to call.
     constexpr std::size_t most_plans = 64;
-    const std::scoped_lock lock(data_->mutex);
+    const auto held = data_->lock.hold();
     auto& plans = data_->plans;
     const auto known =
         std::ranges::find_if(plans, [&](const auto& plan) { return std::ranges::equal(plan->nodes, nodes); });

@@ -41,8 +41,8 @@ struct RecoveryPlan {
         Index face;         // row of `faces`; no_index for an inner node
     };
     std::vector<SmoothNode> smooth;
-    // By row of `smooth`, ascending: places around the node of elements with strain, and of elements that have only the
-    // volumetric part of the stress.
+    // Places of the elements around each row of `smooth`, ascending: elements with strain, and elements that have only
+    // the volumetric part of the stress.
     Ragged<Index> strained, volumetric;
 
     struct Face {
@@ -53,8 +53,8 @@ struct RecoveryPlan {
     };
     std::vector<Face> faces;
     Ragged<SurfaceTriangle> triangles;  // by face
-    // By face: rows of `corners`. The first row is that of the node of the face, the others are those of the inner
-    // nodes of the tetrahedra around it.
+    // Rows of `corners` for each face. The first row is that of the node of the face, the others are those of the
+    // inner nodes of the tetrahedra around it.
     Ragged<Index> force;
     /// Corner of an element.
     struct Corner {
@@ -70,8 +70,8 @@ struct RecoveryPlan {
     };
     std::vector<Extrapolation> extrapolations;
     Ragged<Index> donors;  // by extrapolation: rows of `smooth`
-    // By extrapolation: places around the node of elements of the material, as in `strained` and `volumetric`. They are
-    // listed only if the fit is not determined.
+    // Places of the elements of the material around the node of each extrapolation, as in `strained` and `volumetric`.
+    // They are listed only if the fit is not determined.
     Ragged<Index> strained_around, volumetric_around;
 
     /// Source of the value of a node: a row of `smooth`, or several rows of `extrapolations` if that is no_index.
