@@ -39,6 +39,7 @@ function show_summary(find, run) {
     add_wide("Not to be trusted", r.distrust, "warning");
   }
   for (const [name, value] of items) add(name, value);
+  if (r.self_crossings.length === 0) add("Self-crossings", "none found");
   for (const message of r.self_crossings) add_wide("Self-crossing", message, "warning");
   const code = document.createElement("code");
   code.textContent = r.state_hash;
