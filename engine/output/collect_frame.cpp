@@ -20,10 +20,9 @@ std::vector<Index> materials_of(const World& world, BodyHandle body) {
 }  // namespace
 
 Frame collect_frame(const World& world) {
-    const WorldReport report = world.report();
-    Frame frame{.time = report.time,
+    Frame frame{.time = world.time(),
                 .gravity = world.settings().gravity,
-                .energy = report.energy,
+                .energy = world.energy(),
                 .bodies = {},
                 .colliders = {},
                 .contacts = world.contacts()};

@@ -1,5 +1,6 @@
 // Stress, strain and stable steps of bodies, for each tetrahedron or node.
 #include <algorithm>
+#include <memory>
 #include <numeric>
 
 #include "engine/world/edit/edit_model.h"
@@ -21,27 +22,30 @@ namespace {
 using OfElements = void (*)(const ElementInputs&, Range, std::span<const Vec3>, std::span<Mat3>);
 using OfTetrahedra = std::vector<Mat3> (*)(const ElementCover&, std::span<const Mat3>, std::size_t);
 
-/// The elements of an implicit body and the positions of its nodes in the mesh frame. No table contains the elements of
-/// implicit bodies, so they are built here. Stress is computed in the mesh frame and then rotated to world axes.
+/// The elements of an implicit body and the positions of its nodes in the mesh frame. Stress is computed in the mesh
+/// frame and then rotated to world axes.
 struct ImplicitElements {
+    std::shared_ptr<const OwnElements> own;
     std::vector<Vec3> shape;
-    ElementBlockTable table;
-    ElementNodeTable nodes;
-    Range blocks;
-    Ragged<Index> covered;
 
     ImplicitElements(const Model& model, std::size_t row) {
-        const ElementList list = model.elements_of_implicit(row);
         const std::span<const Vec3> rest = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
                                     displacement =
                                         rows_of(model.implicit_nodes.displacement, model.bodies.implicit[row]);
+        own = model.body_records[row].fields.elements([&] {
+            const ElementList list = model.elements_of_implicit(row);
+            OwnElements elements;
+            const AppendedElements appended = append_elements(list, rest, 0, 0, elements.table, elements.nodes);
+            elements.blocks = appended.blocks;
+            elements.covered = covered_tetrahedra(list, appended.element);
+            return elements;
+        });
         shape.assign(rest.begin(), rest.end());
         for (std::size_t n = 0; n < shape.size(); ++n) shape[n] += displacement[n];
-        const AppendedElements appended = append_elements(list, rest, 0, 0, table, nodes);
-        blocks = appended.blocks;
-        covered = covered_tetrahedra(list, appended.element);
     }
-    ElementInputs inputs(const Model& model) const { return ElementInputs::bind({}, table, nodes, model.materials); }
+    ElementInputs inputs(const Model& model) const {
+        return ElementInputs::bind({}, own->table, own->nodes, model.materials);
+    }
 };
 
 void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values) {
@@ -54,9 +58,10 @@ void turn_with_frame(const Model& model, std::size_t row, std::span<Mat3> values
 /// axes.
 auto with_elements(const Model& model, std::size_t row, auto&& visit) {
     if (model.dynamics_of(row) == BodyDynamics::implicit_elastic) {
-        const ImplicitElements own(model, row);
-        return visit(own.inputs(model), own.blocks, ElementCover{own.table.part, own.covered.view()},
-                     std::span<const Vec3>(own.shape), Index{0},
+        const ImplicitElements implicit(model, row);
+        const OwnElements& own = *implicit.own;
+        return visit(implicit.inputs(model), own.blocks, ElementCover{own.table.part, own.covered.view()},
+                     std::span<const Vec3>(implicit.shape), Index{0},
                      [&](std::span<Mat3> values) { turn_with_frame(model, row, values); });
     }
     const Range blocks = model.bodies.blocks[row];
@@ -81,24 +86,32 @@ std::vector<Mat3> tetrahedron_field(const Model& model, std::size_t row, OfEleme
 /// Stress and strain at the given nodes of a body.
 NodeFields fields_of_nodes(const Model& model, std::size_t row, std::span<const Index> nodes) {
     const BodyRecord& record = model.body_records[row];
-    return with_elements(model, row,
-                         [&](const ElementInputs& elements, Range blocks, const ElementCover& cover,
-                             std::span<const Vec3> position, Index first_node, auto&& turn) {
-                             NodeFields fields = recover_nodes(
-                                 {.elements = elements,
-                                  .blocks = blocks,
-                                  .cover = cover,
-                                  .tetrahedra = record.tetrahedra,
-                                  .surface = record.surface,
-                                  .material_of_tetrahedra = record.tetrahedron_material,
-                                  .rest_position = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
-                                  .position = position,
-                                  .first_node = first_node},
-                                 nodes, kernels().element_fields);
-                             turn(fields.stress);
-                             turn(fields.strain);
-                             return fields;
-                         });
+    return with_elements(
+        model, row,
+        [&](const ElementInputs& elements, Range blocks, const ElementCover& cover, std::span<const Vec3> position,
+            Index first_node, auto&& turn) {
+            // Rigid bodies have no elements.
+            if (blocks.size() == 0)
+                return NodeFields{std::vector<Mat3>(nodes.size(), Mat3::Zero()),
+                                  std::vector<Mat3>(nodes.size(), Mat3::Zero())};
+            const auto plan = record.fields.plan(nodes, [&] {
+                return plan_recovery({.elements = elements,
+                                      .blocks = blocks,
+                                      .cover = cover,
+                                      .tetrahedra = record.tetrahedra,
+                                      .surface = record.surface,
+                                      .material_of_tetrahedra = record.tetrahedron_material,
+                                      .rest_position = rows_of(model.nodes.rest_position, model.bodies.nodes[row]),
+                                      .first_node = first_node},
+                                     nodes);
+            });
+            NodeFields fields = recover_nodes(
+                *plan, {.elements = elements, .blocks = blocks, .position = position, .first_node = first_node},
+                kernels().element_fields);
+            turn(fields.stress);
+            turn(fields.strain);
+            return fields;
+        });
 }
 
 NodeFields fields_of_nodes(const Model& model, std::size_t row) {

@@ -1,6 +1,12 @@
 // Stress and strain of tetrahedra and nodes (docs/methods/elasticity.md 7.5).
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <latch>
+#include <thread>
 
+#include "engine/world/state/field_cache.h"
+#include "systems/dynamics/recovery/recovery_plan.h"
 #include "tests/support/element_kinds.h"
 #include "tests/support/jittered_box.h"
 #include "tests/support/material_models.h"
@@ -114,6 +120,119 @@ TEST_CASE("stress of some nodes is to the bit what it is of all of them", "[scen
     CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{0, last + 1}),
                       Catch::Contains("node indices of the body"));
     CHECK_THROWS_WITH(world.node_stress(body, std::vector<Index>{-1}), Catch::Contains("node indices of the body"));
+}
+
+TEST_CASE("fields of a body are those of a clone, which has no plans, after every change of the world", "[scene]") {
+    Settings settings;
+    settings.gravity = Vec3::Zero();
+    World world(settings);
+    const auto [nodes, tetrahedra] = test::jittered_box({4, 3, 3}, 0.1, 0.25, 1);
+    const auto material = world.add_material(test::lossless({.young_modulus = 1e5}));
+    const auto other = world.add_body({nodes, tetrahedra},
+                                      {.material = material, .position = {2, 0, 0}, .element = ElementKind::linear});
+    const auto body = world.add_body({nodes, tetrahedra}, {.material = material, .rotation = {0.3, -0.2, 0.5}});
+    const std::vector<Index> some{7, 0, 31};
+    const auto check = [&](std::string_view change) {
+        INFO(change);
+        std::vector<Vec3> velocity;
+        for (const Vec3& x : nodes) velocity.push_back(x.squaredNorm() * Vec3(1, -2, 0.5));
+        if (world.dynamics(body) != BodyDynamics::rigid) world.set_velocities(body, velocity);
+        REQUIRE(world.advance(5e-3).ok());
+        const World clone = world.clone();
+        CHECK(world.node_stress(body) == clone.node_stress(body));
+        CHECK(world.node_strain(body) == clone.node_strain(body));
+        CHECK(world.node_stress(body, some) == clone.node_stress(body, some));
+        CHECK(world.stress(body) == clone.stress(body));
+        CHECK((world.node_stress(body)[31].norm() > 0) == (world.dynamics(body) != BodyDynamics::rigid));
+    };
+    check("nothing");
+    const World before = world.clone();
+    world.remove(other);
+    check("removal of another body");
+    world.set_material(material, test::lossless({.young_modulus = 3e5, .poisson_ratio = 0.1}));
+    check("another stiffness");
+    world.reset(body, {.position = {0, 0, 1}, .rotation = {1, 0, 0}});
+    check("reset");
+    for (const BodyDynamics dynamics :
+         {BodyDynamics::implicit_elastic, BodyDynamics::explicit_elastic, BodyDynamics::rigid,
+          BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
+        world.set_dynamics(body, dynamics);
+        check(name_of(dynamics));
+    }
+    world.reset(before);
+    check("reset to a clone");
+}
+
+TEST_CASE("several threads that read fields of a new world get the same values", "[scene]") {
+    World world;
+    const auto [nodes, tetrahedra] = test::jittered_box({4, 3, 3}, 0.1, 0.25, 1);
+    const auto material = world.add_material({});
+    std::vector<BodyHandle> bodies;
+    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic})
+        bodies.push_back(world.add_body({nodes, tetrahedra}, {.material = material,
+                                                              .position = {0, 0, Real(bodies.size())},
+                                                              .velocity = {0, 0, 1},
+                                                              .dynamics = dynamics}));
+    REQUIRE(world.advance(0.01).ok());
+    const World expected = world.clone();
+    for (const BodyHandle body : bodies) {
+        std::array<std::vector<Mat3>, 4> found;
+        {
+            std::vector<std::jthread> threads;
+            for (auto& own : found)
+                threads.emplace_back([&own, &world = std::as_const(world), body] { own = world.node_stress(body); });
+        }
+        for (const auto& own : found) CHECK(own == expected.node_stress(body));
+    }
+}
+
+TEST_CASE("threads that ask for one plan at the same time share it", "[scene]") {
+    const FieldCache cache;
+    const std::vector<Index> nodes{3, 5};
+    std::atomic<int> made = 0;
+    {
+        std::latch start(4);
+        std::vector<std::jthread> threads;
+        for (int i = 0; i < 4; ++i)
+            threads.emplace_back([&] {
+                start.arrive_and_wait();
+                cache.plan(nodes, [&] {
+                    ++made;
+                    // long enough for the other threads to ask
+                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                    RecoveryPlan plan;
+                    plan.nodes = nodes;
+                    return plan;
+                });
+            });
+    }
+    CHECK(made == 1);
+}
+
+TEST_CASE("a plan is made once for each list of nodes, and the latest 64 lists are kept", "[scene]") {
+    const FieldCache cache;
+    int made = 0;
+    const auto ask = [&](const FieldCache& from, Index node) {
+        const std::vector<Index> nodes{node, 5};
+        const auto found = from.plan(nodes, [&] {
+            ++made;
+            RecoveryPlan plan;
+            plan.nodes = nodes;
+            return plan;
+        });
+        CHECK(found->nodes == nodes);
+    };
+    for (int pass = 0; pass < 2; ++pass)
+        for (Index node = 0; node < 64; ++node) ask(cache, node);
+    CHECK(made == 64);
+    ask(cache, 64);  // drops the list of node 0, which was used least recently
+    ask(cache, 1);
+    CHECK(made == 65);
+    ask(cache, 0);
+    CHECK(made == 66);
+    const FieldCache copy = cache;
+    ask(copy, 1);
+    CHECK(made == 67);
 }
 
 }  // namespace skerry::test::body_fields_test

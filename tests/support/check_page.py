@@ -168,6 +168,10 @@ POINTING = """
 """
 
 KEYS = """
+    const summary = find("summary").textContent;
+    check(summary.includes("'</dd> ring' crosses itself in up to 3 places"), "a self-crossing in " + summary);
+    check(/cannot be trusted/.test(summary), "a reason not to trust the run in " + summary);
+    check(/not to be trusted/.test(find("subtitle").textContent), "a mark in " + find("subtitle").textContent);
     key("?");
     check(!find("help").hidden && /record the run as a video/.test(find("help").textContent), "? lists the keys");
     key("Escape");

@@ -64,6 +64,8 @@ Json json_of_report(const PageSummary& summary) {
     for (const StageReport& stage : report.stages)
         stages.push_back(
             {{"name", stage.name}, {"seconds", stage.seconds}, {"runs", stage.runs}, {"skipped", stage.skipped}});
+    Json self_crossings = Json::array();
+    for (const SelfCrossing& crossing : report.self_crossings) self_crossings.push_back(crossing.message());
     char hash[17];
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(summary.state_hash));
     return {{"time", report.time},
@@ -85,6 +87,8 @@ Json json_of_report(const PageSummary& summary) {
             {"unconverged", report.unconverged},
             {"worst_error", report.worst_error},
             {"max_penetration", report.max_penetration},
+            {"self_crossings", self_crossings},
+            {"distrust", report.distrust()},
             {"state_hash", hash},
             {"stages", stages}};
 }

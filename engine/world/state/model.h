@@ -27,6 +27,7 @@
 #include "components/rigid_body_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
+#include "engine/world/state/field_cache.h"
 #include "engine/world/state/known_elements.h"
 #include "engine/world/tuning.h"
 #include "skerry/mesh.h"
@@ -62,6 +63,7 @@ struct BodyRecord {
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};
     DynamicsEstimate choice{};  // estimate behind the choice, for a body added as `automatic`
+    FieldCache fields{};
 };
 
 struct ColliderRecord {

@@ -25,9 +25,9 @@ void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<co
     const Real8 one = Real8{} + 1.0;
     LaneQuaternion<Real8> q{one, {}, {}, {}};
     for (std::size_t b = static_cast<std::size_t>(blocks.begin); b < static_cast<std::size_t>(blocks.end); ++b) {
-        const MaterialConstants material = elements.material_of(b);
         const bool asked = asks(b);
-        if (!asked && !has_frame(material.model)) continue;
+        if (!asked && !has_frame(elements.constants[static_cast<std::size_t>(elements.material[b])].model)) continue;
+        const MaterialConstants material = elements.material_of(b);
         const Real8 volume = load(elements.volume[b]);
         const LaneMat3<Real8> F = deformation_gradient(elements.nodes_of(b), position);
         if (has_frame(material.model)) extract_rotation(F, volume, q);

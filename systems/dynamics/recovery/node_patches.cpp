@@ -46,7 +46,7 @@ NodePatches::NodePatches(std::span<const std::array<Index, 4>> tetrahedra,
           surface.size(), [&](std::size_t t) { return std::span(surface[t]); }, rest.size())),
       kind_(rest.size()) {}
 
-NodeKind NodePatches::kind(Index node) const {
+NodeKind NodePatches::kind(Index node) {
     std::optional<NodeKind>& known = kind_[static_cast<std::size_t>(node)];
     if (!known) known = find_kind(node);
     return *known;
@@ -58,7 +58,7 @@ NodeKind NodePatches::find_kind(Index node) const {
     for (const Index t : around)
         if (material_of(t) != material_of(around.front())) return NodeKind::other;
     if (triangles(node).empty()) return NodeKind::inner;
-    return surface_around(surface_, triangles(node), rest_, rest_).smooth ? NodeKind::face : NodeKind::other;
+    return surface_around(surface_, triangles(node), rest_).smooth ? NodeKind::face : NodeKind::other;
 }
 
 std::vector<Index> NodePatches::materials_around(Index node) const {
@@ -80,7 +80,7 @@ Real NodePatches::node_volume(Index node, Index material) const {
     return sum;
 }
 
-std::vector<Index> NodePatches::inner_neighbours(Index node) const {
+std::vector<Index> NodePatches::inner_neighbours(Index node) {
     std::vector<Index> inner;
     for (const Index t : tetrahedra(node))
         for (const Index n : tetrahedra_[static_cast<std::size_t>(t)])
@@ -89,7 +89,7 @@ std::vector<Index> NodePatches::inner_neighbours(Index node) const {
     return inner;
 }
 
-std::vector<Index> NodePatches::donors(Index node, Index material) const {
+std::vector<Index> NodePatches::donors(Index node, Index material) {
     std::vector<Index> nodes{node};
     for (int ring = 0; ring < 2; ++ring) {
         std::vector<Index> wider;

@@ -18,44 +18,42 @@ namespace skerry {
 /// `other`: at an edge or corner of the surface, or between two materials.
 enum class NodeKind : std::uint8_t { inner, face, other };
 
-/// Tetrahedra and surface triangles around the nodes of a body. All lists are ascending.
+/// Tetrahedra and surface triangles around the nodes of a body. All lists are ascending. Kinds of nodes are found when
+/// they are first needed.
 class NodePatches {
 public:
     /// `material`: by tetrahedron; empty if all tetrahedra have one material. `rest`: positions of the nodes [m].
     NodePatches(std::span<const std::array<Index, 4>> tetrahedra, std::span<const std::array<Index, 3>> surface,
                 std::span<const Index> material, std::span<const Vec3> rest);
 
-    NodeKind kind(Index node) const;
+    NodeKind kind(Index node);
     std::span<const Index> tetrahedra(Index node) const { return tetrahedra_of_[static_cast<std::size_t>(node)]; }
     std::span<const Index> triangles(Index node) const { return triangles_of_[static_cast<std::size_t>(node)]; }
     Real volume(Index tetrahedron) const {
         return six_volumes(tetrahedra_[static_cast<std::size_t>(tetrahedron)], rest_) / 6;
     }
-    bool has_material(Index tetrahedron, Index material) const { return material_of(tetrahedron) == material; }
+    Index material_of(Index tetrahedron) const {
+        return material_.empty() ? 0 : material_[static_cast<std::size_t>(tetrahedron)];
+    }
     /// Materials of the tetrahedra around a node, each once.
     std::vector<Index> materials_around(Index node) const;
-    /// Material of the first tetrahedron around a node.
-    Index material(Index node) const { return material_of(tetrahedra(node).front()); }
     /// A quarter of the volume of the tetrahedra around a node, all or those of one material [m^3].
     Real node_volume(Index node) const;
     Real node_volume(Index node, Index material) const;
     /// Nodes of the kind `inner` in the tetrahedra around a node.
-    std::vector<Index> inner_neighbours(Index node) const;
+    std::vector<Index> inner_neighbours(Index node);
     /// Nodes other than the kind `other` within two rings of tetrahedra of one material around a node.
-    std::vector<Index> donors(Index node, Index material) const;
+    std::vector<Index> donors(Index node, Index material);
 
 private:
-    Index material_of(Index tetrahedron) const {
-        return material_.empty() ? 0 : material_[static_cast<std::size_t>(tetrahedron)];
-    }
     NodeKind find_kind(Index node) const;
 
     std::span<const std::array<Index, 4>> tetrahedra_;
     std::span<const std::array<Index, 3>> surface_;
     std::span<const Index> material_;
     std::span<const Vec3> rest_;
-    Ragged<Index> tetrahedra_of_, triangles_of_;         // by node
-    mutable std::vector<std::optional<NodeKind>> kind_;  // by node; empty until first used
+    Ragged<Index> tetrahedra_of_, triangles_of_;  // by node
+    std::vector<std::optional<NodeKind>> kind_;   // by node; empty until first used
 };
 
 /// Elements that cover at least one of the chosen tetrahedra. A place is the index of a lane in the listed blocks.

@@ -1,27 +1,21 @@
 // Recovers stress and strain at the nodes of a body from the values of its elements (docs/methods/elasticity.md 7.9).
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "components/types.h"
 #include "systems/dynamics/elements/element_energy.h"
-#include "systems/dynamics/elements/recover_fields.h"
+#include "systems/dynamics/recovery/recovery_plan.h"
 
 namespace skerry {
 
-/// A body and its elements. Nodes and tetrahedra are numbered within the body.
-struct RecoveryInputs {
+/// Present state of the body of a plan, whose elements are those for which the plan was made.
+struct RecoveryState {
     ElementInputs elements;
-    Range blocks;  // element blocks of the body
-    ElementCover cover;
-    std::span<const std::array<Index, 4>> tetrahedra;
-    std::span<const std::array<Index, 3>> surface;  // outward triangles
-    std::span<const Index> material_of_tetrahedra;  // empty if all tetrahedra have one material
-    std::span<const Vec3> rest_position;            // nodes of the body, in the frame of the mesh [m]
-    std::span<const Vec3> position;                 // nodes that `elements` refers to [m]
-    Index first_node;                               // first node of the body in `position`
+    Range blocks;                    // element blocks of the body
+    std::span<const Vec3> position;  // nodes that `elements` refers to [m]
+    Index first_node;                // first node of the body in `position`
 };
 
 struct NodeFields {
@@ -29,7 +23,7 @@ struct NodeFields {
     std::vector<Mat3> strain;  // Green strain
 };
 
-/// Recovers the fields at the given nodes, in the given order. Only elements near these nodes are evaluated, and the
+/// Recovers the fields at the nodes of the plan, in their order. Only elements near these nodes are evaluated, and the
 /// values do not depend on the choice of nodes. `of_blocks`: the kernel element_fields.
 ///
 /// - Inner node: least-squares fit of the stresses of the elements around the node, quadratic for smoothed elements and
@@ -38,6 +32,6 @@ struct NodeFields {
 /// - Node at an edge, a corner or an interface of materials: linear fit of the values at the nodes within two rings of
 ///   tetrahedra, for each material. The results of the materials are averaged by volume.
 /// - Where the nodes around do not suffice for these fits: mean over the elements around the node.
-NodeFields recover_nodes(const RecoveryInputs& body, std::span<const Index> nodes, decltype(&element_fields) of_blocks);
+NodeFields recover_nodes(const RecoveryPlan& plan, const RecoveryState& body, decltype(&element_fields) of_blocks);
 
 }  // namespace skerry

@@ -10,23 +10,39 @@
 
 namespace skerry {
 
-/// Surface triangles around a node, summed up.
-struct SurfaceAround {
-    Vec3 area = Vec3::Zero();       // outward area vector of the node: a third of that of its triangles [m^2]
-    Vec3 normal = Vec3::Zero();     // unit vector along `area`
-    Mat3 projector = Mat3::Zero();  // sum of area times the projector onto the plane of the triangle [m^2]
-    Mat3 stretch = Mat3::Zero();    // sum of area times the deformation gradient within the plane [m^2]
-    bool smooth = false;            // false if the surface has an edge or corner at the node
+/// Surface triangle. Its deformation gradient within its plane, times its area, is
+/// weight ((x1 - x0) along_first^T + (x2 - x0) along_second^T).
+struct SurfaceTriangle {
+    std::array<Index, 3> node;
+    Vec3 along_first, along_second;  // [m^3]
+    Real weight;                     // [1/m^2]
 };
 
-/// `triangles`: the triangles around the node. `rest`, `position`: positions of all nodes at rest and now [m].
+/// Returns nullopt for a triangle without area. `rest`: rest positions of all nodes [m].
+std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node, std::span<const Vec3> rest);
+
+/// Surface triangles around a node at rest, summed up.
+struct SurfaceAround {
+    Vec3 area = Vec3::Zero();    // outward area vector of the node: a third of that of its triangles [m^2]
+    Vec3 normal = Vec3::Zero();  // unit vector along `area`
+    bool smooth = false;         // false if the surface has an edge or corner at the node
+    // The gradients F of least squared difference from the gradients within the triangles are
+    // stretch inverse + b across^T, where b = F N is free. Both are computed for a smooth surface only.
+    Mat3 inverse = Mat3::Zero();  // inverse of the summed projectors onto the planes of the triangles [1/m^2]
+    Vec3 across = Vec3::Zero();
+};
+
+/// `triangles`: the triangles around the node. `rest`: rest positions of all nodes [m].
 SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std::span<const Index> triangles,
-                             std::span<const Vec3> rest, std::span<const Vec3> position);
+                             std::span<const Vec3> rest);
+
+/// Sum of area times the deformation gradient within the plane of each triangle [m^2]. `position`: of all nodes [m].
+Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const Vec3> position);
 
 /// Deformation gradient F with P(F) N = traction for the outward normal N, and otherwise the least squared difference
-/// from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `start`: first guess of F N.
-/// The surface must be smooth. Empty if Newton's method finds no F.
+/// from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`: of surface_stretch.
+/// `start`: first guess of F N. The surface must be smooth. Empty if Newton's method finds no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
-                                     const Vec3& traction, const Vec3& start);
+                                     const Mat3& stretch, const Vec3& traction, const Vec3& start);
 
 }  // namespace skerry

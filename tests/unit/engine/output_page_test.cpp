@@ -285,6 +285,19 @@ TEST_CASE("names cannot end the script that they stand in, and come back as they
     CHECK(run["report"]["stages"].size() == 9);
 }
 
+TEST_CASE("the report of a page has the self-crossings, and the reason not to trust the run", "[unit][output]") {
+    const PageSummary summary = OutputSample(1, 0, 2).summary();
+    const nlohmann::json report = run_of(page_of({}, summary))["report"];
+    CHECK(report["self_crossings"] ==
+          nlohmann::json{"the surface of body '</dd> ring' crosses itself in up to 3 places, first found at 0.4 s and "
+                         "last at 1 s"});
+    CHECK(report["distrust"] == summary.report.distrust());
+    CHECK(!summary.report.distrust().empty());
+    const nlohmann::json trusted = run_of(page_of({}, {}))["report"];
+    CHECK(trusted["self_crossings"] == nlohmann::json::array());
+    CHECK(trusted["distrust"] == "");
+}
+
 TEST_CASE("the same run gives the same page, and numbers that are not finite become null", "[unit][output]") {
     const auto make = [] {
         OutputSample sample(2, 1, 5);

@@ -224,6 +224,8 @@ PageSummary OutputSample::summary() const {
     report.mean_iterations = 4.2;
     report.solved = 15012;
     report.max_penetration = 2.1e-5;
+    report.self_crossings = {{.name = "</dd> ring", .first_time = 0.4, .last_time = 1, .most_places = 3}};
+    report.crossed = 2;
     return summary;
 }
 

@@ -1,4 +1,4 @@
-// What the run was, in words and numbers.
+// Summary of the run, in words and numbers.
 "use strict";
 
 const count_of = (number, one, more) => text.count(number) + " " + (number === 1 ? one : more);
@@ -18,7 +18,7 @@ function show_summary(find, run) {
     ["Largest region", count_of(r.largest_region, "contact", "contacts")],
     ["Iterations per solved region", text.average(r.mean_iterations)],
     ["Regions not converged", text.count(r.unconverged) + " of " + text.count(r.solved)],
-    ["Largest penetration", text.si(r.max_penetration, "m")],
+    ["Largest penetration", r.max_penetration > 0 ? text.si(r.max_penetration, "m") : "none in any contact"],
   ];
   const add = (name, value) => {
     const item = document.createElement("div"), term = document.createElement("dt"),
@@ -29,8 +29,19 @@ function show_summary(find, run) {
     find("summary").append(item);
     return item;
   };
+  const add_wide = (name, value, ...look) => add(name, value).classList.add("wide", ...look);
+  if (r.distrust) {
+    const mark = document.createElement("b");
+    mark.className = "warning";
+    mark.textContent = " \u2013 not to be trusted";
+    mark.title = r.distrust;
+    find("subtitle").append(mark);
+    add_wide("Not to be trusted", r.distrust, "warning");
+  }
   for (const [name, value] of items) add(name, value);
+  if (r.self_crossings.length === 0) add("Self-crossings", "none found");
+  for (const message of r.self_crossings) add_wide("Self-crossing", message, "warning");
   const code = document.createElement("code");
   code.textContent = r.state_hash;
-  add("State hash", code).className = "wide";
+  add_wide("State hash", code);
 }

@@ -1,0 +1,47 @@
+// Data from which the stress and strain of a body are computed, kept from one call to the next.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "components/element_table.h"
+#include "components/ragged.h"
+#include "components/range.h"
+#include "components/types.h"
+
+namespace skerry {
+
+struct RecoveryPlan;
+
+/// Elements of an implicit body, and the tetrahedra that they cover. No table of the world contains them.
+struct OwnElements {
+    ElementBlockTable table;
+    ElementNodeTable nodes;
+    Range blocks;
+    Ragged<Index> covered;
+};
+
+/// Keeps the data that depend only on the mesh, the materials of the tetrahedra and the element kind of one body. These
+/// do not change during the life of a BodyRecord. Data are built when they are first needed, and several threads may
+/// ask for them. A copy of a cache is empty.
+class FieldCache {
+public:
+    FieldCache();
+    FieldCache(const FieldCache& other);
+    FieldCache(FieldCache&& other) noexcept;
+    FieldCache& operator=(const FieldCache& other);
+    FieldCache& operator=(FieldCache&& other) noexcept;
+    ~FieldCache();
+
+    std::shared_ptr<const OwnElements> elements(const std::function<OwnElements()>& build) const;
+    /// Plan for some nodes of the body. Plans for the latest 64 lists of nodes are kept.
+    std::shared_ptr<const RecoveryPlan> plan(std::span<const Index> nodes,
+                                             const std::function<RecoveryPlan()>& build) const;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+}  // namespace skerry
