@@ -93,12 +93,12 @@ TEST_CASE("a saved world of which any bit was turned over is refused", "[unit][l
 TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
     const SavedFile saved(full_world());
     CHECK_THAT(saved.refusal(text("")), Contains("found a file of another kind, expected a world that Skerry saved"));
-    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 23"));
+    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 24"));
     CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
     std::vector<char> other = saved.bytes;
-    const std::string name = "version 23";
+    const std::string name = "version 24";
     *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 8) = '1';
-    CHECK_THAT(saved.refusal(other), Contains("found version 13, expected version 23"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 13, expected version 24"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
     // HDF5 with a valid head but with unexpected contents
