@@ -170,9 +170,25 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
     CHECK_THAT(refusal("/pairs/candidates/first", 0, huge), Contains("/pairs/candidates: first: found"));
     CHECK_THAT(refusal("/last_step/contacts/stencil/node", 0, huge),
                Contains("/last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("/records/body_built", 0, none), Contains("/records: body_built"));
     CHECK_THAT(refusal("/settings/method", 0, 5), Contains("/settings: method: found 255"));
     CHECK_THAT(refusal("/settings/tolerance", 0, 1), Contains("tolerance: found -1"));
     CHECK_THAT(refusal("/materials/young_modulus", 0, 2), Contains("state_hash"));
+}
+
+TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {
+    const SavedFile saved(full_world());
+    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    std::vector<char> bytes = saved.bytes;
+    constexpr unsigned zero = 0, self = 2;
+    for (const auto& [path, choice] :
+         {std::pair("/pairs/first", zero), {"/pairs/second", zero}, {"/pairs/kind", self}}) {
+        const auto set = std::ranges::find(sets, std::string(path), &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        change_value(*set, 0, choice, bytes);
+    }
+    renew_head(bytes);
+    CHECK_THAT(saved.refusal(bytes), Contains("/pairs: self_origin: found 0 rows"));
 }
 
 TEST_CASE("a world that cannot be written stays, and so does the file before it", "[unit]") {
