@@ -208,7 +208,10 @@ TEST_CASE("a world can go back to a clone, bit by bit, with its handles and call
 TEST_CASE("handles of objects that were added after a clone become stale when the world goes back to it", "[scene]") {
     Cube cube(deformable, 0);
     const Mesh mesh = mesh::box({0.1, 0.1, 0.1}, {1, 1, 1});
-    const auto add = [&] { return cube.world.add_body(mesh, {.position = {3, 0, 0}, .dynamics = rigid}); };
+    const auto material = cube.world.add_material({});
+    const auto add = [&] {
+        return cube.world.add_body(mesh, {.material = material, .position = {3, 0, 0}, .dynamics = rigid});
+    };
     const BodyHandle removed = add();
     cube.world.remove(removed);
     const World saved = cube.world.clone();
