@@ -1,6 +1,7 @@
 // Handles with generations. The user refers to a body, a collider, a material or an attachment by its handle.
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <span>
@@ -42,7 +43,7 @@ public:
         while (slot < row_.size() && row_[slot] != no_index) ++slot;
         if (slot == row_.size()) {
             row_.push_back(no_index);
-            generation_.push_back(0);
+            generation_.push_back(least_generation_);
         }
         row_[slot] = row;
         lowest_free_ = slot + 1;
@@ -62,9 +63,20 @@ public:
     /// Releases a live handle. The row stays in the table, but no handle refers to it.
     void forget(HandleType handle) {
         row_[handle.slot] = no_index;
-        ++generation_[handle.slot];
+        generation_[handle.slot] = std::max(generation_[handle.slot] + 1, least_generation_);
         if (handle.slot < lowest_free_) lowest_free_ = handle.slot;
     }
+
+    /// Ensures that later handles differ from all handles that `other` has issued. `other`: map of the same world.
+    void differ_from(const HandleMap& other) {
+        least_generation_ = std::max(least_generation_, other.least_generation_);
+        for (std::size_t slot = 0; slot < other.row_.size(); ++slot)
+            least_generation_ = std::max(least_generation_, other.generation_[slot] + (other.row_[slot] != no_index));
+        for (std::size_t slot = 0; slot < row_.size(); ++slot)
+            if (row_[slot] == no_index) generation_[slot] = std::max(generation_[slot], least_generation_);
+    }
+    /// Least generation of the handles that will be issued. It is saved with the columns.
+    std::uint32_t& least_generation() { return least_generation_; }
 
     /// Updates all handles after rows without a handle were removed. `row_now`: new index of each old row, no_index for
     /// removed rows.
@@ -86,6 +98,7 @@ private:
     Column<Index> row_;  // by slot: row of the handle; no_index for a free slot
     Column<std::uint32_t> generation_;
     std::uint32_t world_ = 0;
+    std::uint32_t least_generation_ = 0;
     std::uint32_t lowest_free_ = 0;  // all slots below this one are in use
 };
 

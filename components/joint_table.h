@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "components/column.h"
 #include "components/column_role.h"
@@ -29,6 +30,16 @@ struct JointMotorRow {
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
 
+/// Key of a motor. Between two keys the target changes linearly.
+struct JointMotorKey {
+    Real time = 0;    // [s]
+    Real target = 0;  // target speed [rad/s or m/s] or target position [rad or m]
+
+    bool operator==(const JointMotorKey&) const = default;
+};
+template <>
+struct NumbersOf<JointMotorKey> : Reals<2> {};
+
 /// Frame of a joint, fixed to a body or to the world. The third axis of the frame is the axis of the joint.
 struct JointFrame {
     Vec3 point = Vec3::Zero();  // origin of the joint frame, in the frame of the mesh or of the world [m]
@@ -49,17 +60,30 @@ struct JointTable {
     Column<JointFrame> first_frame, second_frame;
     Column<Real> lower, upper;  // limits of the joint coordinate; infinite: no limit
     Column<JointMotorRow> motor;
+    Column<Range> motor_keys;  // range of rows in the column `key`; empty: the target of the motor is constant
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
-    Column<Real> step;  // time for which the impulses acted in the last step; 0 before the first step [s]
+    // Part of the impulse along the axis that the motor exerted in the last step [N s or N m s].
+    Column<Real> motor_impulse;
+    Column<Real> step;          // time for which the impulses acted in the last step; 0 before the first step [s]
+    Column<JointMotorKey> key;  // keys of all motors
 
     std::size_t size() const { return slot.size(); }
 
-    /// Visits all columns. This is the only list of the columns.
-    void for_each_column(auto&& visit) {
+    std::span<const JointMotorKey> keys_of(std::size_t joint) const { return rows_of(key.span(), motor_keys[joint]); }
+    void erase_keys_of(std::size_t joint) {
+        const Range gone = motor_keys[joint];
+        key.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+        motor_keys[joint] = {};
+        for (Range& other : motor_keys)
+            if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+    }
+
+    /// Visits the columns with one row per joint. The column `key` is visited by for_each_column only.
+    void for_each_row_column(auto&& visit) {
         visit("slot", slot, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);
         visit("drive", drive, ColumnRole::state);
@@ -71,10 +95,16 @@ struct JointTable {
         visit("lower", lower, ColumnRole::state);
         visit("upper", upper, ColumnRole::state);
         visit("motor", motor, ColumnRole::state);
+        visit("motor_keys", motor_keys, ColumnRole::link);
         visit("coordinate", coordinate, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("moment", moment, ColumnRole::state);
+        visit("motor_impulse", motor_impulse, ColumnRole::state);
         visit("step", step, ColumnRole::state);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        visit("key", key, ColumnRole::state);
     }
 };
 
@@ -85,7 +115,8 @@ struct AxisLaw {
     Real coordinate = 0;
     Real lower = -infinity, upper = infinity;
     JointDrive drive = JointDrive::none;
-    JointMotorRow motor{};
+    JointMotorRow motor{};  // the target is that of this step; for a moving target position: at the start of the step
+    Real target_rate = 0;   // speed of the target position [rad/s or m/s]
     Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
 };
 
@@ -107,7 +138,8 @@ struct JointBlockTable {
     Column<JointBlock> block;
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
-    Column<Real> coordinate;  // by row of JointTable: joint coordinate at the start of the step
+    Column<Real> motor_impulse;  // by block: part of the impulse along the axis that the motor exerts [N s or N m s]
+    Column<Real> coordinate;     // by row of JointTable: joint coordinate at the start of the step
     // by row of JointTable: 1 if the bodies are asleep; the joint then stores its last impulse unchanged
     Column<std::uint8_t> resting;
 
@@ -115,6 +147,7 @@ struct JointBlockTable {
     void for_each_column(auto&& visit) {
         visit("block", block, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
+        visit("motor_impulse", motor_impulse, ColumnRole::scratch);
         visit("coordinate", coordinate, ColumnRole::scratch);
         visit("resting", resting, ColumnRole::scratch);
     }

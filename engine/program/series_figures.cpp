@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
     std::vector<std::pair<std::string, double>> figures;
     const double none = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t c = 1; c < recorder_.columns().size(); ++c) {  // column 0 is the time
-        double least = none, most = none, end = none, sum = 0;
+        double least = none, most = none, end = none, sum = 0, seconds = 0;
         std::size_t count = 0;
         for (std::size_t row = 0; row < recorder_.row_count(); ++row) {
             const double value = recorder_.row(row)[c];
@@ -38,7 +38,9 @@ std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
             least = count > 0 ? std::min(least, value) : value;
             most = count > 0 ? std::max(most, value) : value;
             end = value;
-            sum += value;
+            const double since = row > 0 ? recorder_.row(row)[0] - recorder_.row(row - 1)[0] : 0;
+            sum += since * value;
+            seconds += since;
             ++count;
         }
         const SeriesColumn& column = recorder_.columns()[c];
@@ -48,7 +50,7 @@ std::vector<std::pair<std::string, double>> SeriesFigures::all() const {
         add("_end", end);
         add("_min", least);
         add("_max", most);
-        add("_mean", count > 0 ? sum / static_cast<double>(count) : none);
+        add("_mean", seconds > 0 ? sum / seconds : end);
     }
     return figures;
 }

@@ -4,18 +4,31 @@
 namespace skerry {
 
 template <>
+const Rule<MotorKey>& rule_of<MotorKey>() {
+    static const auto rule =
+        Rule<MotorKey>("motor_key", "A target of a motor. Between two keys the target changes linearly.")
+            .key("time", &MotorKey::time, {.meaning = "time of the key", .unit = "s", .required = true})
+            .key("speed", &MotorKey::speed, {.meaning = "target speed", .unit = "rad/s or m/s"})
+            .key("position", &MotorKey::position, {.meaning = "target position", .unit = "rad or m"})
+            .exactly_one({"speed", "position"});
+    return rule;
+}
+
+template <>
 const Rule<MotorEntry>& rule_of<MotorEntry>() {
     static const auto rule =
         Rule<MotorEntry>("motor", "A motor on the axis of a hinge (rad, N m) or slider (m, N).")
             .key("speed", &MotorEntry::speed, {.meaning = "target speed", .unit = "rad/s or m/s"})
             .key("position", &MotorEntry::position, {.meaning = "target position", .unit = "rad or m"})
+            .key("keys", &MotorEntry::keys,
+                 {.meaning = "targets at ascending times, either all of them speeds or all of them positions"})
             .key("strength", &MotorEntry::strength,
                  {.meaning = "largest torque or force", .unit = "N m or N", .limits = at_least(0), .required = true})
             .key("fastest", &MotorEntry::fastest,
                  {.meaning = "largest speed of the motion to the target position; default: unlimited",
                   .unit = "rad/s or m/s",
                   .limits = above(0)})
-            .exactly_one({"speed", "position"});
+            .exactly_one({"speed", "position", "keys"});
     return rule;
 }
 
@@ -26,6 +39,7 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
         Rule<Entry>("joint",
                     "A joint between two rigid bodies, or between a rigid body and the world. The joint connects them "
                     "in their poses at the start.")
+            .key("name", &Entry::name, {.meaning = "name for probes; default: joint_NUMBER"})
             .key("kind", &Entry::kind,
                  {.meaning = "free motion of the joint. ball: all rotations; hinge: rotation about the axis; slider: "
                              "translation along the axis; fixed: none",

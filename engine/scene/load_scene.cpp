@@ -14,6 +14,7 @@ struct Built {
     const std::vector<BodyHandle>& bodies;
     const std::vector<ColliderHandle>& colliders;
     const std::vector<std::vector<AttachmentHandle>>& pins;  // indexed by body
+    const std::vector<JointHandle>& joints;
 };
 
 decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& built) {
@@ -42,6 +43,8 @@ decltype(RecordedProbe::what) recorded(const SeriesPlan& series, const Built& bu
             }
         case ProbeQuantity::reaction:
             return ReactionProbe{built.pins[*series.body][series.pin]};
+        case ProbeQuantity::joint:
+            return JointProbe{built.joints[series.joint]};
         case ProbeQuantity::stress:
             return StressProbe{body, series.nodes};
         case ProbeQuantity::volume:
@@ -111,16 +114,17 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
             called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
+    std::vector<JointHandle> joints;
     for (const JointPlan& joint : plan.joints) {
         JointSettings settings = joint.settings;
         settings.first = bodies[joint.first];
         if (joint.second) settings.second = bodies[*joint.second];
-        called_at(joint.place, [&] { return Joints(world).add(settings); });
+        joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)
-        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins})});
+        scene.recorded.push_back({series.name, recorded(series, {world, bodies, colliders, pins, joints})});
     return scene;
 }
 

@@ -1,4 +1,4 @@
-// Resolves the names of bodies and colliders that probes use.
+// Resolves the names of bodies, colliders and joints that probes use.
 #include <algorithm>
 
 #include "engine/scene/scene_plan.h"
@@ -50,6 +50,16 @@ std::size_t find_collider(const ScenePlan& plan, const std::string& name, const 
     return collider;
 }
 
+std::size_t find_joint(const ScenePlan& plan, const std::string& name, const Place& place) {
+    const auto found = std::ranges::find(plan.joints, name, &JointPlan::name);
+    if (found != plan.joints.end()) return static_cast<std::size_t>(found - plan.joints.begin());
+    std::vector<std::string> names;
+    for (const JointPlan& joint : plan.joints) names.push_back(joint.name);
+    place.refuse(in_quotes(name),
+                 names.empty() ? "the name of a joint, but the scene has no joints" : "the name of a joint",
+                 nearest_hint(name, names));
+}
+
 /// Finds the body or collider that exerts a force. Throws SceneError if a body and a collider both have the name.
 void find_partner(const ProbeEntry& entry, const ScenePlan& plan, SeriesPlan& series) {
     const Place place = entry.place.key("by");
@@ -93,6 +103,7 @@ void plan_series(const ProbeEntry& entry, ScenePlan& plan) {
     series.place = entry.place;
     if (entry.body) series.body = find_body(plan, *entry.body, entry.place.key("body"));
     if (entry.collider) series.collider = find_collider(plan, *entry.collider, entry.place.key("collider"));
+    if (entry.joint) series.joint = find_joint(plan, *entry.joint, entry.place.key("joint"));
     if (entry.by) find_partner(entry, plan, series);
     if (series.body) {
         const BodyPlan& body = plan.bodies[*series.body];

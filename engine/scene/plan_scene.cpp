@@ -227,8 +227,12 @@ std::size_t find_joined_body(const ScenePlan& plan, const std::string& wanted, c
     return static_cast<std::size_t>(found - names.begin());
 }
 
-JointPlan plan_joint(const JointEntry& entry, const ScenePlan& plan) {
+JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
     JointPlan joint;
+    joint.name = entry.name.empty() ? "joint_" + std::to_string(number) : entry.name;
+    if (std::ranges::find(plan.joints, joint.name, &JointPlan::name) != plan.joints.end())
+        entry.place.key("name").refuse(in_quotes(joint.name) + ", which is already the name of a joint",
+                                       "a different name for every joint");
     joint.first = find_joined_body(plan, entry.first, entry.place.key("first"));
     if (entry.second) joint.second = find_joined_body(plan, *entry.second, entry.place.key("second"));
     joint.settings.kind = entry.kind;
@@ -238,8 +242,10 @@ JointPlan plan_joint(const JointEntry& entry, const ScenePlan& plan) {
     joint.settings.upper = entry.upper;
     joint.settings.bodies_touch = entry.bodies_touch;
     if (entry.motor) {
-        joint.settings.motor = JointMotor{
-            .speed = entry.motor->speed, .position = entry.motor->position, .strength = entry.motor->strength};
+        joint.settings.motor = JointMotor{.speed = entry.motor->speed,
+                                          .position = entry.motor->position,
+                                          .strength = entry.motor->strength,
+                                          .keys = entry.motor->keys};
         if (entry.motor->fastest) joint.settings.motor->fastest = *entry.motor->fastest;
     }
     joint.place = entry.place;
@@ -278,7 +284,7 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
         plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
-    for (const JointEntry& joint : scene.joints) plan.joints.push_back(plan_joint(joint, plan));
+    for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;
 }

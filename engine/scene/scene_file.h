@@ -124,10 +124,12 @@ struct ColliderEntry {
 };
 struct MotorEntry {
     std::optional<Real> speed, position;
+    std::vector<MotorKey> keys;
     Real strength = 0;
     std::optional<Real> fastest;
 };
 struct JointEntry {
+    std::string name;
     JointKind kind = JointKind::ball;
     std::string first;
     std::optional<std::string> second;
@@ -139,14 +141,15 @@ struct JointEntry {
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
-enum class ProbeQuantity { contacts, motion, force, reaction, energy, stress, volume };
+enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
 template <>
 struct EnumNames<ProbeQuantity> {
-    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 7> table{{
+    static constexpr std::array<std::pair<ProbeQuantity, std::string_view>, 8> table{{
         {ProbeQuantity::contacts, "contacts"},
         {ProbeQuantity::motion, "motion"},
         {ProbeQuantity::force, "force"},
         {ProbeQuantity::reaction, "reaction"},
+        {ProbeQuantity::joint, "joint"},
         {ProbeQuantity::energy, "energy"},
         {ProbeQuantity::stress, "stress"},
         {ProbeQuantity::volume, "volume"},
@@ -155,7 +158,7 @@ struct EnumNames<ProbeQuantity> {
 struct ProbeEntry {
     std::string name;
     ProbeQuantity quantity = ProbeQuantity::contacts;
-    std::optional<std::string> body, collider, by;
+    std::optional<std::string> body, collider, by, joint;
     std::optional<RestBox> box;
     std::optional<Vec3> point;  // position in the mesh's own frame [m]
     std::optional<int> pin;

@@ -36,6 +36,7 @@ struct ColliderPlan {
     Place place;
 };
 struct JointPlan {
+    std::string name;
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
@@ -52,6 +53,7 @@ struct SeriesPlan {
     ProbeQuantity quantity = ProbeQuantity::energy;
     std::optional<std::size_t> body{}, by_body{};          // indices in ScenePlan::bodies
     std::optional<std::size_t> collider{}, by_collider{};  // indices in ScenePlan::colliders
+    std::size_t joint = 0;                                 // index in ScenePlan::joints
     std::size_t pin = 0;                                   // index in BodyPlan::pins
     std::vector<Index> nodes;                              // local numbers
     std::optional<MaterialPoint> point;
@@ -85,7 +87,7 @@ ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& ov
 /// contains no node.
 std::vector<Index> nodes_inside(const Mesh& mesh, const RestBox& box, const Place& place);
 
-/// Adds a probe to a plan that already contains all bodies and colliders.
+/// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);
 
 /// Builds the world from a plan. Throws SceneError for errors that only the world detects, such as inverted tetrahedra.

@@ -51,6 +51,8 @@ const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
 template <>
+const Rule<MotorKey>& rule_of<MotorKey>();
+template <>
 const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
 const Rule<JointEntry>& rule_of<JointEntry>();

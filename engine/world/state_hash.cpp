@@ -147,11 +147,21 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
 
 /// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies are hashed, not their rows.
 void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
-    add_state(hash, table, single(row));
+    add_row_state(hash, table, row);
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;
         const auto* const bodies = reinterpret_cast<const Index*>(table.column(info).read());
         hash.add(slot_of(model.bodies.slot, bodies[row]));
+    }
+}
+
+/// Hashes the keys of the motors of all joints. Motors without keys add nothing.
+void add_motor_keys(Hash& hash, const JointTable& joints) {
+    for (const std::size_t row : in_slot_order(joints.slot)) {
+        const std::span<const JointMotorKey> keys = joints.keys_of(row);
+        if (keys.empty()) continue;
+        add_rows(hash, keys);
+        hash.add(keys.size());
     }
 }
 
@@ -233,6 +243,7 @@ std::uint64_t state_hash(WorldState& world) {
     model.for_each_joining([&](const char*, auto& table, auto&) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
     });
+    add_motor_keys(hash, model.joints);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "skerry/joint.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::joint_motors_test {
@@ -22,10 +23,11 @@ struct Arm {
     BodyHandle body;
     JointHandle hinge;
 
-    Arm(const JointSettings& joint, const Vec3& gravity = {0, 0, -standard_gravity}, Real h = 1.0 / 500)
+    Arm(const JointSettings& joint, const Vec3& gravity = {0, 0, -standard_gravity}, bool sleep = false)
         : world([&] {
               Settings settings = accurate(gravity, 1e-10);
-              settings.step_size = h;
+              settings.step_size = 1.0 / 500;
+              settings.sleep = sleep;
               return settings;
           }()) {
         body = world.add_body(
@@ -125,6 +127,113 @@ TEST_CASE("a setter that gives what was there changes no bit", "[scene][joints]"
     CHECK_THROWS_AS(Joints(arm.world).set_motor(arm.hinge, JointMotor{}), SceneError);
     CHECK_THROWS_AS(Joints(arm.world).set_limits(arm.hinge, 1, 0), SceneError);
     CHECK(arm.world.state_hash() == before);
+}
+
+TEST_CASE("a motor with keys follows positions that change linearly between them, and stays before and after them",
+          "[scene][joints]") {
+    const JointMotor motor{
+        .strength = 50,
+        .keys = {{.time = 0.2, .position = 0.1}, {.time = 0.7, .position = 0.6}, {.time = 1, .position = 0}}};
+    Arm arm({.motor = motor});
+    REQUIRE(arm.world.advance(0.2).ok());
+    CHECK(arm.state().coordinate == Approx(0.1).epsilon(1e-6));
+    REQUIRE(arm.world.advance(0.3).ok());
+    // The motor accelerates within its strength and then follows the keys without lag.
+    CHECK(arm.state().coordinate == Approx(0.4).epsilon(1e-6));
+    CHECK(arm.state().speed == Approx(1).epsilon(1e-6));
+    REQUIRE(arm.world.advance(0.4).ok());
+    CHECK(arm.state().coordinate == Approx(0.2).epsilon(1e-6));
+    CHECK(arm.state().speed == Approx(-2).epsilon(1e-6));
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(std::abs(arm.state().coordinate) < 1e-6);
+    CHECK(std::abs(arm.state().speed) < 1e-6);
+    CHECK(arm.world.report().energy_error_share < 1e-3);
+}
+
+TEST_CASE("a motor with keys of speed has the mean speed of the keys in each step", "[scene][joints]") {
+    Arm arm({.motor = JointMotor{.strength = 50, .keys = {{.time = 0.5, .speed = 1}, {.time = 1, .speed = -1}}}},
+            Vec3::Zero());
+    REQUIRE(arm.world.advance(0.5).ok());
+    CHECK(arm.state().speed == Approx(1).epsilon(1e-6));
+    const Real before = arm.state().coordinate;
+    REQUIRE(arm.world.advance(0.5).ok());
+    CHECK(arm.state().coordinate == Approx(before).margin(1e-6));
+    REQUIRE(arm.world.advance(0.5).ok());
+    CHECK(arm.state().speed == Approx(-1).epsilon(1e-6));
+    CHECK(arm.state().coordinate == Approx(before - 0.5).margin(1e-6));
+}
+
+TEST_CASE("keys of motors are refused by number, and change nothing", "[scene][joints]") {
+    Arm arm({.motor = JointMotor{.strength = 1, .keys = {{.time = 0, .speed = 1}, {.time = 1, .speed = 2}}}});
+    REQUIRE(arm.world.advance(0.1).ok());
+    const std::uint64_t before = arm.world.state_hash();
+    const auto refused = [&](const JointMotor& motor, const std::string& message) {
+        CHECK_THROWS_WITH(Joints(arm.world).set_motor(arm.hinge, motor), Catch::Contains(message));
+        CHECK(arm.world.state_hash() == before);
+    };
+    refused({.keys = {{.time = 1, .speed = 1}, {.time = 1, .speed = 2}}},
+            "motor.keys[1].time: found 1.000000 s, expected a time after that of the key before, 1.000000 s");
+    refused({.keys = {{.time = 0, .speed = 1}, {.time = 1, .position = 2}}}, "motor.keys[1]: found a position");
+    refused({.keys = {{.time = 0}}}, "motor.keys[0]: found neither a speed nor a position");
+    refused({.speed = 1, .keys = {{.time = 0, .speed = 1}}}, "motor: found more than one of speed, position and keys");
+    refused({.keys = {{.time = infinity, .speed = 1}}}, "motor.keys[0].time");
+    refused({.keys = {{.time = 0, .position = infinity}}}, "motor.keys[0].position");
+}
+
+TEST_CASE("keys of motors are part of the state: equal keys change no bit, others do, and copies and files have them",
+          "[scene][joints][determinism]") {
+    const auto keys = [](Real last) {
+        return JointMotor{.strength = 50, .keys = {{.time = 0, .position = 0}, {.time = 0.4, .position = last}}};
+    };
+    Arm arm({.motor = keys(1)});
+    const JointHandle other =
+        Joints(arm.world).add({.kind = JointKind::hinge,
+                               .first = arm.body,
+                               .axis = {0, -1, 0},
+                               .motor = JointMotor{.strength = 0, .keys = {{.time = 7, .speed = 3}}}});
+    REQUIRE(arm.world.advance(0.1).ok());
+    const std::uint64_t before = arm.world.state_hash();
+    Joints(arm.world).set_motor(arm.hinge, keys(1));
+    CHECK(arm.world.state_hash() == before);
+    Joints(arm.world).set_motor(arm.hinge, keys(2));
+    CHECK(arm.world.state_hash() != before);
+    Joints(arm.world).set_motor(arm.hinge, keys(1));
+    CHECK(arm.world.state_hash() == before);
+
+    const TemporaryFolder folder;
+    arm.world.save(folder.path() / "arm.skerry");
+    World loaded = World::load(folder.path() / "arm.skerry"), copy = arm.world.clone();
+    CHECK(loaded.state_hash() == before);
+    for (World* world : {&arm.world, &loaded, &copy}) {
+        Joints(*world).remove(other);  // the keys of the motor that stays are found again
+        REQUIRE(world->advance(0.5).ok());
+    }
+    CHECK(arm.state().coordinate == Approx(1).epsilon(1e-6));
+    CHECK(loaded.state_hash() == arm.world.state_hash());
+    CHECK(copy.state_hash() == arm.world.state_hash());
+}
+
+TEST_CASE("a body at rest wakes when the target of its motor changes", "[scene][joints]") {
+    const JointMotor motor{.strength = 50, .keys = {{.time = 3, .position = 0}, {.time = 3.5, .position = 0.5}}};
+    Arm arm({.motor = motor}, {0, 0, -standard_gravity}, true);
+    REQUIRE(arm.world.advance(2.9).ok());
+    CHECK(arm.world.report().asleep == 1);
+    REQUIRE(arm.world.advance(1).ok());
+    CHECK(arm.state().coordinate == Approx(0.5).epsilon(1e-6));
+}
+
+TEST_CASE("the moment along the axis is that of the motor and that of the limit", "[scene][joints]") {
+    // The motor presses the arm against its upper limit with all its strength. The limit carries the rest.
+    Arm arm({.upper = 0.3, .motor = JointMotor{.speed = 1, .strength = 3 * weight_moment}});
+    REQUIRE(arm.world.advance(2).ok());
+    const Real carried = weight_moment * std::cos(0.3);
+    CHECK(arm.state().motor == Approx(3 * weight_moment).epsilon(1e-6));
+    CHECK(arm.state().limit == Approx(carried - 3 * weight_moment).epsilon(1e-6));
+    Joints(arm.world).set_limits(arm.hinge, {}, {});
+    Joints(arm.world).set_motor(arm.hinge, JointMotor{.position = 0.3, .strength = 3 * weight_moment});
+    REQUIRE(arm.world.advance(0.5).ok());
+    CHECK(arm.state().motor == Approx(carried).epsilon(1e-6));
+    CHECK(arm.state().limit == 0);
 }
 
 }  // namespace skerry::test::joint_motors_test

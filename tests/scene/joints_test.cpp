@@ -225,7 +225,7 @@ TEST_CASE("a world with joints goes on bit by bit when it is cloned or saved, on
                   .point = {2, 0, 0},
                   .axis = {0, 1, 0},
                   .upper = 5.0,
-                  .motor = JointMotor{.speed = 2, .strength = 0.1}});
+                  .motor = JointMotor{.strength = 0.1, .keys = {{.time = 0, .speed = 2}, {.time = 1.2, .speed = -1}}}});
         return bars;
     };
     Bars one = make(1);

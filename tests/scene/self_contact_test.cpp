@@ -108,12 +108,21 @@ TEST_CASE("a body that crosses itself is reported with the times, and no other b
     CHECK(found[0].most_places == found[0].last_places);
     CHECK_THAT(found[0].message(), Catch::Contains("the surface of body 'ring' crosses itself in up to ") &&
                                        Catch::Contains("last at 0.7 s"));
+    World copy = world.clone();
     ring.open();
     found = world.report().self_crossings;
     REQUIRE(found.size() == 1);
     CHECK(found[0].last_places == 0);
     CHECK(found[0].most_places > 0);
     CHECK(found[0].last_time < world.time());
+
+    // A clone keeps the crossings that were found before, and finds those of its own steps.
+    const std::vector<SelfCrossing> of_copy = copy.report().self_crossings;
+    REQUIRE(of_copy.size() == 1);
+    CHECK(of_copy[0].body == ring.body);
+    CHECK(of_copy[0].first_time == found[0].first_time);
+    CHECK(of_copy[0].most_places == found[0].most_places);
+    CHECK(of_copy[0].last_time == copy.time());
 }
 
 }  // namespace skerry::test::self_contact_test

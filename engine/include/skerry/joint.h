@@ -13,14 +13,24 @@ namespace skerry {
 
 class World;
 
-/// A motor on the axis of a hinge or a slider. Exactly one of `speed` and `position` must be given. The motor reaches
-/// and holds this target as far as `strength` allows.
+/// Key of a motor: a target speed or a target coordinate at an absolute time. Exactly one of the two must be given.
+struct MotorKey {
+    Real time = 0;                   // [s]
+    std::optional<Real> speed{};     // [rad/s or m/s]
+    std::optional<Real> position{};  // [rad or m]
+};
+
+/// A motor on the axis of a hinge or a slider. Exactly one of `speed`, `position` and `keys` must be given. The motor
+/// reaches and holds this target as far as `strength` allows.
 struct JointMotor {
     std::optional<Real> speed{};     // target speed [rad/s or m/s]
     std::optional<Real> position{};  // target coordinate of the joint, reached within one step if possible [rad or m]
     Real strength = 0;               // largest moment (hinge) or force (slider) of the motor, >= 0 [N m or N]
     // Largest speed at which the motor approaches `position`, > 0 [rad/s or m/s].
     Real fastest = infinity;
+    // Targets at ascending times, either all of them speeds or all of them positions. The target changes linearly
+    // between keys, and is constant before the first and after the last key.
+    std::vector<MotorKey> keys{};
 };
 
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
@@ -50,6 +60,8 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
+    // Parts of the moment (hinge) or force (slider) along the axis that the motor and the limits exert [N m or N].
+    Real motor = 0, limit = 0;
     // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
     // part of this distance normal to the axis counts.
     Real error = 0;

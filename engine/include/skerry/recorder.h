@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/joint_kind.h"
 #include "skerry/world.h"
 
 #pragma GCC visibility push(default)
@@ -49,6 +50,11 @@ struct ColliderForceProbe {
 struct ReactionProbe {
     AttachmentHandle attachment{};
 };
+/// Records force and moment of a joint at the last step, and for a hinge or slider also its coordinate, its speed, and
+/// the parts of the moment or force that its motor and its limits exert (JointState).
+struct JointProbe {
+    JointHandle joint{};
+};
 /// Records the kinetic, elastic, potential and dissipated energy of the world.
 struct EnergyProbe {};
 /// Records the largest von Mises stress at the given nodes of a body, or at all its nodes if none is given. `nodes` are
@@ -65,8 +71,8 @@ struct VolumeProbe {
 
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
-    std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, EnergyProbe, StressProbe,
-                 VolumeProbe>
+    std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, EnergyProbe,
+                 StressProbe, VolumeProbe>
         what;
 };
 

@@ -211,7 +211,7 @@ public:
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
-    /// stay valid; handles of objects that were added later must no longer be used. Threads and callbacks of this world
+    /// stay valid; handles of objects that were added later become stale. Threads and callbacks of this world
     /// stay. Whether forces are measured is taken from `saved`.
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.

@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "engine/world/control/control.h"
 #include "engine/world/world_state.h"
+#include "skerry/joint.h"
 #include "systems/dynamics/checks/volume_ratios.h"
 #include "systems/dynamics/elements/element_energy.h"
 
@@ -115,6 +117,21 @@ void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
     force = {};
 }
 
+JointState state_of(const World& world, const JointProbe& probe) {
+    return joint_state(WorldAccess::state_of(world).model, probe.joint);
+}
+
+bool has_coordinate(JointKind kind) {
+    return kind == JointKind::hinge || kind == JointKind::slider;
+}
+
+void put_joint(const JointState& joint, std::vector<Real>& values) {
+    put_vector(joint.force, values);
+    put_vector(joint.moment, values);
+    if (has_coordinate(joint.kind))
+        values.insert(values.end(), {joint.coordinate, joint.speed, joint.motor, joint.limit});
+}
+
 void put_motion(const Motion3& motion, const Vec3& origin, std::vector<Real>& values) {
     put_vector(motion.position, values);
     put_vector(motion.position - origin, values);
@@ -151,12 +168,13 @@ TrackedProbe track(const World& world, RecordedProbe probe) {
                           },
                           [&](const StressProbe& stress) { require_nodes(world, stress.body, stress.nodes); },
                           [&](const VolumeProbe& volume) { smallest_volume(world, volume.body); },
-                          [](const EnergyProbe&) {}, [&](const auto& force) { force_of(world.forces(), force); }},
+                          [&](const JointProbe& joint) { state_of(world, joint); }, [](const EnergyProbe&) {},
+                          [&](const auto& force) { force_of(world.forces(), force); }},
                tracked.probe.what);
     return tracked;
 }
 
-void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns) {
+void add_columns(const World& world, const RecordedProbe& probe, std::vector<SeriesColumn>& columns) {
     const auto one = [&](const char* quantity, const char* unit) { columns.push_back({probe.name, quantity, unit}); };
     const auto three = [&](const std::string& quantity, const char* unit) {
         for (const char* axis : {"_x", "_y", "_z"}) columns.push_back({probe.name, quantity + axis, unit});
@@ -178,9 +196,20 @@ void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns)
         three("friction_force", "N");
         one("contacts", "1");
     };
+    const auto of_joint = [&](JointKind kind) {
+        three("force", "N");
+        three("moment", "N m");
+        if (!has_coordinate(kind)) return;
+        const bool turns = kind == JointKind::hinge;
+        one(turns ? "angle" : "displacement", turns ? "rad" : "m");
+        one("speed", turns ? "rad/s" : "m/s");
+        one(turns ? "motor_moment" : "motor_force", turns ? "N m" : "N");
+        one(turns ? "limit_moment" : "limit_force", turns ? "N m" : "N");
+    };
     std::visit(Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },
                           [&](const BodyForceProbe&) { contact_force(); },
                           [&](const ColliderForceProbe&) { contact_force(); }, [&](const ReactionProbe&) { force(); },
+                          [&](const JointProbe& joint) { of_joint(state_of(world, joint).kind); },
                           [&](const EnergyProbe&) {
                               for (const char* part : {"kinetic", "elastic", "potential", "dissipated"}) one(part, "J");
                           },
@@ -208,6 +237,7 @@ void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values)
             [&](const BodyForceProbe&) { put_force(probe.force, true, values); },
             [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
             [&](const ReactionProbe&) { put_force(probe.force, false, values); },
+            [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
             [&](const EnergyProbe&) {
                 const Energy energy = world.energy();
                 values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});

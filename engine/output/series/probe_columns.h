@@ -28,7 +28,7 @@ struct TrackedProbe {
 bool measures_force(const RecordedProbe& probe);
 /// Starts a probe. Throws SceneError if the world lacks an object or node that the probe names.
 TrackedProbe track(const World& world, RecordedProbe probe);
-void add_columns(const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
+void add_columns(const World& world, const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
 /// Adds the forces of the last call of advance to a force probe. Does nothing for other probes.
 void add_forces(const World& world, TrackedProbe& probe);
 /// Appends one value per column of the probe to `values`, and resets the accumulated forces.

@@ -186,8 +186,8 @@ Recorder::Recorder(World& world, std::vector<RecordedProbe> probes, Real every) 
     if (every > 0) impl_->next = (std::floor(world.time() / every + slack) + 1) * every;
     impl_->columns.push_back({"", "time", "s"});
     for (RecordedProbe& probe : probes) {
-        add_columns(probe, impl_->columns);
         impl_->probes.push_back(called_for(probe, [&] { return track(world, probe); }));
+        add_columns(world, probe, impl_->columns);
     }
 }
 Recorder::~Recorder() = default;

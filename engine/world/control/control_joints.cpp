@@ -1,5 +1,6 @@
 // Functions that add, remove and drive joints between steps (docs/methods/joints.md).
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -32,10 +33,33 @@ Index rigid_body_of(const Model& model, BodyHandle body, const char* field) {
     return row;
 }
 
+void validate_keys(const std::vector<MotorKey>& keys) {
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        const MotorKey& key = keys[k];
+        const std::string field = "motor.keys[" + std::to_string(k) + "]";
+        if (key.speed.has_value() == key.position.has_value())
+            refuse_joint(field.c_str(), key.speed ? "a speed and a position" : "neither a speed nor a position",
+                         "either a speed or a position");
+        if (key.speed.has_value() != keys.front().speed.has_value())
+            refuse_joint(field.c_str(), key.speed ? "a speed" : "a position",
+                         key.speed ? "a position, as in the first key" : "a speed, as in the first key");
+        const Real target = key.speed.value_or(key.position.value_or(0));
+        if (!std::isfinite(target))
+            refuse_joint((field + (key.speed ? ".speed" : ".position")).c_str(), std::to_string(target),
+                         "a finite number");
+        if (!std::isfinite(key.time) || (k > 0 && !(key.time > keys[k - 1].time)))
+            refuse_joint((field + ".time").c_str(), std::to_string(key.time) + " s",
+                         k > 0 ? "a time after that of the key before, " + std::to_string(keys[k - 1].time) + " s"
+                               : "a finite number");
+    }
+}
+
 void validate_motor(const JointMotor& motor) {
-    if (motor.speed.has_value() == motor.position.has_value())
-        refuse_joint("motor", motor.speed ? "a speed and a position" : "neither a speed nor a position",
-                     "either a speed or a position");
+    const int targets = motor.speed.has_value() + motor.position.has_value() + !motor.keys.empty();
+    if (targets != 1)
+        refuse_joint("motor", targets == 0 ? "no speed, position or keys" : "more than one of speed, position and keys",
+                     "either a speed, a position or keys");
+    validate_keys(motor.keys);
     const Real target = motor.speed.value_or(motor.position.value_or(0));
     if (!std::isfinite(target)) refuse_joint("motor", std::to_string(target), "a finite speed or position");
     if (!(std::isfinite(motor.strength) && motor.strength >= 0))
@@ -72,7 +96,27 @@ JointFrame frame_on(const Model& model, Index body, const Vec3& point, const Mat
 }
 
 JointDrive drive_of(const std::optional<JointMotor>& motor) {
-    return !motor ? JointDrive::none : motor->speed ? JointDrive::speed : JointDrive::position;
+    if (!motor) return JointDrive::none;
+    const bool has_speed = motor->keys.empty() ? motor->speed.has_value() : motor->keys.front().speed.has_value();
+    return has_speed ? JointDrive::speed : JointDrive::position;
+}
+
+JointMotorKey row_of(const MotorKey& key) {
+    return {key.time, key.speed.value_or(key.position.value_or(0))};
+}
+
+bool has_keys(const JointTable& table, std::size_t joint, const std::optional<JointMotor>& motor) {
+    const auto same = [](const JointMotorKey& a, const MotorKey& b) { return a == row_of(b); };
+    const std::span<const MotorKey> keys = motor ? std::span(motor->keys) : std::span<const MotorKey>();
+    return std::ranges::equal(table.keys_of(joint), keys, same);
+}
+
+void set_keys(JointTable& table, std::size_t joint, const std::optional<JointMotor>& motor) {
+    table.erase_keys_of(joint);
+    if (!motor || motor->keys.empty()) return;
+    const auto begin = static_cast<Index>(table.key.size());
+    for (const MotorKey& key : motor->keys) table.key.push_back(row_of(key));
+    table.motor_keys[joint] = {begin, static_cast<Index>(table.key.size())};
 }
 
 JointMotorRow row_of(const std::optional<JointMotor>& motor) {
@@ -147,7 +191,9 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.lower[row] = joint.lower.value_or(-infinity);
     table.upper[row] = joint.upper.value_or(infinity);
     table.motor[row] = row_of(joint.motor);
-    table.coordinate[row] = table.step[row] = 0;
+    table.motor_keys[row] = {};
+    set_keys(table, row, joint.motor);
+    table.coordinate[row] = table.motor_impulse[row] = table.step[row] = 0;
     table.impulse[row] = table.moment[row] = Vec3::Zero();
     table.parts[row] = 0;
     if (second != no_index && !joint.bodies_touch) {
@@ -185,7 +231,10 @@ std::vector<JointHandle> Joints::all() const {
 }
 
 JointState Joints::state(JointHandle joint) const {
-    const Model& model = WorldAccess::state_of(*world_).model;
+    return joint_state(WorldAccess::state_of(*world_).model, joint);
+}
+
+JointState joint_state(const Model& model, JointHandle joint) {
     const auto j = static_cast<std::size_t>(model.row(joint, "joint"));
     const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
     const JointPlace first = joints.place(joints.first[j], joints.first_frame[j]),
@@ -207,6 +256,10 @@ JointState Joints::state(JointHandle joint) const {
     if (!(joints.step[j] > 0)) return now;
     now.force = second.axes * joints.impulse[j] / joints.step[j];
     now.moment = second.axes * joints.moment[j] / joints.step[j];
+    if (!has_axis(now.kind)) return now;
+    const Vec3& along = now.kind == JointKind::hinge ? joints.moment[j] : joints.impulse[j];
+    now.motor = model.joints.motor_impulse[j] / joints.step[j];
+    now.limit = along.z() / joints.step[j] - now.motor;
     return now;
 }
 
@@ -220,7 +273,10 @@ void Joints::set_motor(JointHandle joint, const std::optional<JointMotor>& motor
                      "a motor on a hinge or slider");
     if (motor) validate_motor(*motor);
     const JointMotorRow wanted = row_of(motor);
-    if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == wanted) return;
+    if (model.joints.drive[row] == drive_of(motor) && model.joints.motor[row] == wanted &&
+        has_keys(model.joints, row, motor))
+        return;
+    set_keys(model.joints, row, motor);
     model.joints.drive[row] = drive_of(motor);
     model.joints.motor[row] = wanted;
     wake_both(model, row);

@@ -31,12 +31,12 @@ void forget_impulses(WorldState& world, std::size_t body) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
         if (joints.first[j] != static_cast<Index>(body) && joints.second[j] != static_cast<Index>(body)) continue;
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
-        joints.coordinate[j] = joints.step[j] = 0;
+        joints.coordinate[j] = joints.motor_impulse[j] = joints.step[j] = 0;
     }
 }
 
-/// Makes the strains of the springs of a body zero, and sets its frames. `turn`: rotation of the body since it was
-/// added.
+/// Makes the strains of the springs of a body zero, and sets its frames. `turn`: rotation of the body since its
+/// elements were built.
 void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     ElementBlockTable& elements = model.elements;
     const Range blocks = model.bodies.blocks[body];
@@ -77,7 +77,7 @@ void reset_body(WorldState& world, std::size_t body, const RigidPose& pose) {
     std::vector<Vec3> position;
     for (const Vec3& rest : rows_of(model.nodes.rest_position, nodes))
         position.push_back(pose.position + pose.rotation * rest);
-    relax_elements(model, body, pose.rotation * model.body_records[body].start.rotation.transpose());
+    relax_elements(model, body, pose.rotation * model.body_records[body].built.transpose());
     place_nodes(world, body, position);
     std::ranges::copy(position, rows_of(model.nodes.still_position, nodes).begin());
     for (Index n = nodes.begin; n < nodes.end; ++n)
@@ -129,6 +129,12 @@ void World::reset(const World& saved) {
     WorldState &now = *copy.state_, &before = *state_;
     now.model.settings.backend = before.model.settings.backend;
     now.model.settings.threads = before.model.settings.threads;
+    // Handles of objects that were added after the clone stay stale, even if later objects reuse their slots.
+    now.model.material_map.differ_from(before.model.material_map);
+    now.model.body_map.differ_from(before.model.body_map);
+    now.model.collider_map.differ_from(before.model.collider_map);
+    now.model.attachment_map.differ_from(before.model.attachment_map);
+    now.model.joint_map.differ_from(before.model.joint_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

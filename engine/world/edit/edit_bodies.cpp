@@ -214,6 +214,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
          .element_tetrahedra = covered_tetrahedra(list, rows.elements.element),
          .start = {body.position, body.rotation},
+         .built = body.rotation,
          .mesh_shape = {body.mesh_shape.begin(), body.mesh_shape.end()}});
     if (implicit) model.stiffen(b);
     model.settled = false;

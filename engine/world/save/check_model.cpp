@@ -1,5 +1,7 @@
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -344,6 +346,12 @@ void check_joints(const Hdf5File& file, const Model& model) {
                 "a lower limit <= the upper limit");
         require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
+        const Range keys = table.motor_keys[j];
+        require(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(table.key.size()),
+                "motor_keys", "a range that does not exist", "a range of the rows of /joints/key");
+        require(std::ranges::adjacent_find(table.keys_of(j), std::greater_equal<>(), &JointMotorKey::time) ==
+                    table.keys_of(j).end(),
+                "key", "keys whose times do not ascend", "ascending times");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",
                 "finite numbers");
     }

@@ -23,6 +23,7 @@ void list_table(const std::string& path, AnyTable table, Archive& archive, const
 template <class Handle>
 void list_handles(const std::string& path, HandleMap<Handle>& map, Archive& archive) {
     map.for_each_column([&](const char* name, auto& column) { archive.column(path + "/" + name, column); });
+    archive.value(path + "/least_generation", map.least_generation());
 }
 
 template <class T>
@@ -46,6 +47,7 @@ void list_records(SavedRows& saved, Archive& archive) {
     archive.column("/records/choice_estimate", saved.choice_estimate);
     archive.column("/records/collider_settled", saved.collider_settled);
     archive.column("/records/body_start", saved.body_start);
+    archive.column("/records/body_built", saved.body_built);
     list_ragged("/records/mesh_shape", saved.mesh_shape, archive);
     list_ragged("/records/tetrahedron_material", saved.tetrahedron_material, archive);
     list_ragged("/records/body_name", saved.body_name, archive);

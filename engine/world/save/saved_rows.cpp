@@ -197,12 +197,15 @@ std::array<Real, 12> numbers_of(const RigidPose& pose) {
     return numbers;
 }
 
+Mat3 rotation_of(const Real* numbers, const char* path, const std::string& body, const Hdf5File& file) {
+    const Mat3 rotation = Eigen::Map<const Mat3>(numbers);
+    if (!is_rotation(rotation)) file.complain(path, "a matrix that is not a rotation for " + body, "a rotation matrix");
+    return rotation;
+}
+
 /// Reads the pose at which a body was added. `body`: name of the body in messages.
 RigidPose pose_of(const std::array<Real, 12>& numbers, const std::string& body, const Hdf5File& file) {
-    const RigidPose pose{Eigen::Map<const Vec3>(numbers.data()), Eigen::Map<const Mat3>(numbers.data() + 3)};
-    if (!is_rotation(pose.rotation))
-        file.complain("/records/body_start", "a matrix that is not a rotation for " + body, "a rotation matrix");
-    return pose;
+    return {Eigen::Map<const Vec3>(numbers.data()), rotation_of(numbers.data() + 3, "/records/body_start", body, file)};
 }
 
 /// Reads the shape of the mesh of a body that is frozen in another shape. The list is empty for all other bodies.
@@ -259,6 +262,9 @@ SavedRows rows_to_save(const WorldState& world) {
         saved.choice_estimate.push_back({e.explicit_step, e.implicit_step, e.deforming_step, e.explicit_cost,
                                          e.implicit_cost, e.strain, e.damped_above});
         saved.body_start.push_back(numbers_of(record.start));
+        std::array<Real, 9> built{};
+        std::copy_n(record.built.data(), built.size(), built.begin());
+        saved.body_built.push_back(built);
         append(std::span<const Vec3>(record.mesh_shape), saved.mesh_shape);
         append(std::span<const Index>(record.tetrahedron_material), saved.tetrahedron_material);
         append_text(record.name, saved.body_name);
@@ -311,6 +317,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     expect_rows(file, "/records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
     expect_rows(file, "/records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
     expect_rows(file, "/records/body_start", saved.body_start.size(), bodies, "bodies");
+    expect_rows(file, "/records/body_built", saved.body_built.size(), bodies, "bodies");
     expect_ragged(file, "/records/mesh_shape", saved.mesh_shape, bodies, "bodies");
     expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
     expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
@@ -349,6 +356,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
             file.complain("/records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");
         record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
         record.start = pose_of(saved.body_start[b], body, file);
+        record.built = rotation_of(saved.body_built[b].data(), "/records/body_built", body, file);
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         put_mesh_shape(saved.mesh_shape[b], b, file, model);
         record.surface.assign(parts.surface.begin(), parts.surface.end());

@@ -50,6 +50,7 @@ struct SavedRows {
     // all members of BodyRecord::choice except the reason, in the order of their declaration
     Column<std::array<Real, 7>> choice_estimate;
     Column<std::array<Real, 12>> body_start;        // BodyRecord::start: position [m], and columns of the rotation
+    Column<std::array<Real, 9>> body_built;         // BodyRecord::built: columns of the rotation
     Ragged<Vec3> mesh_shape;                        // BodyRecord::mesh_shape [m]
     Ragged<Index> tetrahedron_material;             // BodyRecord::tetrahedron_material
     Ragged<std::uint8_t> body_name, collider_name;  // UTF-8

@@ -59,6 +59,8 @@ struct BodyRecord {
     Ragged<Index> element_tetrahedra;
     bool settled = false;                             // true if the body was checked for overlaps
     RigidPose start{Vec3::Zero(), Mat3::Identity()};  // pose at which the body was added
+    // Rotation that the elements have at rest: that of the body when it was added, or when its dynamics changed.
+    Mat3 built = Mat3::Identity();
     // For a rigid body that is frozen in a deformed shape: node positions of the mesh, in the frame of the mesh [m].
     // NodeTable::rest_position contains the frozen shape. For all other bodies the list is empty.
     std::vector<Vec3> mesh_shape{};

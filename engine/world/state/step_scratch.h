@@ -131,13 +131,13 @@ struct StepScratch {
     Column<Real> cluster_work;         // used by kick_clusters
     ImplicitCoupling coupling;         // used by couple_implicit_bodies
     Column<StrainPart> strain_parts;   // used by strain_implicit_bodies
-    Column<std::uint8_t> pressed;     // for each body, nonzero if it is asleep and a contact presses on it in this step
-    Column<ExternalWork> work_parts;  // used by measure_work
-    InversionMemory inversions;       // used by find_inversions
-    Column<WatchPart> watch_parts;    // used by watch_stable_steps
-    Column<WatchPieces> watch_pieces;    // used by store_shapes
-    Column<Real> viscous_parts;          // used by measure_viscosity
-    RestingMemory resting_memory;        // used by keep_resting_contacts
+    Column<std::uint8_t> pressed;      // for each body, nonzero if a contact presses on it or a motor starts to move it
+    Column<ExternalWork> work_parts;   // used by measure_work
+    InversionMemory inversions;        // used by find_inversions
+    Column<WatchPart> watch_parts;     // used by watch_stable_steps
+    Column<WatchPieces> watch_pieces;  // used by store_shapes
+    Column<Real> viscous_parts;        // used by measure_viscosity
+    RestingMemory resting_memory;      // used by keep_resting_contacts
     Column<Index> self_crossing_places;  // used by find_self_crossings
 
     bool inverts() const { return skerry::inverts(findings.inversions, parameters); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/joints/prepare_joints.h"
 #include "systems/dynamics/motion/move_colliders.h"
 
 namespace skerry {
@@ -26,6 +27,13 @@ bool all_stand_still(auto& table, Real time, Real h) {
     return std::ranges::all_of(table.motion, [](const RigidMotion& motion) { return motion.stands_still(); });
 }
 
+bool a_motor_moves(const Model& model, Real time, Real h) {
+    const JointInputs joints = JointInputs::bind({}, model.joints, model.bodies, model.rigid_bodies, model.any_asleep);
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        if (joints.target_moves(j, time, h)) return true;
+    return false;
+}
+
 /// True if a stable step is still to be evaluated for a stored shape. This can be so if a body was moving when its
 /// shape was stored and has fallen asleep since.
 bool looks_are_due(const StepWatch& watch) {
@@ -43,6 +51,7 @@ bool nothing_moves(WorldState& world) {
     if (!model.any_asleep || !model.tuning.contact_budgets || !all_bodies_rest(model.bodies)) return false;
     if (scratch.contacts.size() > 0 || scratch.regions.size() > 0 || scratch.regions.pushed) return false;
     if (!world.cache.crossings.row.empty() || looks_are_due(model.watch)) return false;
+    if (a_motor_moves(model, time, h)) return false;
     if (!all_stand_still(model.colliders, time, h) || !all_stand_still(model.attachments, time, h)) return false;
     drive_nodes(NodeMotionInputs::bind({}, model.attachments), h, model.nodes.position, model.nodes.velocity);
     return true;

@@ -10,6 +10,7 @@
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
 #include "systems/dynamics/checks/measure_work.h"
+#include "systems/dynamics/joints/prepare_joints.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
@@ -117,6 +118,8 @@ void separate(WorldState& w, TaskGraph& g) {
     const auto if_any_asleep = only_if([](bool any_asleep) { return any_asleep; }, value(m.any_asleep));
     g.stage("dynamics/mark_pressed", mark_pressed, inputs<PressInputs>(c, m.bodies, p.solver.warm_start),
             make(w.scratch.pressed), if_any_asleep);
+    g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
+            value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));

@@ -1,6 +1,7 @@
 #include "systems/dynamics/joints/prepare_joints.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,14 +24,27 @@ Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     return second.transpose() * second.col(2).cross(first.col(2));
 }
 
-AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, Real kick) {
-    return {.locked = false,
-            .coordinate = coordinate,
-            .lower = joints.lower[j],
-            .upper = joints.upper[j],
-            .drive = joints.drive[j],
-            .motor = joints.motor[j],
-            .most_impulse = kick * joints.motor[j].most};
+/// Lengths of the step and of its force interval, and start of the step [s].
+struct StepTimes {
+    Real t, h, kick;
+};
+
+AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const StepTimes& step) {
+    AxisLaw axis{.locked = false,
+                 .coordinate = coordinate,
+                 .lower = joints.lower[j],
+                 .upper = joints.upper[j],
+                 .drive = joints.drive[j],
+                 .motor = joints.motor[j],
+                 .most_impulse = step.kick * joints.motor[j].most};
+    const Real start = joints.target(j, step.t), end = joints.target(j, step.t + step.h);
+    if (axis.drive == JointDrive::position) {
+        axis.motor.target = start;
+        axis.target_rate = (end - start) / step.h;
+    } else {
+        axis.motor.target = (start + end) / 2;
+    }
+    return axis;
 }
 
 }  // namespace
@@ -42,6 +56,16 @@ JointPlace JointInputs::place(Index body, const JointFrame& frame) const {
     return {center[r] + from_mesh * (frame.point - rest_center[r]), from_mesh * frame.axes};
 }
 
+Real JointInputs::target(std::size_t j, Real t) const {
+    const std::span<const JointMotorKey> keys = rows_of(key, motor_keys[j]);
+    if (keys.empty()) return motor[j].target;
+    const auto after = std::ranges::upper_bound(keys, t, {}, &JointMotorKey::time);
+    if (after == keys.begin()) return keys.front().target;
+    if (after == keys.end()) return keys.back().target;
+    const JointMotorKey &a = *(after - 1), &b = *after;
+    return a.target + (t - a.time) / (b.time - a.time) * (b.target - a.target);
+}
+
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before) {
     if (kind == JointKind::slider) return second.axes.col(2).dot(first.point - second.point);
     if (kind != JointKind::hinge) return 0;
@@ -50,7 +74,8 @@ Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace&
     return angle + turn * std::round((before - angle) / turn);
 }
 
-bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks) {
+bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointBlockTable& blocks) {
+    const StepTimes step{t, h, kick};
     blocks.block.clear();
     blocks.impulse.clear();
     blocks.coordinate.resize(joints.size());
@@ -74,17 +99,29 @@ bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& block
                          .axis = {}};
         if (block.first_node == no_index && block.second_node == no_index) continue;
         const Real scale = joints.step[j] > 0 ? kick / joints.step[j] : 0;
-        if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j], kick);
+        if (kind == JointKind::slider) block.axis = axis_of(joints, j, blocks.coordinate[j], step);
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.impulse[j]);
         if (kind == JointKind::ball) continue;
         block.turning = true;
         block.error = turning_error(kind, first.axes, second.axes);
-        block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j], kick) : AxisLaw{};
+        block.axis = kind == JointKind::hinge ? axis_of(joints, j, blocks.coordinate[j], step) : AxisLaw{};
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.moment[j]);
     }
+    blocks.motor_impulse.assign(blocks.size(), 0);
     return joints.size() > 0;
+}
+
+bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8_t> marked) {
+    bool any = false;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (!joints.target_moves(j, t, h)) continue;
+        any = true;
+        for (const Index body : {joints.first[j], joints.second[j]})
+            if (body != no_index) marked[static_cast<std::size_t>(body)] = 1;
+    }
+    return any;
 }
 
 bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& out) {
@@ -92,11 +129,13 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
         if (blocks.resting[j]) continue;
         out.coordinate[j] = blocks.coordinate[j];
         out.impulse[j] = out.moment[j] = Vec3::Zero();
+        out.motor_impulse[j] = 0;
         out.step[j] = kick;
     }
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto j = static_cast<std::size_t>(blocks.block[i].joint);
         (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
+        if (!blocks.block[i].axis.locked) out.motor_impulse[j] = blocks.motor_impulse[i];
     }
     return out.step.size() > 0;
 }

@@ -23,6 +23,8 @@ struct JointInputs {
     std::span<const JointFrame> first_frame, second_frame;
     std::span<const Real> lower, upper;
     std::span<const JointMotorRow> motor;
+    std::span<const Range> motor_keys;
+    std::span<const JointMotorKey> key;
     std::span<const Real> coordinate;
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
@@ -44,6 +46,8 @@ struct JointInputs {
                 .lower = binder.read(joint.lower),
                 .upper = binder.read(joint.upper),
                 .motor = binder.read(joint.motor),
+                .motor_keys = binder.read(joint.motor_keys),
+                .key = binder.read(joint.key),
                 .coordinate = binder.read(joint.coordinate),
                 .impulse = binder.read(joint.impulse),
                 .moment = binder.read(joint.moment),
@@ -77,27 +81,37 @@ struct JointInputs {
         return !body_asleep.empty() && is_out(first[j]) && is_out(second[j]);
     }
     JointPlace place(Index body, const JointFrame& frame) const;
+    /// Target of the motor of joint `j` at time `t`. Before the first key and after the last, the target is constant.
+    Real target(std::size_t j, Real t) const;
+    /// True if joint `j` has a motor whose target changes in the step of length `h` that starts at time `t`.
+    bool target_moves(std::size_t j, Real t, Real h) const {
+        return drive[j] != JointDrive::none && target(j, t) != target(j, t + h);
+    }
 };
 
 /// Displacement of a slider [m] or angle of a hinge [rad] between the joint frames of the two bodies; 0 for other kinds
 /// of joints. Full rotations of a hinge are counted: the result is the angle nearest to `before`.
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before);
 
-/// Writes the constraint blocks of all joints with a moving body. The impulses of the last step serve as the warm
-/// start. `kick`: time for which forces act, including the forces of motors [s]. Returns false if there is no joint
-/// (skipped).
-bool prepare_joints(const JointInputs& joints, Real kick, JointBlockTable& blocks);
+/// Writes the constraint blocks of all joints with a moving body, for the step of length `h` that starts at time `t`.
+/// The impulses of the last step serve as the warm start. `kick`: time for which forces act, including the forces of
+/// motors [s]. Returns false if there is no joint (skipped).
+bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointBlockTable& blocks);
+
+/// Marks the bodies of joints whose motor has a target that changes in this step. Returns false if there is none.
+bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8_t> marked);
 
 /// Columns of JointTable that a committed step stores for the next step.
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
-    std::span<Real> step;
+    std::span<Real> motor_impulse, step;
 
     static JointMemory bind(const Binder& binder, JointTable& joint) {
         return {.coordinate = binder.write(joint.coordinate),
                 .impulse = binder.write(joint.impulse),
                 .moment = binder.write(joint.moment),
+                .motor_impulse = binder.write(joint.motor_impulse),
                 .step = binder.write(joint.step)};
     }
 };

@@ -178,6 +178,7 @@ struct RegionOutputs {
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
+    std::span<Real> motor_impulse{};      // by joint block
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints) {
@@ -189,7 +190,8 @@ struct RegionOutputs {
                 .push_velocity = binder.write(rigid.push_velocity),
                 .push_spin = binder.write(rigid.push_spin),
                 .deforming_impulse = binder.write(implicit.contact_impulse),
-                .joint_impulse = binder.write(joints.impulse)};
+                .joint_impulse = binder.write(joints.impulse),
+                .motor_impulse = binder.write(joints.motor_impulse)};
     }
 };
 

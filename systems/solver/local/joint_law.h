@@ -26,6 +26,14 @@ inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
     return motor;
 }
 
+/// Returns the part of the impulse `r` of the axis that the motor exerts at the axis velocity `u`. The rest is the
+/// impulse of a limit.
+inline Real motor_part(const AxisBounds& axis, Real w, Real u, Real r) {
+    if (!(w > 0) || !(axis.most > 0)) return 0;
+    if (axis.low == -infinity && axis.high == infinity) return r;
+    return std::clamp(r + (axis.target - u) / w, -axis.most, axis.most);
+}
+
 /// Three joint rows with their diagonal block of W, in the frame of the joint.
 struct JointLaw {
     bool axis_free;  // true: the third row is a free axis; false: the third row is locked

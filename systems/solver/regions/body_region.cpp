@@ -78,8 +78,14 @@ void BodyRegion::write_joints(const RegionStage& stage) const {
         const std::size_t i = row.size() + k;
         const RigidPart& part = memory.part[i];
         write_to_bodies(stage, part, memory.impulse[i]);
-        stage.out.joint_impulse[static_cast<std::size_t>(joint[k])] =
-            matrix_of(part.frame).transpose() * memory.impulse[i].head<3>();
+        const auto block = static_cast<std::size_t>(joint[k]);
+        const Vec3 impulse = matrix_of(part.frame).transpose() * memory.impulse[i].head<3>();
+        stage.out.joint_impulse[block] = impulse;
+        const JointPlaceInRegion place = joint_place(stage, k);
+        if (!place.law.axis_free) continue;
+        const Vec4 u = add_rigid_velocities(part, memory.velocity.data(), place.contact.offset);
+        stage.out.motor_impulse[block] =
+            motor_part(place.law.axis, place.law.axis_mobility, part.frame[2].dot(u), impulse.z());
     }
 }
 

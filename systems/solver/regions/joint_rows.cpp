@@ -60,7 +60,8 @@ AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     const Real way = axis.motor.target - axis.coordinate;
     // Braking uses half of the greatest motor impulse; the other half is reserved for loads.
     const Real brakes = std::sqrt(axis.motor.most * mobility * std::abs(way));
-    bounds.target = std::copysign(std::min({std::abs(way) / h, axis.motor.most_speed, brakes}), way);
+    const Real closing = std::copysign(std::min(std::abs(way) / h, brakes), way);
+    bounds.target = std::clamp(axis.target_rate + closing, -axis.motor.most_speed, axis.motor.most_speed);
     return bounds;
 }
 

@@ -34,19 +34,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// Error message when this text is read.
-std::string refusal(const std::string& name, const std::string& content) {
-    const TemporaryFolder folder;
-    const std::string path = folder.write(name, content);
-    try {
-        mesh::read(path);
-    } catch (const SceneError& error) {
-        CHECK_THAT(error.what(), Contains(path));
-        return error.what();
-    }
-    return "nothing refused";
-}
-
 bool is_surface_file(const std::string& name) {
     return name.ends_with(".obj") || name.ends_with(".stl");
 }
@@ -161,16 +148,16 @@ TEST_CASE("a Gmsh file without physical groups has the numbers of its volumes fo
 
 TEST_CASE("entities and cell data that do not add up are refused with the place and the reason", "[unit]") {
     const std::string gmsh = gmsh41_file(labelled_sample(), Bytes::text);
-    CHECK_THAT(refusal("a.msh", replaced(gmsh, "2 1 79 ", "1 1 79 ")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(gmsh, "2 1 79 ", "1 1 79 ")),
                Contains("$Entities, volume 1 of 3") && Contains("tag: found \"0.25\", expected an integer"));
     CHECK_THAT(
-        refusal("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 4 \n")),
+        refusal_of_mesh("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 4 \n")),
         Contains("$Entities, volume 4 of 4") && Contains("the section has fewer rows than its header announces"));
-    CHECK_THAT(refusal("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 2 \n")), Contains("expected $EndEntities"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(gmsh, "1 1 1 3 \n", "1 1 1 2 \n")), Contains("expected $EndEntities"));
     const std::string vtk = vtk_file(labelled_sample(), false, false);
-    CHECK_THAT(refusal("a.vtk", replaced(vtk, "CELL_DATA 13", "CELL_DATA 12")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(vtk, "CELL_DATA 13", "CELL_DATA 12")),
                Contains("CELL_DATA") && Contains("count: found 12, expected 13, the number of cells"));
-    CHECK_THAT(refusal("a.vtk", replaced(vtk, "default\n78 ", "default\n78 x ")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(vtk, "default\n78 ", "default\n78 x ")),
                Contains("SCALARS, cell 2 of 13") && Contains("found \"x\""));
 }
 
@@ -240,60 +227,63 @@ TEST_CASE("a bad Gmsh file is refused with the place and the reason", "[unit]") 
     const std::string good = gmsh2_file(one_tetrahedron(), Bytes::text),
                       new_good = gmsh41_file(one_tetrahedron(), Bytes::text);
     const std::string element = "2 4 2 1 6 1 2 3 4";
-    CHECK(refusal("a.msh", good) == "nothing refused");
-    CHECK(refusal("a.msh", new_good) == "nothing refused");
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 5")),
+    CHECK(refusal_of_mesh("a.msh", good) == "nothing refused");
+    CHECK(refusal_of_mesh("a.msh", new_good) == "nothing refused");
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 5")),
                Contains("$Elements, element 2 of 2, line 20: node: found 5, expected the number of a node"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 3")), Contains("the same node twice"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3")), Contains("found 8 numbers, expected 9"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3 3")), Contains("the same node twice"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, element, "2 4 2 1 6 1 2 3")),
+               Contains("found 8 numbers, expected 9"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, element, "2 11 2 1 1 1 2 3 4 1 2 3 4 1 2")),
                Contains("second or higher order"));
-    CHECK_THAT(refusal("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, element, "2 77 2 1 1 1 2 3 4")), Contains("type: found 77"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2 1 0 0", "1 1 0 0")),
                Contains("$Nodes, node 2 of 5") && Contains("1, the number of an earlier node"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2 1 0 0", "2 nan 0 0")),
                Contains("position: found nan, expected a finite number"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1e999 0 0")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2 1 0 0", "2 1e999 0 0")),
                Contains("found an infinite or too large number"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0", "2 1,0 0 0")), Contains("found \"1,0\", expected a number"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2 1 0 0\n", "")), Contains("node 5 of 5") && Contains("fewer rows"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n4")), Contains("expected $EndNodes"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n-5")), Contains("found -5"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n500000000")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2 1 0 0", "2 1,0 0 0")),
+               Contains("found \"1,0\", expected a number"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2 1 0 0\n", "")),
+               Contains("node 5 of 5") && Contains("fewer rows"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n4")), Contains("expected $EndNodes"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n-5")), Contains("found -5"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "$Nodes\n5", "$Nodes\n500000000")),
                Contains("count: found 500000000, expected at most"));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "3 0 8")), Contains("version: found \"3\""));
-    CHECK_THAT(refusal("a.msh", replaced(good, "2.2 0 8", "2.2 7 8")), Contains("file type: found 7"));
-    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 5 1 1000")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2.2 0 8", "3 0 8")), Contains("version: found \"3\""));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "2.2 0 8", "2.2 7 8")), Contains("file type: found 7"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(new_good, "2 5 1 999", "2 5 1 1000")),
                Contains("node numbers 1 to 1000, expected 1 to 999"));
-    CHECK_THAT(refusal("a.msh", replaced(new_good, "2 5 1 999", "2 6 1 999")),
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(new_good, "2 5 1 999", "2 6 1 999")),
                Contains("6 in the header of the section, expected 5"));
-    CHECK_THAT(refusal("a.msh", "hello"), Contains("$MeshFormat or $NOD"));
-    CHECK_THAT(refusal("a.msh", ""), Contains("the end of the file"));
+    CHECK_THAT(refusal_of_mesh("a.msh", "hello"), Contains("$MeshFormat or $NOD"));
+    CHECK_THAT(refusal_of_mesh("a.msh", ""), Contains("the end of the file"));
 }
 
 TEST_CASE("a binary Gmsh file with a wrong byte order mark or a cut end is refused", "[unit]") {
     const std::string good = gmsh2_file(one_tetrahedron(), Bytes::native);
-    CHECK_THAT(refusal("a.msh", replaced(good, "\x01\0\0\0", "\x02")), Contains("byte order"));
-    CHECK_THAT(refusal("a.msh", good.substr(0, good.size() - 20)), Contains("the end of the file"));
+    CHECK_THAT(refusal_of_mesh("a.msh", replaced(good, "\x01\0\0\0", "\x02")), Contains("byte order"));
+    CHECK_THAT(refusal_of_mesh("a.msh", good.substr(0, good.size() - 20)), Contains("the end of the file"));
 }
 
 TEST_CASE("a bad VTK file is refused with the place and the reason", "[unit]") {
     const std::string good = vtk_file(one_tetrahedron(), false, false),
                       new_good = vtk_file(one_tetrahedron(), true, false);
-    CHECK(refusal("a.vtk", good) == "nothing refused");
-    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "4 0 1 2 9")),
+    CHECK(refusal_of_mesh("a.vtk", good) == "nothing refused");
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "4 0 1 2 3", "4 0 1 2 9")),
                Contains("CELLS, cell 2 of 2") && Contains("node: found 9"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "4 0 1 2 3", "3 0 1 2")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "4 0 1 2 3", "3 0 1 2")),
                Contains("size: found 9 in the header, expected 8"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "5 10", "5 24")), Contains("second or higher order"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "CELL_TYPES 2", "CELL_TYPES 1")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "5 10", "5 24")), Contains("second or higher order"));
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "CELL_TYPES 2", "CELL_TYPES 1")),
                Contains("count: found 1, expected 2, the number of cells"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "POINTS 5", "POINTS 6")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "POINTS 5", "POINTS 6")),
                Contains("point 6 of 6") && Contains("METADATA"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "double\n0 0 0", "double\n0 x 0")), Contains("found \"x\""));
-    CHECK_THAT(refusal("a.vtk", replaced(new_good, "0 3 7", "0 8 7")), Contains("offset: found 8"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "ASCII", "ascii art")), Contains("expected ASCII or BINARY"));
-    CHECK_THAT(refusal("a.vtk", replaced(good, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS")),
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "double\n0 0 0", "double\n0 x 0")), Contains("found \"x\""));
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(new_good, "0 3 7", "0 8 7")), Contains("offset: found 8"));
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "ASCII", "ascii art")), Contains("expected ASCII or BINARY"));
+    CHECK_THAT(refusal_of_mesh("a.vtk", replaced(good, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS")),
                Contains("UNSTRUCTURED_GRID or POLYDATA"));
 }
 

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+
+#include "skerry/error.h"
 
 namespace skerry::test {
 namespace {
@@ -421,6 +424,18 @@ std::vector<SampleFile> all_sample_files(const Mesh& mesh) {
             {"a.obj", obj_file(surface)},
             {"a.stl", stl_file(surface, false)},
             {"b.stl", stl_file(surface, true)}};
+}
+
+std::string refusal_of_mesh(const std::string& name, const std::string& content) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write(name, content);
+    try {
+        mesh::read(path);
+    } catch (const SceneError& error) {
+        CHECK_THAT(error.what(), Catch::Contains(path));
+        return error.what();
+    }
+    return "nothing refused";
 }
 
 }  // namespace skerry::test

@@ -48,4 +48,7 @@ struct SampleFile {
 /// file beside it.
 std::vector<SampleFile> all_sample_files(const Mesh& mesh);
 
+/// Error message when a mesh file of this name and content is read. Checks that the message contains the path.
+std::string refusal_of_mesh(const std::string& name, const std::string& content);
+
 }  // namespace skerry::test

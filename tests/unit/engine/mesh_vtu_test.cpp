@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 
 #include "mesh_samples.h"
-#include "skerry/error.h"
 
 namespace skerry::test::mesh_vtu_test {
 
@@ -32,19 +31,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
     return text.replace(at, from.size(), to);
-}
-
-/// Error message when this text is read.
-std::string refusal(const std::string& content) {
-    const TemporaryFolder folder;
-    const std::string path = folder.write("mesh.vtu", content);
-    try {
-        mesh::read(path);
-    } catch (const SceneError& error) {
-        CHECK_THAT(error.what(), Contains(path));
-        return error.what();
-    }
-    return "nothing refused";
 }
 
 void expect_sample(const Mesh& found, bool wide) {
@@ -102,7 +88,7 @@ TEST_CASE("a bad .vtu file is refused with the array, the field and the reason",
                       base64 = vtu_file(mesh, {.place = Place::base64}),
                       zipped = vtu_file(mesh, {.place = Place::appended_raw, .compressed = true});
     const auto refused = [](const std::string& content, std::initializer_list<const char*> parts) {
-        const std::string message = refusal(content);
+        const std::string message = refusal_of_mesh("mesh.vtu", content);
         for (const char* part : parts) CHECK_THAT(message, Contains(part));
     };
     refused("", {"no \"<\"", "incomplete"});
@@ -155,7 +141,8 @@ TEST_CASE("elements that are no tetrahedra are named with their kinds", "[unit]"
     for (int i = 0; i < 2; ++i) kinds = replaced(kinds, "10 ", "12 ");
     while (kinds.find("10 ") != std::string::npos) kinds = replaced(kinds, "10 ", "13 ");
     const std::string hexahedra = file.substr(0, types) + kinds;
-    CHECK_THAT(refusal(hexahedra), Contains("no tetrahedra") && Contains("1 triangles, 2 hexahedra, 10 prisms"));
+    CHECK_THAT(refusal_of_mesh("mesh.vtu", hexahedra),
+               Contains("no tetrahedra") && Contains("1 triangles, 2 hexahedra, 10 prisms"));
     const TemporaryFolder folder;
     const std::string gmsh = folder.write(
         "mesh.msh",

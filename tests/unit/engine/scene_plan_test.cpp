@@ -256,6 +256,49 @@ TEST_CASE("joints of what is not there, or cannot be, are refused where they sta
     refused(R"("first": "door")", "kind");
     refused(R"("kind": "ball", "first": "door", "upper": 1)", "joints[0]");
     refused(R"("kind": "hinge", "first": "door", "motor": {"strength": 1})", "joints[0].motor");
+    refused(R"("kind": "ball", "first": "door", "motor": {"strength": 1, "keys": [{"time": 0, "speed": 1}]})",
+            "joints[0]");
+    refused(R"("kind": "hinge", "first": "door", "motor": {"strength": 1, "keys": [{"time": 0}]})",
+            "joints[0].motor.keys[0]");
+    refused(R"("kind": "hinge", "first": "door",
+               "motor": {"strength": 1, "keys": [{"time": 1, "speed": 1}, {"time": 0, "speed": 1}]})",
+            "motor.keys[1].time: found 0.000000 s, expected a time after that of the key before, 1.000000 s");
+    refused(R"("kind": "hinge", "first": "door", "name": "a"}, {"kind": "hinge", "first": "frame", "name": "a")",
+            "joints[1].name: found \"a\", which is already the name of a joint");
+}
+
+TEST_CASE("motors of a scene have keys, and probes name joints", "[unit]") {
+    const TemporaryFolder folder;
+    const std::string joint = R"("name": "hinge", "kind": "hinge", "first": "door",
+        "motor": {"strength": 1e9, "keys": [{"time": 0, "position": 0}, {"time": 0.2, "position": 0.4}]}}],
+        "settings": {"gravity": [0, 0, 0]}, "probes": [{"name": "door", "quantity": "joint", )";
+    const auto file = [&](const std::string& probe) {
+        std::string text = jointed_scene(joint + probe);
+        return folder.write("joint.json", text);
+    };
+    Scene scene = load_scene(file(R"("joint": "hinge")"));
+    Recorder recorder(scene.world, scene.recorded);
+    std::vector<std::string> headings;
+    for (const SeriesColumn& column : recorder.columns()) headings.push_back(column.heading());
+    CHECK(headings == std::vector<std::string>{"time [s]", "door.force_x [N]", "door.force_y [N]", "door.force_z [N]",
+                                               "door.moment_x [N m]", "door.moment_y [N m]", "door.moment_z [N m]",
+                                               "door.angle [rad]", "door.speed [rad/s]", "door.motor_moment [N m]",
+                                               "door.limit_moment [N m]"});
+    REQUIRE(scene.world.advance(0.1).ok());
+    recorder.sample(scene.world);
+    const JointState state = Joints(scene.world).state(Joints(scene.world).all()[0]);
+    CHECK(state.coordinate == Approx(0.2).epsilon(1e-3));
+    const std::span<const Real> row = recorder.row(0);
+    CHECK(Vec3(row[1], row[2], row[3]) == state.force);
+    CHECK(Vec3(row[4], row[5], row[6]) == state.moment);
+    CHECK(row[7] == state.coordinate);
+    CHECK(row[8] == state.speed);
+    CHECK(row[9] == state.motor);
+    CHECK(row[10] == state.limit);
+    CHECK_THROWS_WITH(load_scene(file(R"("joint": "hige")")),
+                      Catch::Contains("probes[0].joint: found \"hige\"") && Catch::Contains("hinge"));
+    CHECK_THROWS_WITH(load_scene(file(R"("joint": 3)")), Catch::Contains("probes[0].joint"));
+    CHECK_THROWS_WITH(load_scene(file(R"("joint": "hinge", "body": "door")")), Catch::Contains("probes[0].body"));
 }
 
 TEST_CASE("a body with a shape in the place of a mesh is a sphere", "[unit]") {

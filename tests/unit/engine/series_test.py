@@ -127,6 +127,18 @@ class SeriesTest(ProgramCase):
                 self.assertAlmostEqual(time, probe_step * i, places=12)
             self.assertEqual(longer["time [s]"][:len(at)], at)
 
+    def test_a_run_that_is_resumed_within_a_frame_keeps_all_rows_of_uneven_frames(self):
+        series, checkpoint = self.folder / "series.csv", self.folder / "run.skerry"
+        scene = self.write("odd.json", {**SCENE, "probe_step": 0.03, "frame_step": 0.1})
+        self.skerry("run", scene, "--probes", series, "--checkpoint", checkpoint, "--seconds", 0.16)
+        before = read_csv(series)["time [s]"]
+        self.skerry("run", "--restart", checkpoint, "--probes", series, "--seconds", 0.3)
+        rows = read_csv(series)["time [s]"]
+        self.assertEqual(rows[:len(before)], before)
+        self.assertEqual(len(rows), 11, rows)
+        for i, time in enumerate(rows):
+            self.assertAlmostEqual(time, 0.03 * i, places=12)
+
     def test_hdf5_holds_the_same_numbers_with_units(self):
         self.skerry("run", self.scene, "--probes", self.folder / "s.h5", "--seconds", 0.05)
         content = (self.folder / "s.h5").read_bytes()

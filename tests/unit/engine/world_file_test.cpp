@@ -1,5 +1,6 @@
 // Loading of damaged worlds and of other files: a message that names the file, never a crash, never another world.
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -93,12 +94,12 @@ TEST_CASE("a saved world of which any bit was turned over is refused", "[unit][l
 TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
     const SavedFile saved(full_world());
     CHECK_THAT(saved.refusal(text("")), Contains("found a file of another kind, expected a world that Skerry saved"));
-    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 23"));
+    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 24"));
     CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
     std::vector<char> other = saved.bytes;
-    const std::string name = "version 23";
+    const std::string name = "version 24";
     *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 8) = '1';
-    CHECK_THAT(saved.refusal(other), Contains("found version 13, expected version 23"));
+    CHECK_THAT(saved.refusal(other), Contains("found version 14, expected version 24"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
     // HDF5 with a valid head but with unexpected contents
@@ -170,9 +171,28 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
     CHECK_THAT(refusal("/pairs/candidates/first", 0, huge), Contains("/pairs/candidates: first: found"));
     CHECK_THAT(refusal("/last_step/contacts/stencil/node", 0, huge),
                Contains("/last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("/records/body_built", 0, none), Contains("/records: body_built"));
     CHECK_THAT(refusal("/settings/method", 0, 5), Contains("/settings: method: found 255"));
     CHECK_THAT(refusal("/settings/tolerance", 0, 1), Contains("tolerance: found -1"));
     CHECK_THAT(refusal("/materials/young_modulus", 0, 2), Contains("state_hash"));
+}
+
+TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {
+    const SavedFile saved(full_world());
+    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    std::vector<char> bytes = saved.bytes;
+    const auto values = [&](const std::string& path) {
+        const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
+        REQUIRE(set != sets.end());
+        return *set;
+    };
+    // The first pair becomes a self-contact of its first body.
+    const ValuesInFile first = values("/pairs/first"), second = values("/pairs/second");
+    std::memcpy(bytes.data() + second.begin, bytes.data() + first.begin, first.number_bytes);
+    constexpr unsigned self = 2;
+    change_value(values("/pairs/kind"), 0, self, bytes);
+    renew_head(bytes);
+    CHECK_THAT(saved.refusal(bytes), Contains("/pairs: self_origin: found 0 rows"));
 }
 
 TEST_CASE("a world that cannot be written stays, and so does the file before it", "[unit]") {

@@ -10,8 +10,8 @@ namespace {
 void list_joint_rows(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
     g.stage("dynamics/prepare_joints", prepare_joints,
-            inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(w.scratch.parameters.kick),
-            make(w.scratch.joints));
+            inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep), value(w.clock.time),
+            value(w.scratch.parameters.h), value(w.scratch.parameters.kick), make(w.scratch.joints));
 }
 
 void list_joint_measures(WorldState& w, TaskGraph& g) {
