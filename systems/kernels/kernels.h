@@ -1,6 +1,6 @@
-// Kernels: the functions in which a step spends nearly all of its time. They are compiled once for each instruction set
-// of a build (docs/decisions/0018-instruction-sets.md). The engine selects one table of kernels and calls the kernels
-// through it.
+// Kernels: the functions in which set-up and steps spend most of their time. They are compiled once for each
+// instruction set of a build (docs/decisions/0018-instruction-sets.md). The engine selects one table of kernels and
+// calls the kernels through it.
 #pragma once
 
 #include <span>

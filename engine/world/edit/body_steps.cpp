@@ -50,9 +50,9 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
         position.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size())),
         rows_of(model.nodes.mass, nodes), speed);
     kernels().find_relaxation(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum, lowest,
-                    step_times_frequency / step,
-                    {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
-                     rows_of(elements.relaxing_share, blocks)});
+                              step_times_frequency / step,
+                              {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
+                               rows_of(elements.relaxing_share, blocks)});
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct ImplicitShare {
 };
 
 /// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths; data
-/// that do not depend on the step length are computed once, and only when they are needed. All constructor arguments must outlive the search, and only
-/// the output columns may change meanwhile. Sequential.
+/// that do not depend on the step length are computed once, and only when they are needed. All constructor arguments
+/// must outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
 /// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
 /// bound changes with the mass shares: the step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
