@@ -172,7 +172,8 @@ std::vector<Real> World::tetrahedron_steps(BodyHandle body) const {
     const Range blocks = model.bodies.blocks[row];
     std::vector<Real> stiffness_sum(model.nodes.position.size());
     std::vector<ElementLane> step(static_cast<std::size_t>(blocks.size()));
-    kernels().element_steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum, step);
+    kernels().element_bounds.steps(model.all_elements(), blocks, model.nodes.position, model.nodes.mass, stiffness_sum,
+                                   step);
     if (blocks.size() > 0 && has_mass_form(model.all_elements(), static_cast<std::size_t>(blocks.begin))) {
         // The steps of single elements are computed with mass shares. They are shorter than the steps with mass forms,
         // but their ratios are right. All of them are therefore multiplied by one factor, so that the shortest step

@@ -1,6 +1,6 @@
-// Kernels: the functions in which a step spends nearly all of its time. They are compiled once for each instruction set
-// of a build (docs/decisions/0018-instruction-sets.md). The engine selects one table of kernels and calls the kernels
-// through it.
+// Kernels: the functions in which set-up and steps spend most of their time. They are compiled once for each
+// instruction set of a build (docs/decisions/0018-instruction-sets.md). The engine selects one table of kernels and
+// calls the kernels through it.
 #pragma once
 
 #include <span>
@@ -19,6 +19,7 @@
 #include "systems/dynamics/motion/damp_velocity.h"
 #include "systems/dynamics/motion/measure_displacement.h"
 #include "systems/dynamics/motion/predict_velocity.h"
+#include "systems/dynamics/stability/find_relaxation.h"
 #include "systems/dynamics/stability/frame_masses.h"
 #include "systems/dynamics/stability/mass_forms.h"
 #include "systems/dynamics/stability/stable_step.h"
@@ -54,7 +55,8 @@ struct Kernels {
     decltype(&skerry::kick_clusters) kick_clusters;
     StableStep (*stable_step)(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                               std::span<const Real> mass, std::span<Real> stiffness_sum);
-    decltype(&skerry::element_steps) element_steps;
+    ElementBounds element_bounds;
+    decltype(&skerry::find_relaxation) find_relaxation;
     decltype(&skerry::find_mass_shares) find_mass_shares;
     decltype(&skerry::find_mass_forms) find_mass_forms;
     decltype(&skerry::find_frame_masses) find_frame_masses;

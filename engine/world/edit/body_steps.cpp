@@ -49,10 +49,10 @@ void set_relaxation(Model& model, Range nodes, Range blocks, std::span<const Rea
     const Real lowest = lowest_frequency_estimate(
         position.subspan(static_cast<std::size_t>(nodes.begin), static_cast<std::size_t>(nodes.size())),
         rows_of(model.nodes.mass, nodes), speed);
-    find_relaxation(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum, lowest,
-                    step_times_frequency / step,
-                    {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
-                     rows_of(elements.relaxing_share, blocks)});
+    kernels().find_relaxation(model.all_elements(), blocks, position, model.nodes.mass, stiffness_sum, lowest,
+                              step_times_frequency / step,
+                              {rows_of(elements.relaxation_rate, blocks), rows_of(elements.own_frequency, blocks),
+                               rows_of(elements.relaxing_share, blocks)});
 }
 
 }  // namespace

@@ -114,19 +114,27 @@ Real smallest_altitude(const NewBody& body) {
     return body.tetrahedra.empty() ? 0 : smallest;
 }
 
-/// The table rows of a new body, and the lane of each of its elements in the element blocks.
+/// The table rows of a new body, the lane of each of its elements in the element blocks, and for each lane the
+/// tetrahedra that its element covers.
 struct BodyRows {
     Index row;
     Range nodes, tetrahedra;
     ElementPlaces places;
     AppendedElements elements;
+    Ragged<Index> covered;
 };
 
-/// Appends the elements of `list` to the tables, in the lanes given by rows.places.
-void append_elements_of(Model& model, const ElementList& list, BodyRows& rows) {
+/// Builds the elements of a body and appends them to the tables. `known`: elements of an equal body, or null. The list
+/// of elements is freed at once, because it is a third as large as all tables of the body.
+void append_elements_of(Model& model, const NewBody& body, std::span<const MaterialZone> zones,
+                        const KnownElements* known, BodyRows& rows) {
+    ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
+    add_guards({body.tetrahedra, body.nodes}, zones, list);
+    rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, rows.nodes));
     rows.elements = append_elements(list, rows.places, rows.nodes.begin, rows.row, model.elements, model.element_nodes);
     const Range blocks = rows.elements.blocks;
     start_mass_shares(model.all_elements(), blocks, rows_of(model.elements.mass_share, blocks));
+    rows.covered = covered_tetrahedra(list, rows.elements.element);
 }
 
 /// Surface triangles of a body in local node numbers. These are the triangles given by the user, or the boundary of the
@@ -149,6 +157,8 @@ std::vector<std::array<Index, 3>> outline(const Model& model, std::size_t b, con
 
 Ragged<Index> covered_tetrahedra(const ElementList& list, std::span<const Index> element_at) {
     Ragged<Index> covered;
+    covered.offset.reserve(element_at.size() + 1);
+    covered.item.reserve(list.tetrahedron.size());
     covered.offset.push_back(0);
     for (const Index e : element_at) {
         if (e != no_index) {
@@ -171,18 +181,15 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
     const Range nodes = append_nodes(model, body, row);
     stiffness_sum.resize(model.nodes.position.size());
     set_masses_and_motion(model, body, nodes);
-    BodyRows rows{row, nodes, {}, {}, {}};
+    BodyRows rows{row, nodes, {}, {}, {}, {}};
     rows.tetrahedra = append_tetrahedra(body.tetrahedra, body.nodes, nodes.begin, model.tetrahedra);
     const std::vector<MaterialZone> all_zones = zones_of(model, body);
     // Rigid and implicit bodies have tetrahedra, but no rows in the element tables.
     const std::vector<MaterialZone> zones = body.has_frame() ? std::vector<MaterialZone>() : all_zones;
     // Elements are first built for the unrotated body. Data computed in this state can be copied from a body with the
     // same mesh. The elements are rotated at the end.
-    ElementList list = elements_of({body.tetrahedra, body.nodes}, zones);
-    add_guards({body.tetrahedra, body.nodes}, zones, list);
     const KnownElements* const known = trial && !body.has_frame() ? trial : known_elements(model, body);
-    rows.places = known ? known->places : find_places(list, rows_of(model.nodes.rest_position, nodes));
-    append_elements_of(model, list, rows);
+    append_elements_of(model, body, zones, known, rows);
     const Range blocks = rows.elements.blocks;
     bodies.slot[b] = body.slot;
     bodies.kind[b] = body.kind;
@@ -212,7 +219,7 @@ Index append_body(Model& model, Column<Real>& stiffness_sum, const NewBody& body
          .tetrahedra = {body.tetrahedra.begin(), body.tetrahedra.end()},
          .surface = {body.triangles.begin(), body.triangles.end()},
          .tetrahedron_material = {body.tetrahedron_material.begin(), body.tetrahedron_material.end()},
-         .element_tetrahedra = covered_tetrahedra(list, rows.elements.element),
+         .element_tetrahedra = std::move(rows.covered),
          .start = {body.position, body.rotation},
          .built = body.rotation,
          .mesh_shape = {body.mesh_shape.begin(), body.mesh_shape.end()}});

@@ -138,25 +138,23 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
+    /// True for a large body of which too much volume would be implicit at a step length [s]. Nothing is changed.
+    bool too_many(std::size_t b, Real step) {
+        OfTwins& twins = of_first_[twin_[b]];
+        if (!(model_.bodies.nodes[b].size() > nodes_of_large) || known_of(twins, step)) return false;
+        start(b, twins);
+        return twins.search->estimate_volume(step / gain_of_forms) > most_volume_of_large;
+    }
+
     /// Finds the implicit elements of a body for a step length [s]. May write the element columns of the body even if
     /// `possible` of the result is false.
     Found find(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
-        for (const Result& known : twins.known) {
-            if (known.step != step) continue;
-            known.elements.put_back(model_, b);
-            return known.found;
+        if (const Result* known = known_of(twins, step)) {
+            known->elements.put_back(model_, b);
+            return known->found;
         }
-        const Range blocks = model_.bodies.blocks[b];
-        if (!twins.search) {
-            twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
-                                 stiffness_sum_, outputs_of(model_, blocks));
-            twins.searched = b;
-            twins.most_moment = most_moment_of(model_, b);
-        }
-        if (model_.bodies.nodes[b].size() > nodes_of_large &&
-            twins.search->estimate_volume(step / gain_of_forms) > most_volume_of_large)
-            return {};
+        start(b, twins);
         const Kept kept(model_, twins.searched);
         const ImplicitShare share = twins.search->find({step, step / gain_of_forms, headroom, twins.most_moment});
         const Found found = judged(model_, twins.searched, share, twins.most_moment);
@@ -179,6 +177,19 @@ private:
         std::optional<ImplicitSearch> search{};  // created when it is first used
         std::vector<Result> known{};
     };
+    static const Result* known_of(const OfTwins& twins, Real step) {
+        const auto found = std::ranges::find(twins.known, step, &Result::step);
+        return found == twins.known.end() ? nullptr : &*found;
+    }
+    /// Starts the search of a group of equal bodies with body b, unless it was started before.
+    void start(std::size_t b, OfTwins& twins) {
+        if (twins.search) return;
+        const Range blocks = model_.bodies.blocks[b];
+        twins.search.emplace(model_.all_elements(), blocks, model_.nodes.rest_position, model_.nodes.mass,
+                             stiffness_sum_, outputs_of(model_, blocks), kernels().element_bounds);
+        twins.searched = b;
+        twins.most_moment = most_moment_of(model_, b);
+    }
     Model& model_;
     std::span<Real> stiffness_sum_;
     std::vector<std::size_t> twin_;
@@ -226,6 +237,10 @@ Plan plan_for(Model& model, Real step, Searches& searches) {
     Plan plan{.step = step, .body = {}};
     for (std::size_t b = 0; b < model.bodies.slot.size() && plan.possible; ++b) {
         if (!has_elements(model, b) || model.bodies.rest_step[b] >= step) continue;
+        if (searches.too_many(b, step)) {
+            plan.possible = false;
+            break;
+        }
         const Kept kept(model, b);
         const Found found = searches.find(b, step);
         plan.possible = found.possible;
@@ -350,7 +365,8 @@ bool make_implicit(Model& model, std::size_t body, Real step, Real present, std:
     const Found found =
         judged(model, body,
                add_implicit_elements(model.all_elements(), blocks, model.nodes.position, model.nodes.mass,
-                                     {of_clusters, step, headroom, most}, stiffness_sum, outputs_of(model, blocks)),
+                                     {of_clusters, step, headroom, most}, stiffness_sum, outputs_of(model, blocks),
+                                     kernels().element_bounds),
                most);
     const Real inversions = inversion_cost * static_cast<Real>(found.sizes.cubes) / (lasts * step);
     if (found.possible &&

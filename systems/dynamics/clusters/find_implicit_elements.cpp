@@ -6,7 +6,6 @@
 
 #include "systems/dynamics/clusters/implicit_elements.h"
 #include "systems/dynamics/elements/element_block.h"
-#include "systems/dynamics/stability/stable_step.h"
 #include "systems/dynamics/stability/stiffness_share.h"
 
 namespace skerry {
@@ -71,38 +70,36 @@ constexpr Real most_volume = 0.75;  // largest fraction of the volume of a body 
 }  // namespace
 
 ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                               std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out)
+                               std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out,
+                               const ElementBounds& bounds)
     : elements_(elements),
       blocks_(blocks),
       position_(position),
       mass_(mass),
       stiffness_sum_(stiffness_sum),
       out_(out),
+      bounds_(bounds),
       nodes_(nodes_of(elements, blocks)),
       least_moment_(least_moment(nodes_, position, mass)),
-      frequency_(out.mass_share.size()),
-      stiffness_(frequency_.size()),
-      unit_(frequency_.size()),
-      step_(frequency_.size()),
-      measured_(frequency_.size()),
-      trace_(frequency_.size()) {
-    const std::size_t count =
-        nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - nodes_.front()) + 1;  // gaps included
-    if (count > 0) first_node_ = nodes_.front();
-    marks_.resize(count);
+      frequency_(out.mass_share.size()) {
+    if (!nodes_.empty()) first_node_ = nodes_.front();
+    bounds_.lone_frequencies(elements, blocks, position, mass, frequency_);
+}
+
+void ImplicitSearch::prepare() {
+    const std::size_t rows = frequency_.size(),
+                      count = nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - first_node_) + 1;
+    marks_.resize(count);  // gaps between the nodes of the body included
     sum_.resize(count);
     ratio_.resize(count);
+    for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_, &trace_}) column->resize(rows);
     list_holds();
-    start_mass_shares(elements, blocks, out.mass_share);
-    LaneQuaternion<Real8> alone{Real8{} + 1.0, {}, {}, {}}, q = alone;
-    for (std::size_t row = 0; row < frequency_.size(); ++row) {
-        const std::size_t b = row + static_cast<std::size_t>(blocks.begin);
-        const LaneMat3<Real8> F = deformation_of(elements, b, position);
-        store(frequency_squared_of(elements, b, F, mass, {}, alone), frequency_[row]);
-        store(stiffness_of(elements, b, F, q), stiffness_[row]);
-        store(stiffness_weight(elements, b, F), unit_[row]);
+    bounds_.stiffnesses(elements_, blocks_, position_, stiffness_);
+    for (std::size_t row = 0; row < rows; ++row) {
+        const std::size_t b = row + static_cast<std::size_t>(blocks_.begin);
+        store(stiffness_weight(elements_, b, deformation_of(elements_, b, position_)), unit_[row]);
         for (std::size_t l = 0; l < element_lanes; ++l)
-            if (out.mass_share[row][l] > 0) unit_[row][l] /= out.mass_share[row][l];
+            if (out_.mass_share[row][l] > 0) unit_[row][l] /= out_.mass_share[row][l];
     }
 }
 
@@ -111,6 +108,10 @@ Real ImplicitSearch::need(std::size_t b, std::size_t l, Real step) const {
 }
 
 void ImplicitSearch::list_holds() {
+    std::size_t most = 0;
+    for (Index b = blocks_.begin; b < blocks_.end; ++b)
+        most += element_lanes * static_cast<std::size_t>(elements_.nodes_of(static_cast<std::size_t>(b)).count);
+    holds_.reserve(most);
     for (auto b = static_cast<std::size_t>(blocks_.begin); b < static_cast<std::size_t>(blocks_.end); ++b) {
         const BlockNodes of = elements_.nodes_of(b);
         for (Index k = 0; k < of.count; ++k)
@@ -139,7 +140,7 @@ void ImplicitSearch::find_trace(std::vector<ElementLane>& trace) {
 }
 
 void ImplicitSearch::measure() {
-    element_steps(elements_, blocks_, position_, mass_, stiffness_sum_, step_);
+    bounds_.steps(elements_, blocks_, position_, mass_, stiffness_sum_, step_);
     measured_ = step_;
     for (const Index n : nodes_)
         sum_[static_cast<std::size_t>(n - first_node_)] = stiffness_sum_[static_cast<std::size_t>(n)];
@@ -246,6 +247,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     // from taking the masses of its neighbours.
     constexpr Real most_change = 4;
     start_mass_shares(elements_, blocks_, out_.mass_share);
+    if (step_.empty()) prepare();
     std::ranges::fill(out_.modulus, ElementLane{});
     least_need_ = 1;
     for_each_element(elements_, blocks_, [&](std::size_t b, std::size_t l) {
@@ -283,12 +285,12 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
 
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
-                                    const ImplicitOutputs& out) {
+                                    const ImplicitOutputs& out, const ElementBounds& bounds) {
     const auto first = static_cast<std::size_t>(blocks.begin);
     std::vector<ElementLane> step(out.mass_share.size());
     // When an element becomes implicit, explicit elements get its mass share. Stable steps are then computed again.
     for (bool gave_up = true; gave_up;) {
-        element_steps(elements, blocks, position, mass, stiffness_sum, step);
+        bounds.steps(elements, blocks, position, mass, stiffness_sum, step);
         gave_up = false;
         Real volume = 0, implicit = 0;  // m^3
         for_each_element(elements, blocks, [&](std::size_t b, std::size_t l) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "systems/dynamics/elements/compute_element_forces.h"
+#include "systems/dynamics/stability/stable_step.h"
 
 namespace skerry {
 
@@ -32,8 +33,8 @@ struct ImplicitShare {
 };
 
 /// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths; data
-/// that do not depend on the step length are computed once. All constructor arguments must outlive the search, and only
-/// the output columns may change meanwhile. Sequential.
+/// that do not depend on the step length are computed once, and only when they are needed. All constructor arguments
+/// must outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
 /// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
 /// bound changes with the mass shares: the step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
@@ -43,7 +44,8 @@ class ImplicitSearch {
 public:
     /// `out` must refer to the columns that `elements` reads. `stiffness_sum` is work memory with one entry per node.
     ImplicitSearch(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
-                   std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out);
+                   std::span<const Real> mass, std::span<Real> stiffness_sum, const ImplicitOutputs& out,
+                   const ElementBounds& bounds = {});
 
     /// Shares the masses of the body so that every explicit element is stable at a step of goal.stable, and makes as
     /// few elements implicit as necessary. The elements that need the largest fraction of the masses of their nodes
@@ -76,6 +78,8 @@ private:
     /// Fraction of the masses of its nodes that an element needs to be stable at `step`. If the fraction is above 1, no
     /// mass share can make the element stable.
     Real need(std::size_t b, std::size_t l, Real step) const;
+    /// Computes the data of find() that do not depend on the step length. Mass shares must be the initial ones.
+    void prepare();
     void list_holds();
     /// measure() and estimate() compute the stable steps of all elements with their present mass shares. measure() uses
     /// the rigorous bound, estimate() the change of the trace since the last rigorous bound.
@@ -100,6 +104,7 @@ private:
     std::span<const Real> mass_;
     std::span<Real> stiffness_sum_;
     ImplicitOutputs out_;
+    ElementBounds bounds_;
     std::vector<Index> nodes_;  // of the elements
     Real least_moment_;         // kg m^2
     Index first_node_ = 0;
@@ -123,6 +128,6 @@ private:
 /// ignored.
 ImplicitShare add_implicit_elements(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                                     std::span<const Real> mass, const ImplicitGoal& goal, std::span<Real> stiffness_sum,
-                                    const ImplicitOutputs& out);
+                                    const ImplicitOutputs& out, const ElementBounds& bounds);
 
 }  // namespace skerry

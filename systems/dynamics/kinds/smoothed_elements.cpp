@@ -71,6 +71,10 @@ void add_groups(const RestMesh& mesh, const Ragged<Index>& groups, Real share, E
     std::vector<TetrahedronGradients> rest;
     rest.reserve(mesh.tetrahedra.size());
     for (const auto& tetrahedron : mesh.tetrahedra) rest.push_back(tetrahedron_gradients(tetrahedron, mesh.position));
+    // n tetrahedra around an edge have at most n + 3 nodes in a manifold mesh, and those around a node have fewer.
+    const std::size_t most_nodes = list.node.size() + groups.item.size() + 3 * groups.size();
+    list.node.reserve(most_nodes);
+    list.gradient.reserve(most_nodes);
     list.first_node.reserve(list.first_node.size() + groups.size());
     list.first_tetrahedron.reserve(list.first_tetrahedron.size() + groups.size());
     list.volume.reserve(list.volume.size() + groups.size());

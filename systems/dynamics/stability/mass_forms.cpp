@@ -195,12 +195,15 @@ private:
     }
     /// Gradients of the iterated vectors (estimates of the highest modes) in one element, by direction.
     std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
-        std::array<Real4, 3> t{};
+        Real4 along_x{}, along_y{}, along_z{};  // separate, so that the sums stay in registers
         for (Index k = 0; k < nodes.count; ++k) {
-            const Real4& x = vector_[local(nodes.node[k][l])];
-            for (std::size_t i = 0; i < 3; ++i) t[i] += nodes.gradient[k][i][l] * x;
+            const Real4& vectors = vector_[local(nodes.node[k][l])];
+            const ElementGradient& g = nodes.gradient[k];
+            along_x += g[0][l] * vectors;
+            along_y += g[1][l] * vectors;
+            along_z += g[2][l] * vectors;
         }
-        return t;
+        return {along_x, along_y, along_z};
     }
     /// Adds the product of the stiffness sum_e G V W G^T with the vectors to product_.
     void add_product(Range blocks) {

@@ -270,6 +270,25 @@ void element_steps(const ElementInputs& elements, Range blocks, std::span<const 
     }
 }
 
+void lone_frequencies(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const Real> mass, std::span<ElementLane> frequency_squared) {
+    LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+    for (std::size_t row = 0; row < frequency_squared.size(); ++row) {
+        const std::size_t b = row + static_cast<std::size_t>(blocks.begin);
+        store(frequency_squared_of(elements, b, deformation_of(elements, b, position), mass, {}, q),
+              frequency_squared[row]);
+    }
+}
+
+void element_stiffnesses(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                         std::span<ElementLane> stiffness) {
+    LaneQuaternion<Real8> q{Real8{} + 1.0, {}, {}, {}};
+    for (std::size_t row = 0; row < stiffness.size(); ++row) {
+        const std::size_t b = row + static_cast<std::size_t>(blocks.begin);
+        store(stiffness_of(elements, b, deformation_of(elements, b, position), q), stiffness[row]);
+    }
+}
+
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share) {
     constexpr int rounds = 4;

@@ -44,6 +44,23 @@ StableStep result_of(const StepEvaluation& look);
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 
+/// Squared frequency of each element of these blocks, bounded as if the element had all mass of its nodes
+/// (frequency_squared_of()) [1/s^2].
+void lone_frequencies(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                      std::span<const Real> mass, std::span<ElementLane> frequency_squared);
+
+/// Bound on the material Hessian of each element of these blocks (stiffness_of()) [Pa].
+void element_stiffnesses(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
+                         std::span<ElementLane> stiffness);
+
+/// Functions that bound every element of a range of blocks. Systems that are not kernels get those of the instruction
+/// set in use from the engine.
+struct ElementBounds {
+    decltype(&skerry::element_steps) steps = &skerry::element_steps;
+    decltype(&skerry::lone_frequencies) lone_frequencies = &skerry::lone_frequencies;
+    decltype(&skerry::element_stiffnesses) stiffnesses = &skerry::element_stiffnesses;
+};
+
 /// Sharpens the bound of stable_step() by shifting mass between elements. In each of four rounds the share s of an
 /// element becomes s omega / omega_max, where omega is the frequency of the element alone and omega_max the highest of
 /// these frequencies. So elements of low frequency give mass to elements of high frequency (docs/methods/stable_step.md

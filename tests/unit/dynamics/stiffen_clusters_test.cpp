@@ -46,6 +46,23 @@ struct SliverBox {
 
 }  // namespace
 
+TEST_CASE("an estimate of the implicit volume leaves mass shares and moduli as they are", "[unit][clusters]") {
+    SliverBox box(ElementKind::edge_node_smoothed);
+    const std::span<ElementLane> share = box.body.elements.mass_share, modulus = box.body.elements.implicit_modulus;
+    const auto has_implicit = [](const ElementLane& lanes) {
+        return std::ranges::any_of(lanes.lane, [](Real x) { return x > 0; });
+    };
+    REQUIRE(std::ranges::any_of(modulus, has_implicit));
+    const std::vector<ElementLane> shares(share.begin(), share.end()), moduli(modulus.begin(), modulus.end());
+    std::vector<Real> sums(box.body.position.size());
+    const ImplicitSearch search(box.body.inputs(), box.body.blocks, box.body.position, box.body.mass, sums,
+                                {share, modulus});
+    CHECK(search.estimate_volume(box.cluster_step[0]) > 0);
+    const auto equal = [](const ElementLane& a, const ElementLane& b) { return std::ranges::equal(a.lane, b.lane); };
+    CHECK(std::ranges::equal(share, shares, equal));
+    CHECK(std::ranges::equal(modulus, moduli, equal));
+}
+
 TEST_CASE("where forces say that elements stiffen is all that a look at every element finds", "[unit][clusters]") {
     const auto kind = GENERATE(ElementKind::linear, ElementKind::edge_node_smoothed);
     INFO(name_of(kind));
