@@ -64,7 +64,7 @@ std::string limit_lines(const WorldReport& r) {
             case StepLimit::strain:
                 return "the stable step of " + of.body_name + " in its deformed shape";
             case StepLimit::speed:
-                return "fast deformation of " + of.body_name;
+                return "fast deformation or rotation of " + of.body_name;
             case StepLimit::inversion:
                 return "elements of " + of.body_name + " that would turn inside out";
             case StepLimit::crossing:
