@@ -7,7 +7,6 @@
 #include "engine/program/dynamics_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
-#include "engine/program/start_text.h"
 
 namespace skerry {
 
@@ -65,7 +64,7 @@ std::string limit_lines(const WorldReport& r) {
             case StepLimit::strain:
                 return "the stable step of " + of.body_name + " in its deformed shape";
             case StepLimit::speed:
-                return "fast deformation of " + of.body_name;
+                return "fast deformation or rotation of " + of.body_name;
             case StepLimit::inversion:
                 return "elements of " + of.body_name + " that would turn inside out";
             case StepLimit::crossing:
@@ -116,7 +115,6 @@ std::string energy_line(const RunResult& result) {
 std::string details_of(const RunResult& result) {
     const WorldReport& r = result.report;
     std::string text = summary_line("backend", std::string(name_of(result.settings.backend)));
-    if (!r.start_moves.empty()) text += summary_line("start", moves_text(r));
     text += step_length_lines(r);
     for (const std::string& choice : choice_texts(r)) text += summary_line("dynamics", choice);
     if (r.clusters > 0) text += summary_line("clusters", cluster_text(r));

@@ -18,6 +18,8 @@ constexpr Real least_density = 2, most_density = 25000;  // [kg/m^3]
 constexpr Real most_modulus = 1.3e12;                    // [Pa]
 constexpr Real most_gravity = 5000;                      // [m/s^2]
 constexpr Real most_size_ratio = 999;                    // longest over shortest body of a scene
+// Distance of a body from the origin as a multiple of its size, beyond which a pin hardly rotates about the origin.
+constexpr Real most_pivot_distance = 1;
 
 struct Extent {
     Real size = 0;    // longest edge of the bounding box [m]
@@ -105,6 +107,22 @@ void warn_of_pose(const ColliderSettings& collider, std::vector<std::string>& wa
                        ": keys are poses of the collider itself; correct the keys, or delete \"position\"");
 }
 
+/// Warns if a pin rotates about the origin of the world, where no centre of rotation was given, and the body is far
+/// away.
+void warn_of_pivots(const BodyPlan& body, Real size, std::vector<std::string>& warnings) {
+    for (std::size_t p = 0; p < body.pins.size(); ++p) {
+        const Motion& motion = body.pins[p].motion;
+        const Vec3& center = motion.keys.empty() ? body.pins[p].pivot : motion.keys.front().position;
+        const bool turns = motion.turns() || !motion.angular_velocity.isZero(0);
+        const Real distance = body.settings.position.norm();
+        if (!turns || !center.isZero(0) || !(distance > most_pivot_distance * size)) continue;
+        warnings.push_back("pin " + std::to_string(p) + " of body \"" + body.settings.name +
+                           "\" rotates about the origin of the world, " + with_unit(distance, "m") +
+                           " away: give the centre of rotation as " +
+                           (motion.keys.empty() ? "\"pivot\"" : "\"position\" of every key"));
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> plan_warnings(const ScenePlan& plan) {
@@ -123,6 +141,7 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
                           body.settings.rotation == before->settings.rotation;
         extents.push_back(copy ? extents.back() : extent_of(plan.meshes[body.mesh], body.settings, gravity));
         if (!copy) warn_of_sag(plan, body, extents.back().height, warnings);
+        warn_of_pivots(body, extents.back().size, warnings);
         before = &body;
     }
     warn_of_sizes(plan, extents, warnings);

@@ -14,7 +14,9 @@ long RunPlan::frames() const {
 }
 
 double RunPlan::length_of(long frame) const {
-    return std::min(frame_step, seconds - static_cast<double>(frame) * frame_step);
+    // Rounding must not shorten the last frame, because a longer run would then have another frame at this time.
+    const double left = seconds - static_cast<double>(frame) * frame_step;
+    return left > (1 - slack) * frame_step ? frame_step : left;
 }
 
 bool RunPlan::even() const {

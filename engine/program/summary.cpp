@@ -4,6 +4,7 @@
 #include "engine/program/dynamics_text.h"
 #include "engine/program/number_text.h"
 #include "engine/program/run_result.h"
+#include "engine/program/start_text.h"
 
 namespace skerry {
 
@@ -37,7 +38,8 @@ std::string time_text(const RunResult& result) {
 std::string start_lines(const RunResult& result) {
     return summary_line("loading", with_unit(result.seconds_load, "s") + " to read the scene and its meshes") +
            summary_line("set-up", with_unit(result.seconds_setup, "s") +
-                                      " to add the bodies, find overlaps and choose the step length");
+                                      " to add the bodies, find overlaps and choose the step length") +
+           (result.report.start_moves.empty() ? "" : summary_line("start", moves_text(result.report)));
 }
 
 std::string penetration_text(const RunResult& result) {

@@ -29,7 +29,9 @@ const Rule<PinEntry>& rule_of<PinEntry>() {
                       "whatever numbers the file gives them",
                   .limits = at_least(0)})
             .key("motion", &PinEntry::motion, {.meaning = "motion of the pinned nodes; default: none"})
-            .key("pivot", &PinEntry::pivot, {.meaning = "centre of rotation of the motion", .unit = "m"})
+            .key("pivot", &PinEntry::pivot,
+                 {.meaning = "centre of rotation of an angular velocity, in the world; default: the origin",
+                  .unit = "m"})
             .exactly_one({"box", "nodes"});
     return rule;
 }

@@ -131,7 +131,10 @@ const Rule<KeyEntry>& rule_of<KeyEntry>() {
                        "A pose at a given time. Between two keys the position changes linearly, and the rotation is "
                        "about a fixed axis.")
             .key("time", &KeyEntry::time, {.meaning = "time", .unit = "s", .limits = at_least(0), .required = true})
-            .key("position", &KeyEntry::position, {.meaning = "position", .unit = "m"})
+            .key("position", &KeyEntry::position,
+                 {.meaning = "position in the world; a pin moves with the key and rotates about this point; default: "
+                             "the origin",
+                  .unit = "m"})
             .key("rotation", &KeyEntry::rotation, {.meaning = "rotation"});
     return rule;
 }

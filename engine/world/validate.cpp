@@ -318,6 +318,16 @@ void validate_step(const Model& model, Index body, const std::string& name) {
 void validate(const Motion& motion, const Vec3& pivot) {
     validate(motion, "attachment");
     require_finite("attachment", "pivot", pivot);
+    if (!motion.keys.empty() && !pivot.isZero(0))
+        Complaint{.file = {},
+                  .object = "attachment",
+                  .field = "pivot",
+                  .found = "a pivot and keys",
+                  .expected = "a pivot only for an angular velocity",
+                  .hint =
+                      "keys rotate the nodes about the position of the keys: give each key the position of the "
+                      "centre of rotation"}
+            .raise();
 }
 
 namespace {

@@ -254,7 +254,7 @@ private:
                 pin = {{"box", {{"lower", list(Vec3::Constant(-size * 2))}, {"upper", {size * 2, size * 2, 0.0}}}}};
             if (random_.chance(0.5)) {
                 pin["motion"] = motion(last_position_);
-                pin["pivot"] = list(last_position_);
+                if (!pin["motion"].contains("keys")) pin["pivot"] = list(last_position_);
             }
             body["pin"] = pin;
         }

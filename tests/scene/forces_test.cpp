@@ -373,6 +373,26 @@ TEST_CASE("what holds a body at rest goes on as it was while it was still", "[sc
     CHECK(world.forces().on(low, floor).force().z() == Approx(2 * weight).epsilon(0.01));
 }
 
+TEST_CASE("a mat carries the same weight before and after it falls asleep", "[scene]") {
+    // The mat creeps to rest, so that its time of stillness is set back before it falls asleep.
+    World world{Settings{}};
+    const auto rubber = world.add_material({.young_modulus = 1e5, .poisson_ratio = 0, .loss_factor = 0.2});
+    const auto steel = world.add_material({.young_modulus = 2e11, .density = 7800});
+    const auto floor = world.add_collider(Plane{});
+    const auto mat =
+        world.add_body(mesh::box({0.1, 0.1, 0.05}, {4, 4, 2}), {.material = rubber, .position = {0, 0, 0.0255}});
+    const auto block =
+        world.add_body(mesh::box({0.1, 0.1, 0.1}, {2, 2, 2}), {.material = steel, .position = {0, 0, 0.102}});
+    world.measure_forces(true);
+    while (!world.asleep(mat) && world.time() < 10) REQUIRE(world.advance(1.0 / 60).ok());
+    REQUIRE(world.asleep(block));
+    REQUIRE(world.advance(0.1).ok());
+    const Real weight = world.mass(block) * standard_gravity;
+    CHECK(world.forces().on(block, mat).force().z() == Approx(weight).epsilon(0.01));
+    CHECK(world.forces().on(mat, floor).force().z() ==
+          Approx(weight + world.mass(mat) * standard_gravity).epsilon(0.01));
+}
+
 TEST_CASE("measuring changes no step, costs nothing that is not asked for, and says so where it is not on", "[scene]") {
     BusyWorld one(with(Integrator::leapfrog)), other(with(Integrator::leapfrog));
     one.world.measure_forces(true);

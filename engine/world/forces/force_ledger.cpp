@@ -242,14 +242,14 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
 }
 
 /// Completes the sums of a pair at the end of a step. If both bodies slept in this step and had no contact in it, their
-/// mean forces over the time in which both were still count as the forces of this step. If a body was awake, the length
-/// of this still time is updated, and the sums over the still time are cleared when a body moves.
+/// mean forces over the time in which both were still count as the forces of this step. If a body was awake, the step
+/// is added to this still time, and the sums over the still time are cleared when a body moves.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;
+    const Real seconds = is_implicit(model, row.key) ? step_.whole : step_.kick;
     if (rested[first] && rested[second]) {
         if (!row.touched && row.still_seconds > 0) {
-            const Real seconds = is_implicit(model, row.key) ? step_.whole : step_.kick;
             const ContactSums held = (seconds / row.still_seconds) * row.still;
             row.sums += held;
             row.peak.add(held.impulse, row.still_contacts);
@@ -258,9 +258,8 @@ void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t
         return;
     }
     row.still_contacts = row.peak.step_contacts;
-    const Real still_for = std::min(model.bodies.still_time[first], model.bodies.still_time[second]);
-    if (still_for > 0) {
-        row.still_seconds = std::min(still_for, measured_seconds_);
+    if (std::min(model.bodies.still_time[first], model.bodies.still_time[second]) > 0) {
+        row.still_seconds += seconds;
     } else {
         row.still = {};
         row.still_seconds = 0;
@@ -299,7 +298,7 @@ void ForceLedger::add_reactions(const Model& model, std::span<const std::uint8_t
             of_step = {part * row.still.impulse, part * row.still.moment};
         } else if (model.bodies.still_time[body] > 0) {
             row.still += of_step;
-            row.still_seconds = std::min(model.bodies.still_time[body], measured_seconds_);
+            row.still_seconds += seconds;
         } else {
             row.still = {};
             row.still_seconds = 0;
@@ -314,7 +313,6 @@ void ForceLedger::add_step(const Model& model, std::span<const std::uint8_t> res
     step_ = {scratch.parameters.h, scratch.parameters.kick};
     call_.whole += step_.whole;
     call_.kick += step_.kick;
-    measured_seconds_ += scratch.parameters.h;
     add_pairs(model, rested, scratch);
     add_reactions(model, rested, scratch);
     for (const Index n : model.attachments.node)

@@ -47,9 +47,9 @@ public:
     };
     struct PairRow {
         PairKey key{};
-        ContactSums sums{};   // sums of contact impulses over the call of advance
-        ContactSums still{};  // sums of contact impulses over the time in which both objects were still
-        Real still_seconds = 0;
+        ContactSums sums{};        // sums of contact impulses over the call of advance
+        ContactSums still{};       // sums of contact impulses over the time in which both objects were still
+        Real still_seconds = 0;    // time over which `still` is summed [s]
         Index still_contacts = 0;  // number of contacts in the last step in which a body of the pair was awake
         Peak peak{};
         bool touched = false;  // true if the pair had contacts in the present step
@@ -115,7 +115,6 @@ private:
     };
     Seconds step_, call_;
     Real step_before_ = 0;        // length of the step before the call; 0 if there was none [s]
-    Real measured_seconds_ = 0;   // time since the start of the measurement [s]
     std::vector<PairRow> pairs_;  // sorted by key
     // by slot
     std::vector<Peak> bodies_, colliders_;

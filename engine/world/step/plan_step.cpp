@@ -4,8 +4,30 @@
 #include <cmath>
 
 #include "engine/world/step/step.h"
+#include "systems/dynamics/rigid/rigid_motion.h"
 
 namespace skerry {
+
+Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
+    // Joints keep their directions of the start of a step during the step. The resulting errors of energy and of the
+    // joint's position grow with the angle of rotation [rad].
+    constexpr Real largest_turn = 0.1;
+    const RigidBodyTable& rigid = model.rigid_bodies;
+    Real step = shorter_than;
+    const auto limit_by = [&](Index body) {
+        if (body == no_index) return;
+        const auto r = static_cast<std::size_t>(model.bodies.rigid[static_cast<std::size_t>(body)].begin);
+        const Real spin = spin_of(rigid.rotation[r], rigid.moments[r], rigid.angular_momentum[r]).norm();
+        if (!(spin * step > largest_turn)) return;
+        step = largest_turn / spin;
+        fastest = body;
+    };
+    for (std::size_t j = 0; j < model.joints.slot.size(); ++j) {
+        limit_by(model.joints.first[j]);
+        limit_by(model.joints.second[j]);
+    }
+    return step;
+}
 
 StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     StepPlan plan;

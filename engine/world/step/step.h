@@ -99,6 +99,9 @@ struct StepPlan {
 };
 /// Plans the next step of an interval of which `left` seconds remain. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
+/// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
+/// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`.
+Real step_of_turns(const Model& model, Real shorter_than, Index& fastest);
 /// Returns the time until the end of the long step that contains the next step [s]. Begins a long step if there is
 /// none. In worlds without long steps, returns `left`, the time until the end of the call.
 Real left_in_long_step(const Model& model, Real left, LongStepClock& clock);

@@ -70,6 +70,16 @@ class CheckpointTest(ProgramCase):
         self.assertAlmostEqual(longer["seconds_simulated"], 0.31, places=12)
         self.assertEqual(longer["frames"], expected["frames"])
 
+    def test_a_longer_run_keeps_its_bits_if_the_last_frame_is_rounded(self):
+        # 0.25 - 14 / 60 is rounded to less than 1 / 60
+        scene = self.write("rolling.json", dict(SCENE, bodies=[
+            dict(SCENE["bodies"][0], mesh={"ball": {"radius": 0.1, "resolution": 4}}, position=[0, 0, 0.11],
+                 velocity=[0.3, 0, 0], angular_velocity=[1, 2, 3])], probes=[]))
+        expected = self.run_stats(scene, "--seconds", 0.4)
+        checkpoint = self.folder / "run.skerry"
+        self.run_stats(scene, "--seconds", 0.25, "--checkpoint", checkpoint)
+        self.same_run(self.run_stats("--restart", checkpoint, "--seconds", 0.4), expected)
+
     def test_a_run_of_a_changed_scene_goes_on_with_it(self):
         checkpoint = self.folder / "run.skerry"
         change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]

@@ -137,6 +137,26 @@ class ProgramRunTest(ProgramCase):
         self.assertIn("WARNING       the surface of body 'strip' crosses itself", summary)
         self.assertIn("; no surface crosses itself", self.skerry("run", self.scene).stdout)
 
+    def test_a_pin_that_rotates_about_the_far_origin_is_a_warning(self):
+        top = {"lower": [-1, -1, 0.149], "upper": [1, 1, 1]}
+        turn = {"keys": [{"time": 0}, {"time": 1, "rotation": {"axis": [0, 0, 1], "degrees": 20}}]}
+        body = {"name": "bar", "mesh": {"box": {"size": [0.1, 0.1, 0.3], "cells": [2, 2, 6]}}, "material": "soft",
+                "position": [1, 2, 3], "pin": [{"box": top, "motion": turn}]}
+        scene = self.write("turn.json", {"seconds": 0.01, "settings": {"gravity": [0, 0, 0]},
+                                         "materials": {"soft": {"E": 1e5}}, "bodies": [body]})
+        self.assertIn('pin 0 of body "bar" rotates about the origin of the world, 3.74 m away: give the centre of '
+                      'rotation as "position" of every key', self.skerry("run", scene).stderr)
+        body["pin"][0]["pivot"] = [1, 2, 3]
+        scene = self.write("turn.json", {"materials": {"soft": {"E": 1e5}}, "bodies": [body]})
+        found = self.skerry("run", scene, code=2).stderr
+        self.assertIn("pivot", found)
+        self.assertIn("give each key the position of the centre of rotation", found)
+        for key in turn["keys"]:
+            key["position"] = [1, 2, 3]
+        del body["pin"][0]["pivot"]
+        scene = self.write("turn.json", {"seconds": 0.01, "materials": {"soft": {"E": 1e5}}, "bodies": [body]})
+        self.assertNotIn("rotates about", self.skerry("run", scene).stderr)
+
     def test_the_summary_is_short_and_details_are_printed_on_request(self):
         short = self.skerry("run", self.scene).stdout
         self.assertLessEqual(len(short.splitlines()), 15, short)

@@ -27,7 +27,7 @@ class ProgramStartTest(ProgramCase):
 
     def test_bodies_that_overlap_a_bit_are_moved_apart_and_the_run_says_so(self):
         stats = self.folder / "stats.json"
-        done = self.skerry("run", self.overlapping(0.095), "--stats", stats, "--profile")
+        done = self.skerry("run", self.overlapping(0.095), "--stats", stats)
         self.assertIn("1 overlap, 2 bodies moved apart, the largest movement ", done.stdout)
         self.assertNotIn("WARNING", done.stdout)
         start = json.loads(stats.read_text())["start"]
