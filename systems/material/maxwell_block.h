@@ -30,25 +30,30 @@ struct SixFloats {
 
 [[gnu::always_inline]] inline SixFloats load_six(const Lanes<float, element_lanes>* from) {
     SixFloats six;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < six.count; ++i) six.of[i] = reinterpret_cast<const KernelFloatInMemory*>(from)[i];
     return six;
 }
 [[gnu::always_inline]] inline void store_six(const SixFloats& six, Lanes<float, element_lanes>* to) {
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < six.count; ++i) reinterpret_cast<KernelFloatInMemory*>(to)[i] = six.of[i];
 }
 
 [[gnu::always_inline]] inline SixFloats operator+(const SixFloats& a, const SixFloats& b) {
     SixFloats sum;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < sum.count; ++i) sum.of[i] = a.of[i] + b.of[i];
     return sum;
 }
 [[gnu::always_inline]] inline SixFloats operator-(const SixFloats& a, const SixFloats& b) {
     SixFloats difference;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < difference.count; ++i) difference.of[i] = a.of[i] - b.of[i];
     return difference;
 }
 [[gnu::always_inline]] inline SixFloats operator*(float s, const SixFloats& a) {
     SixFloats product;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < product.count; ++i) product.of[i] = s * a.of[i];
     return product;
 }
@@ -150,6 +155,7 @@ struct MaxwellStep {
         return after;
     };
     SixFloats sum = spring(0, dissipated);
+#pragma GCC unroll 3
     for (std::size_t k = 1; k < maxwell_count; ++k) {
         Float8 energy;
         sum = sum + spring(k, energy);

@@ -78,6 +78,7 @@ struct Run {
                                                                           Parts<KernelReal>& relaxed) const {
         using T = KernelReal;
         Parts<T> xx, yy, zz, xy, yz, zx, relaxes_volume;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneSymmetric<T> E = twice_green_strain(F[part]);
             xx[part] = E.xx, yy[part] = E.yy, zz[part] = E.zz;
@@ -92,6 +93,7 @@ struct Run {
         xy = reals_of(stress.xy), yz = reals_of(stress.yz), zx = reals_of(stress.zx);
         const Parts<T> energy = reals_of(dissipated);
         Parts<LaneSymmetric<T>> S;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             S[part] = T(maxwell.modulus * scale[part]) *
                       LaneSymmetric<T>{xx[part], yy[part], zz[part], xy[part], yz[part], zx[part]};
@@ -109,12 +111,14 @@ struct Run {
         if constexpr (Law::has_frame) {
             Parts<LaneQuaternion<T>> q;
             Parts<T> volume;
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part) {
                 q[part] = load_part<T>(rotation[block], part);
                 volume[part] = part_of<T>(elements.volume, block, part);
             }
             const Parts<T> trace = extract_rotations(F, volume, q);
             Parts<decltype(law.stress(material, rotation_of(q[0]), trace[0]))> P;
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part) {
                 store_part(q[part], next.rotation[block], part);
                 P[part] = scaled(scale[part], law.stress(material, rotation_of(q[part]), trace[part]));
@@ -122,6 +126,7 @@ struct Run {
             return P;
         } else {
             Parts<decltype(law.stress(material, F[0]))> P;
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part)
                 P[part] = scaled(scale[part], law.stress(material, F[part]));
             return P;
@@ -139,6 +144,7 @@ struct Run {
     /// holds for most blocks in most steps.
     [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
                              taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
@@ -155,6 +161,7 @@ struct Run {
     bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal of_modulus =
                 elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, block, part);
@@ -168,6 +175,7 @@ struct Run {
     /// True if an implicit element is strained so much that its stiffness must be computed accurately.
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
             any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
@@ -188,6 +196,7 @@ struct Run {
         const bool acts = viscosity_of_implicit(block, F, viscosity);
         note(block, acts, is_stiffening(block, F));
         if (!acts) return;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
             const LaneMat3<KernelReal> of_rate = viscous_stress(viscosity[part], F[part], rate);
@@ -215,6 +224,7 @@ struct Run {
     /// Factor from stress to nodal forces: minus the volume of the element [m^3].
     [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
         Parts<KernelReal> scale;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part)
             scale[part] = -part_of<KernelReal>(elements.volume, block, part);
         return scale;
@@ -235,18 +245,22 @@ struct Run {
                 // The call alone needs these copies: a variable whose address is taken is stored in memory, even if the
                 // call is not made.
                 Parts<LaneMat3<KernelReal>> rest;
+#pragma GCC unroll 2
                 for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
                 const Parts<LaneMat3<KernelReal>> all =
                     with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(rest));
+#pragma GCC unroll 2
                 for (std::size_t part = 0; part < kernel_parts; ++part) set_rest(elastic[part], all[part]);
             }
         }
         Parts<LaneMat3<KernelReal>> P;
         if (!relaxes()) {
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = whole(elastic[part], F[part]);
             return P;
         }
         const Parts<LaneSymmetric<KernelReal>> S = relax_springs(block, F, scale, relaxed);
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part)
             P[part] = multiply_and_add(F[part], S[part], elastic[part]);
         return P;
@@ -260,6 +274,7 @@ struct Run {
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
         const BlockNodes nodes = nodes_of(block);
         Parts<LaneMat3<KernelReal>> F;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         return F;
     }
