@@ -88,8 +88,8 @@ struct SixFloats {
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real8>& reals) {
     return __builtin_convertvector(reals[0], Float8);
 }
-[[gnu::always_inline]] inline Parts<Real8> reals_of(const Float8& floats) {
-    return {__builtin_convertvector(floats, Real8)};
+[[gnu::always_inline]] inline Real8 part_of(const Float8& floats, std::size_t) {
+    return __builtin_convertvector(floats, Real8);
 }
 #else
 [[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {
@@ -110,11 +110,16 @@ struct SixFloats {
     return __builtin_shufflevector(__builtin_convertvector(reals[0], Float4), __builtin_convertvector(reals[1], Float4),
                                    0, 1, 2, 3, 4, 5, 6, 7);
 }
-[[gnu::always_inline]] inline Parts<Real4> reals_of(const Float8& floats) {
-    return {__builtin_convertvector(__builtin_shufflevector(floats, floats, 0, 1, 2, 3), Real4),
-            __builtin_convertvector(__builtin_shufflevector(floats, floats, 4, 5, 6, 7), Real4)};
+[[gnu::always_inline]] inline Real4 part_of(const Float8& floats, std::size_t part) {
+    const Float4 half = part == 0 ? __builtin_shufflevector(floats, floats, 0, 1, 2, 3)
+                                  : __builtin_shufflevector(floats, floats, 4, 5, 6, 7);
+    return __builtin_convertvector(half, Real4);
 }
 #endif
+[[gnu::always_inline]] inline LaneSymmetric<KernelReal> part_of(const LaneSymmetric<Float8>& a, std::size_t part) {
+    return {part_of(a.xx, part), part_of(a.yy, part), part_of(a.zz, part),
+            part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
+}
 
 /// Constants of a step of the Maxwell elements of a body, which all elements share. Moduli are relative to `modulus`.
 struct MaxwellStep {
