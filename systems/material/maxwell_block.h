@@ -107,13 +107,11 @@ struct SixFloats {
     return even + odd;
 }
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real4>& reals) {
-    return __builtin_shufflevector(__builtin_convertvector(reals[0], Float4), __builtin_convertvector(reals[1], Float4),
-                                   0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_convertvector(__builtin_shufflevector(reals[0], reals[1], 0, 1, 2, 3, 4, 5, 6, 7), Float8);
 }
 [[gnu::always_inline]] inline Real4 part_of(const Float8& floats, std::size_t part) {
-    const Float4 half = part == 0 ? __builtin_shufflevector(floats, floats, 0, 1, 2, 3)
-                                  : __builtin_shufflevector(floats, floats, 4, 5, 6, 7);
-    return __builtin_convertvector(half, Real4);
+    const Real8 all = __builtin_convertvector(floats, Real8);
+    return part == 0 ? __builtin_shufflevector(all, all, 0, 1, 2, 3) : __builtin_shufflevector(all, all, 4, 5, 6, 7);
 }
 #endif
 [[gnu::always_inline]] inline LaneSymmetric<KernelReal> part_of(const LaneSymmetric<Float8>& a, std::size_t part) {
