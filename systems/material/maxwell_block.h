@@ -1,6 +1,6 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their errors are 6e-8 of the strains, and hence far below those of the
-// stress.
+// stress. Loops over components are unrolled, so that the components stay in registers.
 #pragma once
 
 #include <array>

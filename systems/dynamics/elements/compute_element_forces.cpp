@@ -156,7 +156,6 @@ struct Run {
     bool viscosity_of_implicit(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
                                Parts<KernelReal>& viscosity) const {
         ElementLane lanes{};
-#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal of_modulus =
                 elements.viscous_time[block] * load_lanes<KernelReal>(elements.implicit_modulus, block, part);
@@ -170,7 +169,6 @@ struct Run {
     /// True if an implicit element is strained so much that its stiffness must be computed accurately.
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
-#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
@@ -184,7 +182,8 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the viscous stress of the implicit elements of a block, times `scale`, to Q, and stores the viscous impulse.
+    /// Adds the viscous stress of the implicit elements of a block, times `scale`, to Q, and stores the viscous
+    /// impulse.
     void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
                             Parts<LaneMat3<KernelReal>>& Q) const {
         Parts<KernelReal> viscosity;
@@ -260,7 +259,9 @@ struct Run {
 
     /// Dissipated energy from the sum over the elements [J]. MaxwellStep defines the unit of the sum. The minus sign is
     /// needed because `scale` is negative.
-    Real dissipated_of(const Parts<KernelReal>& sum) const { return -0.25 * maxwell.modulus * sum_of_parts(sum); }
+    Real dissipated_of(const Parts<KernelReal>& sum) const {
+        return -0.25 * maxwell.modulus * sum_of_parts(sum);
+    }
 
     /// Deformation gradients F of the elements of a block.
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
@@ -274,8 +275,7 @@ struct Run {
     /// Adds the forces of the elements of a block to the forces on their nodes. `Q`: stress times minus the volume.
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
-        const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f)
-                              __attribute__((always_inline)) {
+        const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) __attribute__((always_inline)) {
             add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
         };
         for_each_force(Q, nodes, take);

@@ -1,4 +1,6 @@
-// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes.
+// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes. Loops over
+// the parts of a block are unrolled, because gcc keeps the entries of an array in registers only if every index is a
+// constant.
 #pragma once
 
 #include <array>
@@ -116,7 +118,6 @@ template <class Part>
         return part_of_block(0);
     } else {
         Lanes<Real, element_lanes> all[9];
-#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneMat3<KernelReal> of = part_of_block(part);
             const KernelReal entry[9] = {of.c0.x, of.c0.y, of.c0.z, of.c1.x, of.c1.y,
