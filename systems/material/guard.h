@@ -40,7 +40,7 @@ struct Guard {
     }
 
     template <class T>
-    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+    [[gnu::always_inline]] static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
         const LaneMat3<T> cof = cofactor(F);
         return (-material.lame_lambda * missing_of(dot(F.c0, cof.c0))) * cof;
     }

@@ -101,24 +101,6 @@ template <class T>
 [[gnu::always_inline]] inline LaneMat3<T> scaled(const T& scale, const LaneMat3<T>& P) {
     return scale * P;
 }
-/// The part of a stress other than the multiple of the deformation gradient F: of_other other.
-template <class T>
-[[gnu::always_inline]] inline LaneMat3<T> rest_of(const SplitStress<T>& P) {
-    return P.of_other * P.other;
-}
-template <class T>
-[[gnu::always_inline]] inline const LaneMat3<T>& rest_of(const LaneMat3<T>& P) {
-    return P;
-}
-template <class T>
-[[gnu::always_inline]] inline void set_rest(SplitStress<T>& P, const LaneMat3<T>& rest) {
-    P.of_other = T{} + 1.0;
-    P.other = rest;
-}
-template <class T>
-[[gnu::always_inline]] inline void set_rest(LaneMat3<T>& P, const LaneMat3<T>& rest) {
-    P = rest;
-}
 
 /// The identity matrix as a compile-time constant, so that a product with it needs no arithmetic.
 struct IdentityMatrix {};

@@ -37,7 +37,7 @@ struct Linear {
     }
 
     template <class T>
-    static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+    [[gnu::always_inline]] static LaneMat3<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
         const Real mu = material.shear_modulus;
         const T exx = F.c0.x - 1.0, eyy = F.c1.y - 1.0, ezz = F.c2.z - 1.0;
         const T pressure = material.lame_lambda * (exx + eyy + ezz);

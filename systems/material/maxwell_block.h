@@ -1,6 +1,6 @@
 // Step of the Maxwell elements of a block: springs in series with dashpots (docs/methods/elasticity.md 6.2). Strains
 // are computed and stored in single precision. Their errors are 6e-8 of the strains, and hence far below those of the
-// stress.
+// stress. Loops over components are unrolled, so that the components stay in registers.
 #pragma once
 
 #include <array>
@@ -30,25 +30,30 @@ struct SixFloats {
 
 [[gnu::always_inline]] inline SixFloats load_six(const Lanes<float, element_lanes>* from) {
     SixFloats six;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < six.count; ++i) six.of[i] = reinterpret_cast<const KernelFloatInMemory*>(from)[i];
     return six;
 }
 [[gnu::always_inline]] inline void store_six(const SixFloats& six, Lanes<float, element_lanes>* to) {
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < six.count; ++i) reinterpret_cast<KernelFloatInMemory*>(to)[i] = six.of[i];
 }
 
 [[gnu::always_inline]] inline SixFloats operator+(const SixFloats& a, const SixFloats& b) {
     SixFloats sum;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < sum.count; ++i) sum.of[i] = a.of[i] + b.of[i];
     return sum;
 }
 [[gnu::always_inline]] inline SixFloats operator-(const SixFloats& a, const SixFloats& b) {
     SixFloats difference;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < difference.count; ++i) difference.of[i] = a.of[i] - b.of[i];
     return difference;
 }
 [[gnu::always_inline]] inline SixFloats operator*(float s, const SixFloats& a) {
     SixFloats product;
+#pragma GCC unroll 6
     for (std::size_t i = 0; i < product.count; ++i) product.of[i] = s * a.of[i];
     return product;
 }
@@ -83,8 +88,8 @@ struct SixFloats {
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real8>& reals) {
     return __builtin_convertvector(reals[0], Float8);
 }
-[[gnu::always_inline]] inline Parts<Real8> reals_of(const Float8& floats) {
-    return {__builtin_convertvector(floats, Real8)};
+[[gnu::always_inline]] inline Real8 part_of(const Float8& floats, std::size_t) {
+    return __builtin_convertvector(floats, Real8);
 }
 #else
 [[gnu::always_inline]] inline LaneSymmetric<Float8> components_of(const SixFloats& six) {
@@ -102,14 +107,17 @@ struct SixFloats {
     return even + odd;
 }
 [[gnu::always_inline]] inline Float8 floats_of(const Parts<Real4>& reals) {
-    return __builtin_shufflevector(__builtin_convertvector(reals[0], Float4), __builtin_convertvector(reals[1], Float4),
-                                   0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_convertvector(__builtin_shufflevector(reals[0], reals[1], 0, 1, 2, 3, 4, 5, 6, 7), Float8);
 }
-[[gnu::always_inline]] inline Parts<Real4> reals_of(const Float8& floats) {
-    return {__builtin_convertvector(__builtin_shufflevector(floats, floats, 0, 1, 2, 3), Real4),
-            __builtin_convertvector(__builtin_shufflevector(floats, floats, 4, 5, 6, 7), Real4)};
+[[gnu::always_inline]] inline Real4 part_of(const Float8& floats, std::size_t part) {
+    const Real8 all = __builtin_convertvector(floats, Real8);
+    return part == 0 ? __builtin_shufflevector(all, all, 0, 1, 2, 3) : __builtin_shufflevector(all, all, 4, 5, 6, 7);
 }
 #endif
+[[gnu::always_inline]] inline LaneSymmetric<KernelReal> part_of(const LaneSymmetric<Float8>& a, std::size_t part) {
+    return {part_of(a.xx, part), part_of(a.yy, part), part_of(a.zz, part),
+            part_of(a.xy, part), part_of(a.yz, part), part_of(a.zx, part)};
+}
 
 /// Constants of a step of the Maxwell elements of a body, which all elements share. Moduli are relative to `modulus`.
 struct MaxwellStep {
@@ -150,6 +158,7 @@ struct MaxwellStep {
         return after;
     };
     SixFloats sum = spring(0, dissipated);
+#pragma GCC unroll 3
     for (std::size_t k = 1; k < maxwell_count; ++k) {
         Float8 energy;
         sum = sum + spring(k, energy);

@@ -61,7 +61,7 @@ struct StableNeoHookean {
     }
 
     template <class T>
-    static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
+    [[gnu::always_inline]] static SplitStress<T> stress(const MaterialConstants& material, const LaneMat3<T>& F) {
         const auto [mu, la] = model_moduli(material);
         const LaneMat3<T> cof = cofactor(F);
         const T shear = mu - mu / (inner_product(F, F) + 1.0);

@@ -64,68 +64,68 @@ struct Run {
     }
 
     template <class T>
-    static T part_of(std::span<const ElementLane> column, std::size_t block, std::size_t part) {
+    static T load_lanes(std::span<const ElementLane> column, std::size_t block, std::size_t part) {
         return load_part<T>(column[block], part);
     }
 
     bool relaxes() const { return material.relaxes() && !next.spring_strain.empty(); }
 
-    /// Relaxes the springs, then computes their second Piola-Kirchhoff stress [Pa] times `scale`. Writes the strains of
-    /// the springs. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to joules.
-    [[gnu::always_inline]] Parts<LaneSymmetric<KernelReal>> relax_springs(std::size_t block,
-                                                                          const Parts<LaneMat3<KernelReal>>& F,
-                                                                          const Parts<KernelReal>& scale,
-                                                                          Parts<KernelReal>& relaxed) const {
+    /// Relaxes the springs. Returns their second Piola-Kirchhoff stress over maxwell.modulus. Writes the strains of the
+    /// springs. Adds the dissipated energy to `relaxed`, which dissipated_of() converts to joules.
+    [[gnu::always_inline]] LaneSymmetric<Float8> relax_springs(std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
+                                                               const Parts<KernelReal>& scale,
+                                                               Parts<KernelReal>& relaxed) const {
         using T = KernelReal;
         Parts<T> xx, yy, zz, xy, yz, zx, relaxes_volume;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneSymmetric<T> E = twice_green_strain(F[part]);
             xx[part] = E.xx, yy[part] = E.yy, zz[part] = E.zz;
             xy[part] = E.xy, yz[part] = E.yz, zx[part] = E.zx;
-            relaxes_volume[part] = (kick / bulk_time) * part_of<T>(elements.own_frequency, block, part);
+            relaxes_volume[part] = (kick / bulk_time) * load_lanes<T>(elements.own_frequency, block, part);
         }
         Float8 dissipated;
         const LaneSymmetric<Float8> stress =
             relax(maxwell, {floats_of(xx), floats_of(yy), floats_of(zz), floats_of(xy), floats_of(yz), floats_of(zx)},
                   floats_of(relaxes_volume), elements.spring_strain[block], next.spring_strain[block], dissipated);
-        xx = reals_of(stress.xx), yy = reals_of(stress.yy), zz = reals_of(stress.zz);
-        xy = reals_of(stress.xy), yz = reals_of(stress.yz), zx = reals_of(stress.zx);
-        const Parts<T> energy = reals_of(dissipated);
-        Parts<LaneSymmetric<T>> S;
-        for (std::size_t part = 0; part < kernel_parts; ++part) {
-            S[part] = T(maxwell.modulus * scale[part]) *
-                      LaneSymmetric<T>{xx[part], yy[part], zz[part], xy[part], yz[part], zx[part]};
-            relaxed[part] = relaxed[part] + scale[part] * energy[part];
-        }
-        return S;
+#pragma GCC unroll 2
+        for (std::size_t part = 0; part < kernel_parts; ++part)
+            relaxed[part] = relaxed[part] + scale[part] * part_of(dissipated, part);
+        return stress;
     }
 
-    /// Elastic stress [Pa] times `scale`. Corotational frames are extracted for all lanes of a block at once, so that
-    /// the number of iterations does not depend on the register width.
+    /// Rotations nearest to F, as quaternions, and the traces of R^T F. They are extracted for all lanes of a block at
+    /// once, so that the number of iterations does not depend on the register width.
+    struct Frames {
+        Parts<LaneQuaternion<KernelReal>> q;
+        Parts<KernelReal> trace;
+    };
     template <class Law>
-    [[gnu::always_inline]] auto elastic_stress(const Law& law, std::size_t block, const Parts<LaneMat3<KernelReal>>& F,
-                                               const Parts<KernelReal>& scale) const {
-        using T = KernelReal;
+    [[gnu::always_inline]] Frames extract_frames(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
+        Frames frames;
         if constexpr (Law::has_frame) {
-            Parts<LaneQuaternion<T>> q;
-            Parts<T> volume;
+            Parts<KernelReal> volume;
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part) {
-                q[part] = load_part<T>(rotation[block], part);
-                volume[part] = part_of<T>(elements.volume, block, part);
+                frames.q[part] = load_part<KernelReal>(rotation[block], part);
+                volume[part] = load_lanes<KernelReal>(elements.volume, block, part);
             }
-            const Parts<T> trace = extract_rotations(F, volume, q);
-            Parts<decltype(law.stress(material, rotation_of(q[0]), trace[0]))> P;
-            for (std::size_t part = 0; part < kernel_parts; ++part) {
-                store_part(q[part], next.rotation[block], part);
-                P[part] = scaled(scale[part], law.stress(material, rotation_of(q[part]), trace[part]));
-            }
-            return P;
-        } else {
-            Parts<decltype(law.stress(material, F[0]))> P;
+            frames.trace = extract_rotations(F, volume, frames.q);
+#pragma GCC unroll 2
             for (std::size_t part = 0; part < kernel_parts; ++part)
-                P[part] = scaled(scale[part], law.stress(material, F[part]));
-            return P;
+                store_part(frames.q[part], next.rotation[block], part);
         }
+        return frames;
+    }
+
+    /// Elastic stress of one part of a block [Pa].
+    template <class Law>
+    [[gnu::always_inline]] auto elastic_stress(const Law& law, const LaneMat3<KernelReal>& F, const Frames& frames,
+                                               std::size_t part) const {
+        if constexpr (Law::has_frame)
+            return law.stress(material, rotation_of(frames.q[part]), frames.trace[part]);
+        else
+            return law.stress(material, F);
     }
 
     /// True for implicit elements so near to their rest shape that they have no viscosity. `square`: |F|^2, `J`: det F.
@@ -139,9 +139,10 @@ struct Run {
     /// holds for most blocks in most steps.
     [[gnu::always_inline]] bool rests_easy(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any_implicit = false, easy = true;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal square = inner_product(F[part], F[part]), J = determinant(F[part]),
-                             taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
+                             taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             const auto near_rest =
                 is_calm(square, J) & (quick_stiffness(material, square, J) <= near_stiffness * taken);
             easy &= all((taken <= 0.0) | near_rest);
@@ -157,7 +158,7 @@ struct Run {
         ElementLane lanes{};
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const KernelReal of_modulus =
-                elements.viscous_time[block] * part_of<KernelReal>(elements.implicit_modulus, block, part);
+                elements.viscous_time[block] * load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             viscosity[part] =
                 is_calm(inner_product(F[part], F[part]), determinant(F[part])) ? KernelReal{} : of_modulus;
             store_part(viscosity[part], lanes, part);
@@ -169,7 +170,7 @@ struct Run {
     bool is_stiffening(std::size_t block, const Parts<LaneMat3<KernelReal>>& F) const {
         bool any = false;
         for (std::size_t part = 0; part < kernel_parts; ++part) {
-            const KernelReal taken = part_of<KernelReal>(elements.implicit_modulus, block, part);
+            const KernelReal taken = load_lanes<KernelReal>(elements.implicit_modulus, block, part);
             any |= !all((taken <= 0.0) | (quick_stiffness(material, inner_product(F[part], F[part]),
                                                           determinant(F[part])) <= near_stiffness * taken));
         }
@@ -181,9 +182,10 @@ struct Run {
         if (!patches.stiffening.empty()) patches.stiffening[block] = stiffening;
     }
 
-    /// Adds the viscous stress of the implicit elements of a block, times `scale`, and stores the viscous impulse.
+    /// Adds the viscous stress of the implicit elements of a block, times `scale`, to Q, and stores the viscous
+    /// impulse.
     void add_viscous_stress(std::size_t block, const Parts<LaneMat3<KernelReal>>& F, const Parts<KernelReal>& scale,
-                            Parts<LaneMat3<KernelReal>>& P) const {
+                            Parts<LaneMat3<KernelReal>>& Q) const {
         Parts<KernelReal> viscosity;
         const bool acts = viscosity_of_implicit(block, F, viscosity);
         note(block, acts, is_stiffening(block, F));
@@ -192,21 +194,21 @@ struct Run {
             const LaneMat3<KernelReal> rate = deformation_gradient(elements.nodes_of(block), part, velocity);
             const LaneMat3<KernelReal> of_rate = viscous_stress(viscosity[part], F[part], rate);
             if (!patches.viscous_impulse.empty()) keep_impulse(of_rate, block, part);
-            P[part] = P[part] + scale[part] * of_rate;
+            Q[part] = Q[part] + scale[part] * of_rate;
         }
     }
 
     [[gnu::noinline]] static Parts<LaneMat3<KernelReal>> with_viscous_stress(Run run, std::size_t block,
                                                                              Parts<LaneMat3<KernelReal>> F,
                                                                              Parts<KernelReal> scale,
-                                                                             Parts<LaneMat3<KernelReal>> P) {
-        run.add_viscous_stress(block, F, scale, P);
-        return P;
+                                                                             Parts<LaneMat3<KernelReal>> Q) {
+        run.add_viscous_stress(block, F, scale, Q);
+        return Q;
     }
 
     void keep_impulse(const LaneMat3<KernelReal>& stress, std::size_t block, std::size_t part) const {
         ElementViscousImpulse& impulse = patches.viscous_impulse[block];
-        const KernelReal scale = kick * part_of<KernelReal>(elements.volume, block, part);
+        const KernelReal scale = kick * load_lanes<KernelReal>(elements.volume, block, part);
         const KernelReal entry[9] = {stress.c0.x, stress.c0.y, stress.c0.z, stress.c1.x, stress.c1.y,
                                      stress.c1.z, stress.c2.x, stress.c2.y, stress.c2.z};
         for (std::size_t i = 0; i < 9; ++i) store_part(KernelReal(scale * entry[i]), impulse[i], part);
@@ -215,8 +217,9 @@ struct Run {
     /// Factor from stress to nodal forces: minus the volume of the element [m^3].
     [[gnu::always_inline]] Parts<KernelReal> scale_of(std::size_t block) const {
         Parts<KernelReal> scale;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part)
-            scale[part] = -part_of<KernelReal>(elements.volume, block, part);
+            scale[part] = -load_lanes<KernelReal>(elements.volume, block, part);
         return scale;
     }
 
@@ -227,39 +230,44 @@ struct Run {
                                                                  const Parts<LaneMat3<KernelReal>>& F,
                                                                  Parts<KernelReal>& relaxed) const {
         const Parts<KernelReal> scale = scale_of(block);
-        auto elastic = elastic_stress(law, block, F, scale);
-        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            if (rests_easy(block, F)) {
-                note(block, false, false);
-            } else {
-                // The call alone needs these copies: a variable whose address is taken is stored in memory, even if the
-                // call is not made.
-                Parts<LaneMat3<KernelReal>> rest;
-                for (std::size_t part = 0; part < kernel_parts; ++part) rest[part] = rest_of(elastic[part]);
-                const Parts<LaneMat3<KernelReal>> all =
-                    with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(rest));
-                for (std::size_t part = 0; part < kernel_parts; ++part) set_rest(elastic[part], all[part]);
+        const Frames frames = extract_frames<Law>(block, F);
+        const auto elastic = [&](std::size_t part) __attribute__((always_inline)) {
+            return scaled(scale[part], elastic_stress(law, F[part], frames, part));
+        };
+        Parts<LaneMat3<KernelReal>> Q;
+        if (relaxes()) {
+            const LaneSymmetric<Float8> springs = relax_springs(block, F, scale, relaxed);
+#pragma GCC unroll 2
+            for (std::size_t part = 0; part < kernel_parts; ++part) {
+                const LaneSymmetric<KernelReal> S = KernelReal(maxwell.modulus * scale[part]) * part_of(springs, part);
+                Q[part] = multiply_and_add(F[part], S, elastic(part));
             }
+        } else {
+#pragma GCC unroll 2
+            for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = whole(elastic(part), F[part]);
         }
-        Parts<LaneMat3<KernelReal>> P;
-        if (!relaxes()) {
-            for (std::size_t part = 0; part < kernel_parts; ++part) P[part] = whole(elastic[part], F[part]);
-            return P;
+        if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
+            // The call alone needs the copies: a variable whose address is taken is stored in memory, even if the call
+            // is not made.
+            if (rests_easy(block, F))
+                note(block, false, false);
+            else
+                Q = copy_of_parts(with_viscous_stress(*this, block, copy_of_parts(F), scale, copy_of_parts(Q)));
         }
-        const Parts<LaneSymmetric<KernelReal>> S = relax_springs(block, F, scale, relaxed);
-        for (std::size_t part = 0; part < kernel_parts; ++part)
-            P[part] = multiply_and_add(F[part], S[part], elastic[part]);
-        return P;
+        return Q;
     }
 
     /// Dissipated energy from the sum over the elements [J]. MaxwellStep defines the unit of the sum. The minus sign is
     /// needed because `scale` is negative.
-    Real dissipated_of(const Parts<KernelReal>& sum) const { return -0.25 * maxwell.modulus * sum_of_parts(sum); }
+    Real dissipated_of(const Parts<KernelReal>& sum) const {
+        return -0.25 * maxwell.modulus * sum_of_parts(sum);
+    }
 
     /// Deformation gradients F of the elements of a block.
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> fetch(std::size_t block) const {
         const BlockNodes nodes = nodes_of(block);
         Parts<LaneMat3<KernelReal>> F;
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) F[part] = deformation_gradient(nodes, part, position);
         return F;
     }
@@ -267,9 +275,10 @@ struct Run {
     /// Adds the forces of the elements of a block to the forces on their nodes. `Q`: stress times minus the volume.
     [[gnu::always_inline]] void add(std::size_t block, const Parts<LaneMat3<KernelReal>>& Q) const {
         const BlockNodes nodes = nodes_of(block);
-        for_each_force(Q, nodes, [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) {
+        const auto take = [&](Index k, std::size_t part, const LaneVec3<KernelReal>& f) __attribute__((always_inline)) {
             add_lanes(f, nodes.node[k].lane + lanes_of<KernelReal> * part, force);
-        });
+        };
+        for_each_force(Q, nodes, take);
     }
 };
 

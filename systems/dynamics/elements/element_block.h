@@ -1,4 +1,6 @@
-// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes.
+// Kernel operations on a block of elements: fetch the node positions, form F, add the forces to the nodes. Loops over
+// the parts of a block are unrolled, because gcc keeps the entries of an array in registers only if every index is a
+// constant.
 #pragma once
 
 #include <array>
@@ -218,6 +220,7 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;
+#pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         const LaneMat3<T>& a = of[part];
         copy[part] = {{a.c0.x, a.c0.y, a.c0.z}, {a.c1.x, a.c1.y, a.c1.z}, {a.c2.x, a.c2.y, a.c2.z}};
@@ -250,11 +253,13 @@ template <class Take>
                                                   Take&& take) {
     Parts<LaneVec3<KernelReal>> sum;
     const auto on_node = [&](Index k, std::size_t part) { return force_on_node(Q[part], block, k, part); };
+#pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part) {
         sum[part] = on_node(1, part);
         take(Index{1}, part, sum[part]);
     }
     const auto add = [&](Index k) __attribute__((always_inline)) {
+#pragma GCC unroll 2
         for (std::size_t part = 0; part < kernel_parts; ++part) {
             const LaneVec3<KernelReal> f = on_node(k, part);
             take(k, part, f);
@@ -267,6 +272,7 @@ template <class Take>
     } else {
         for (Index k = 2; k < block.count; ++k) add(k);
     }
+#pragma GCC unroll 2
     for (std::size_t part = 0; part < kernel_parts; ++part)
         take(Index{0}, part, LaneVec3<KernelReal>{-sum[part].x, -sum[part].y, -sum[part].z});
 }
