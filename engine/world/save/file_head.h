@@ -11,7 +11,7 @@ namespace skerry {
 
 /// Size of the text [bytes]. HDF5 allows a block of this size for the user's own data before the HDF5 data.
 inline constexpr std::size_t head_bytes = 512;
-inline constexpr int world_file_version = 23;
+inline constexpr int world_file_version = 24;
 
 /// Returns the text for a file whose HDF5 part is `body`.
 std::string head_of(std::span<const char> body);
