@@ -52,10 +52,10 @@ struct NearCandidate {
 /// Positions at the last search of a body for contacts with itself, and bounds on the motion of its parts since then
 /// (self_motion.h). All columns are empty while no body is paired with itself.
 struct SelfSearch {
-    // By node, at the last search: position, and displacement in one step at the velocity of that time [m]. Both are
-    // saved with the role `memory`.
+    // For each node at the last search: position, and displacement in one step at the velocity of that time [m]. Both
+    // are saved with the role `memory`.
     Column<Vec3> origin, origin_step;
-    // Working memory. By node: displacement since the last search, or at the end of the step, without the common
+    // Working memory. For each node: displacement since the last search, or at the end of the step, without the common
     // rotation of the body [m].
     Column<Vec3> moved;
     // Boxes of `origin`, of `origin_step`, of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.

@@ -118,9 +118,9 @@ bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, 
     if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
     const SelfMotion motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h);
     const Real base = pair_travel_base(inputs, pairs, p),
-               slack = slack_of(motion, pairs.travel_bound[p] - base, pairs.self);
-    if (!(pairs.travel_bound[p] < base + slack)) return holds_for_step(motion, pairs.self);
-    pairs.valid_until[p] = base + slack;
+               spare = spare_margin_of(motion, pairs.travel_bound[p] - base, pairs.self);
+    if (!(pairs.travel_bound[p] < base + spare)) return holds_for_step(motion, pairs.self);
+    pairs.valid_until[p] = base + spare;
     return true;
 }
 

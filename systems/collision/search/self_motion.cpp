@@ -91,23 +91,23 @@ void store_origin(const SelfMotion& motion, SelfSearch& self) {
     fit(inputs, motion.body, inputs.velocity, self.speed_box);
 }
 
-Real slack_of(const SelfMotion& motion, Real least, SelfSearch& self) {
+Real spare_margin_of(const SelfMotion& motion, Real least, SelfSearch& self) {
     const CollisionInputs& inputs = motion.inputs;
     fit_motion(inputs, motion.body, self, [&](Index n) -> const Vec3& { return inputs.position[n]; });
-    Real slack = motion.skin;
+    Real spare = motion.skin;
     any_part(
         motion,
         [&](Index a, Index b) {
             const Real moved = farthest(self.moved_box[a], self.moved_box[b]);
-            return !(motion.skin - moved >= slack) && were_near(self, a, b, motion.scale.zone + moved + slack);
+            return !(motion.skin - moved >= spare) && were_near(self, a, b, motion.scale.zone + moved + spare);
         },
         [&](Index a, Index b) {
             const Real moved = farthest(self.moved_box[a], self.moved_box[b]),
                        apart = std::sqrt(distance_squared(self.origin_box[a], self.origin_box[b]));
-            slack = std::min(slack, std::max(motion.margin_of(self, a, b), apart - motion.scale.zone) - moved);
-            return !(slack > least);
+            spare = std::min(spare, std::max(motion.margin_of(self, a, b), apart - motion.scale.zone) - moved);
+            return !(spare > least);
         });
-    return slack;
+    return spare;
 }
 
 bool holds_for_step(const SelfMotion& motion, SelfSearch& self) {

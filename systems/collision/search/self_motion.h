@@ -20,11 +20,14 @@
 //
 // 1. The list is complete for a step if U(a, b) + R(a, b) < M(a, b) for all a and b that could be near, which are those
 //    with D(s) < zone + U(a, b) + R(a, b).
-// 2. The slack is the smallest value of max(M(a, b), D(s) - zone) - U(a, b) for all a and b. By contact_reach.h, 5, the
-//    list stays complete while travel_bound is below T0 + slack, without another comparison of parts.
+// 2. The spare margin is the smallest value of max(M(a, b), D(s) - zone) - U(a, b) for all a and b. The list stays
+//    complete while travel_bound is below T0 plus the spare margin, without another comparison of parts
+//    (contact_reach.h, 5).
 //
 // All bounds and D(s) are computed from boxes.
 #pragma once
+
+#include <algorithm>
 
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
@@ -77,12 +80,12 @@ void resize(const CollisionInputs& inputs, SelfSearch& self);
 /// that SelfMotion::reach_of and SelfMotion::margin_of need.
 void store_origin(const SelfMotion& motion, SelfSearch& self);
 
-/// Returns the slack of the candidate list for the present positions if it exceeds `least`, and otherwise any value up
-/// to `least` [m].
-Real slack_of(const SelfMotion& motion, Real least, SelfSearch& self);
+/// Returns the spare margin of the candidate list for the present positions if it exceeds `least`, and otherwise any
+/// value up to `least` [m].
+Real spare_margin_of(const SelfMotion& motion, Real least, SelfSearch& self);
 
-/// True if the candidate list of the body with itself is complete for the step that begins. slack_of must have been
-/// called in this step.
+/// True if the candidate list of the body with itself is complete for the step that begins. spare_margin_of must have
+/// been called in this step.
 bool holds_for_step(const SelfMotion& motion, SelfSearch& self);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the

@@ -92,8 +92,8 @@ std::set<std::uint64_t> features_within_reach(const RollingStrip& strip) {
             const std::array<Index, 1> point{surface.vertices.node[v]};
             const auto& corner = surface.triangles.node[t];
             test(point_triangle_feature(false, v, t), point, corner, [&] {
-                return std::sqrt(closest_point_on_triangle(x[point[0]], x[corner[0]], x[corner[1]], x[corner[2]])
-                                     .distance_squared);
+                return std::sqrt(
+                    closest_point_on_triangle(x[point[0]], x[corner[0]], x[corner[1]], x[corner[2]]).distance_squared);
             });
         }
     for (Index e = 0; e < static_cast<Index>(surface.edges.node.size()); ++e)
