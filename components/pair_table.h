@@ -52,11 +52,14 @@ struct NearCandidate {
 /// Positions at the last search of a body for contacts with itself, and bounds on the motion of its parts since then
 /// (self_motion.h). All columns are empty while no body is paired with itself.
 struct SelfSearch {
-    Column<Vec3> origin;  // by node: position at the last search [m]; saved with the role `memory`
-    // Working memory. By node: displacement since the last search, or at the end of the step [m].
+    // For each node at the last search: position, and displacement in one step at the velocity of that time [m]. Both
+    // are saved with the role `memory`.
+    Column<Vec3> origin, origin_step;
+    // Working memory. For each node: displacement since the last search, or at the end of the step, without the common
+    // rotation of the body [m].
     Column<Vec3> moved;
-    // Boxes of `origin`, of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
-    Column<Aabb> origin_box, moved_box, speed_box;
+    // Boxes of `origin`, of `origin_step`, of `moved` [m] and of the velocities of the nodes [m/s], by row of BvhTable.
+    Column<Aabb> origin_box, origin_step_box, moved_box, speed_box;
 };
 
 /// One row per pair of objects whose bounding boxes were close at the last broad search, in the order of

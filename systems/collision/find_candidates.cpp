@@ -111,12 +111,17 @@ void list_bodies(SearchMemory& memory) {
         if (memory.needs_refit[b]) memory.refit.push_back(static_cast<Index>(b));
 }
 
-/// True if the candidate list of a pair is complete for the step that begins.
+/// True if the candidate list of a pair is complete for the step that begins. For a body paired with itself, the
+/// motion of its parts may extend the validity of the list.
 bool is_valid(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, Index p, PairTable& pairs) {
     if (pairs.travel_bound[p] < pairs.valid_until[p]) return true;
-    if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > this_step_only))
-        return false;
-    return holds_for_step(self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h), pairs.self);
+    if (pairs.kind[p] != PairKind::self || !settings.use_budgets || !(pairs.valid_until[p] > -infinity)) return false;
+    const SelfMotion motion = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], h);
+    const Real base = pair_travel_base(inputs, pairs, p),
+               spare = spare_margin_of(motion, pairs.travel_bound[p] - base, pairs.self);
+    if (!(pairs.travel_bound[p] < base + spare)) return holds_for_step(motion, pairs.self);
+    pairs.valid_until[p] = base + spare;
+    return true;
 }
 
 void list_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
@@ -220,9 +225,7 @@ void refit_trees(Executor& executor, const CollisionInputs& inputs, std::span<Aa
 void search_again(const CollisionInputs& inputs, const CollisionSettings& settings, Real h, std::span<const Aabb> box,
                   Index p, const SearchMemory& memory, PairTable& pairs, Column<FoundCandidate>& found) {
     PairToSearch pair = pair_to_search(inputs, settings, box, memory, pairs, p);
-    const PairState before = pairs.state[p];
     std::optional<SelfMotion> parts;
-    bool lasts = true;
     if (pair.kind != PairKind::collider && pairs.state[p] != PairState::apart) {
         // The state of the pair is determined before the search, because surfaces that are apart need a smaller search
         // distance.
@@ -231,18 +234,15 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
         pair.scale = pair_scale_as_known(settings, pairs.state[p], pair.scale);
     }
     if (pair.kind == PairKind::self) {
-        parts.emplace(self_motion_of(inputs, settings, before, pair.first, h));
+        parts.emplace(self_motion_of(inputs, settings, pairs.state[p], pair.first, h));
         pair.longer_motion = std::max(pairs.longer_motion[p], Real(0));
         pair.self_motion = &*parts;
         pair.self = &pairs.self;
-        store_origin(inputs, pair.first, pairs.self);
-        // If parts move so fast that the list would be invalid in the next step, a shorter list suffices.
-        lasts = holds_for_step(*parts, pairs.self) || pair.longer_motion > 0;
-        pair.margin = lasts ? parts->skin : short_margin * parts->skin;
+        pair.margin = parts->skin;
+        store_origin(*parts, pairs.self);
     }
     pairs.longer_motion[p] = pairs.longer_motion[p] > 0 ? -pairs.longer_motion[p] : 0;
-    const Real valid_until = search_pair(inputs, pair, box, found);
-    pairs.valid_until[p] = lasts ? valid_until : this_step_only;
+    pairs.valid_until[p] = search_pair(inputs, pair, box, found);
     pairs.candidates[p].resize(found.size());
     pairs.asleep_until[p].resize(found.size());
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -213,8 +213,7 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
         pairs.fresh[p] ? 2 * pair_displacement(inputs, pairs.kind[p], pairs.first[p], pairs.second[p]) : 0;
     if (reach_of(inputs, pairs, p, motion.h).travel_bound < pairs.valid_until[p] + drifted) return false;
     if (pairs.kind[p] != PairKind::self || !(pairs.valid_until[p] > -infinity)) return true;
-    SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
-    if (pairs.valid_until[p] == this_step_only) parts.skin *= short_margin;
+    const SelfMotion parts = self_motion_of(inputs, settings, pairs.state[p], pairs.first[p], motion.h);
     return !holds_for_motion(parts, motion, pairs.fresh[p] != 0, pairs.self);
 }
 

@@ -26,7 +26,8 @@ enum class ContactMotion { open, stick, slide };
 /// - rest: the stable step of a body in its rest shape.
 /// - strain: the stable step of a deformed body. Also an implicit body of large strain for which Newton's method fails
 ///   at longer steps.
-/// - speed: the deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm).
+/// - speed: the deformation gradient of an element would change by more than 0.2 in a step (Frobenius norm), or a body
+///   with a joint would rotate by more than 0.1 rad.
 /// - inversion: an element would turn inside out.
 /// - crossing: surfaces would pass through each other.
 enum class StepLimit { setting, rest, strain, speed, inversion, crossing };

@@ -100,7 +100,8 @@ void erase_gone(const RowMoves& moves, std::span<const Index> body_of_node, Cont
         [&](std::size_t p) { rows.renumber(p); });
     move_lists(gone, count, pairs);
     AnyTable(pairs).erase(gone);
-    if (!pairs.self.origin.empty()) pairs.self.origin.erase(moves.gone.nodes);
+    for (Column<Vec3>* column : {&pairs.self.origin, &pairs.self.origin_step})
+        if (!column->empty()) column->erase(moves.gone.nodes);
     search.body_valid_until.erase(moves.gone.bodies);
     search.memory.rebase.erase(moves.gone.bodies);
     search.collider_valid_until.erase(moves.colliders_gone);

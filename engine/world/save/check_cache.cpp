@@ -66,6 +66,7 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     const std::size_t origins = pairs.self.origin.size();
     const bool self_contact = std::ranges::find(pairs.kind, PairKind::self) != pairs.kind.end();
     if (origins != 0 || self_contact) expect_size(file, "/pairs/self_origin", origins, model.nodes.position.size());
+    expect_size(file, "/pairs/self_origin_step", pairs.self.origin_step.size(), origins);
 
     // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
     // searches all pairs.

@@ -54,8 +54,10 @@ public:
             inputs_.bvh_node, inputs_.body.bvh_nodes[pair_.first].begin, inputs_.body.bvh_nodes[pair_.second].begin,
             self_,
             [&](Index a, Index b) {
+                const Real squared = distance_squared(box_[a], box_[b]);
+                if (squared == 0) return true;
                 const Real radius = pair_.scale.zone + margin_of(a, b);
-                return distance_squared(box_[a], box_[b]) < radius * radius;
+                return squared < radius * radius;
             },
             [&](Index a, Index b) {
                 add_near(a, b);
@@ -72,7 +74,8 @@ private:
     /// Margin of the list for features below two nodes of the trees [m].
     Real margin_of(Index a, Index b) const {
         if (pair_.self_motion == nullptr) return pair_.margin;
-        return pair_.margin + std::max(pair_.self_motion->reach_of(*pair_.self, a, b), pair_.longer_motion);
+        return std::max({pair_.margin + pair_.longer_motion, pair_.self_motion->margin_of(*pair_.self, a, b),
+                         pair_.self_motion->reach_of(*pair_.self, a, b)});
     }
 
     void set_margin(Real margin) {

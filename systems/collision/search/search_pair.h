@@ -16,8 +16,8 @@ struct PairToSearch {
     Real travel_base;  // travel of the pair from which bounds are counted (pair_travel_base) [m]
     Real margin;       // features with a distance below scale.zone + margin are listed [m]
     Real apart;        // lower bound of the distance between the two bodies [m]
-    // For a body paired with itself: the reach of two of its parts in this step is added to `margin`, or longer_motion
-    // [m] if that is larger.
+    // For a body paired with itself: the margin for two of its parts is at least their margin and reach in SelfMotion,
+    // and `margin` plus longer_motion [m].
     const SelfMotion* self_motion = nullptr;
     const SelfSearch* self = nullptr;
     Real longer_motion = 0;

@@ -3,18 +3,31 @@
 //
 // The travel of the body (contact_reach.h) bounds the motion of its fastest node. Features of one body that are close
 // to each other mostly move together, so the travel overestimates the change of their distance. A sharper bound uses
-// two nodes a, b of the tree of the body. Let u be the displacement of a mesh node since the last search at time s, and
-// U(a, b) the largest |u_i - u_j| for mesh nodes i below a and j below b. Features f below a and g below b satisfy
+// two nodes a, b of the tree of the body. Let X_i be the position of mesh node i at the last search at time s, and
+// u_i = x_i - Q X_i its displacement since then, without a rotation Q of the whole body. Any rotation is permitted;
+// motion_since_search computes one that fits. Let U(a, b) be the largest |u_i - u_j| for mesh nodes i below a and j
+// below b. Features f below a and g below b satisfy
 //
 //     D(t) >= D(s) - U(a, b),
 //
 // because the nearest points at time t have the same weights of mesh nodes at time s. The velocities give the bound
-// R(a, b) >= reach (contact_reach.h) in the same way. A search lists all features with D(s) < zone + m + R(a, b), where
-// m is the margin of a list. The list is valid while U(a, b) + R(a, b) < m for all a and b that could be near, which
-// are those with D(s) < zone + U(a, b) + R(a, b). Both bounds and D(s) are computed from boxes.
+// R(a, b) >= reach (contact_reach.h) in the same way, and the displacements of one step at time s give the bound
+// S(a, b) of the relative motion in that step. The margin of a list differs between parts: it is
+//
+//     M(a, b) = max(m, steps_ahead S(a, b)).
+//
+// So fast parts have a larger margin than slow parts. A search lists all features with D(s) < zone + max(M, R).
+//
+// 1. The list is complete for a step if U(a, b) + R(a, b) < M(a, b) for all a and b that could be near, which are those
+//    with D(s) < zone + U(a, b) + R(a, b).
+// 2. The spare margin is the smallest value of max(M(a, b), D(s) - zone) - U(a, b) for all a and b. The list stays
+//    complete while travel_bound is below T0 plus the spare margin, without another comparison of parts
+//    (contact_reach.h, 5).
+//
+// All bounds and D(s) are computed from boxes.
 #pragma once
 
-#include <limits>
+#include <algorithm>
 
 #include "components/pair_table.h"
 #include "systems/collision/inputs/collision_inputs.h"
@@ -24,12 +37,9 @@
 
 namespace skerry {
 
-/// PairTable::valid_until of a list that is valid in one step only.
-inline constexpr Real this_step_only = std::numeric_limits<Real>::lowest();
-
-// Margin of a list that is valid in one step only, as a fraction of the usual margin. It allows for speeds that the
-// contacts of the step add.
-inline constexpr Real short_margin = 0.25;
+// Number of steps for which the margin of a list allows, if the parts of the body keep their velocities. With a larger
+// number there are fewer searches, but each search finds more candidates.
+inline constexpr Real steps_ahead = 4;
 
 /// Largest distance between a point in one box and a point in another box.
 inline Real farthest(const Aabb& a, const Aabb& b) {
@@ -43,11 +53,15 @@ struct SelfMotion {
     PairScale scale;
     Real gravity;  // [m/s^2]
     Real h;        // [s]
-    Real skin;     // margin m of the list [m]
+    Real skin;     // smallest margin m of the list [m]
 
     /// Bound R(a, b): distance that features of two parts may close in this step and still become a contact [m].
     Real reach_of(const SelfSearch& self, Index a, Index b) const {
         return reach(h, farthest(self.speed_box[a], self.speed_box[b]), gravity, scale.contact_distance);
+    }
+    /// Margin M(a, b) of the list for features of two parts [m].
+    Real margin_of(const SelfSearch& self, Index a, Index b) const {
+        return std::max(skin, steps_ahead * farthest(self.origin_step_box[a], self.origin_step_box[b]));
     }
 };
 
@@ -62,18 +76,21 @@ inline SelfMotion self_motion_of(const CollisionInputs& inputs, const CollisionS
 /// Makes room for all nodes and trees.
 void resize(const CollisionInputs& inputs, SelfSearch& self);
 
-/// Computes the boxes of the velocities of a body, which SelfMotion::reach_of needs.
-void fit_speeds(const CollisionInputs& inputs, Index body, SelfSearch& self);
+/// Stores the present positions and velocities of a body, from which its candidate list is made, and computes the boxes
+/// that SelfMotion::reach_of and SelfMotion::margin_of need.
+void store_origin(const SelfMotion& motion, SelfSearch& self);
 
-/// Stores the present positions of a body, from which its candidate list is made.
-void store_origin(const CollisionInputs& inputs, Index body, SelfSearch& self);
+/// Returns the spare margin of the candidate list for the present positions if it exceeds `least`, and otherwise any
+/// value up to `least` [m].
+Real spare_margin_of(const SelfMotion& motion, Real least, SelfSearch& self);
 
-/// True if the candidate list of the body with itself is complete for the step that begins.
+/// True if the candidate list of the body with itself is complete for the step that begins. spare_margin_of must have
+/// been called in this step.
 bool holds_for_step(const SelfMotion& motion, SelfSearch& self);
 
 /// True if features that are not in the candidate list of the body with itself cannot meet during the motion of the
-/// step. `fresh`: the list was made for this step, and is complete up to the distance zone + m + R(a, b), with the
-/// boxes of velocities that the search used.
+/// step. `fresh`: the list was made for this step, and is complete up to the distance zone + max(M, R), with the boxes
+/// of velocities that the search used.
 bool holds_for_motion(const SelfMotion& motion, const StepMotion& step, bool fresh, SelfSearch& self);
 
 }  // namespace skerry

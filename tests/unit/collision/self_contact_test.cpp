@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "systems/collision/find_crossings.h"
+#include "systems/collision/inputs/contact_key.h"
+#include "systems/collision/narrow/candidate_lanes.h"
 #include "systems/collision/narrow/rest_distance.h"
 #include "systems/collision/search/search_pair.h"
 #include "tests/support/collision_world.h"
@@ -67,7 +69,73 @@ std::set<std::uint64_t> features(const CollisionWorld& w) {
     return all;
 }
 
+/// All features of the strip that may become contacts in this step, found by a comparison of all pairs of features.
+std::set<std::uint64_t> features_within_reach(const RollingStrip& strip) {
+    const CollisionInputs inputs = strip.w.inputs();
+    const PairScale scale = pair_scale(inputs, PairKind::self, strip.body, strip.body);
+    const auto& x = inputs.position;
+    std::set<std::uint64_t> all;
+    const auto test = [&](std::uint64_t feature, const auto& first, const auto& second, auto&& distance) {
+        if ((x[first[0]] - x[second[0]]).norm() > 1.5) return;  // much more than two edges and the reach
+        Real speed = 0;
+        for (const Index m : first)
+            for (const Index n : second) {
+                if (m == n) return;
+                speed = std::max(speed, (inputs.velocity[m] - inputs.velocity[n]).norm());
+            }
+        const Real gap = distance() - scale.contact_distance;
+        if (gap <= reach(h, speed, strip.w.settings.gravity, scale.shell)) all.insert(feature);
+    };
+    const SurfaceTables& surface = strip.w.surface;
+    for (Index v = 0; v < static_cast<Index>(surface.vertices.node.size()); ++v)
+        for (Index t = 0; t < static_cast<Index>(surface.triangles.node.size()); ++t) {
+            const std::array<Index, 1> point{surface.vertices.node[v]};
+            const auto& corner = surface.triangles.node[t];
+            test(point_triangle_feature(false, v, t), point, corner, [&] {
+                return std::sqrt(
+                    closest_point_on_triangle(x[point[0]], x[corner[0]], x[corner[1]], x[corner[2]]).distance_squared);
+            });
+        }
+    for (Index e = 0; e < static_cast<Index>(surface.edges.node.size()); ++e)
+        for (Index f = e + 1; f < static_cast<Index>(surface.edges.node.size()); ++f) {
+            const auto &a = surface.edges.node[e], &b = surface.edges.node[f];
+            test(edge_edge_feature(e, f), a, b, [&] {
+                return std::sqrt(closest_points_of_segments(x[a[0]], x[a[1]], x[b[0]], x[b[1]]).distance_squared);
+            });
+        }
+    return all;
+}
+
 }  // namespace
+
+TEST_CASE("the candidates of a strip with itself include all features within reach, whatever the motion", "[unit]") {
+    RollingStrip strip;
+    strip.steer(5.9, 0, 0);
+    strip.w.drift(h);
+    std::size_t most = 0, extended = 0, searched = 0;
+    constexpr int steps = 240;
+    Real turn = 0;
+    for (int step = 1; step <= steps; ++step) {
+        // There are calm phases, and phases in which the strip turns, its ends close up or its nodes tremble.
+        turn += step % 120 < 20 ? 0.03 : 0.0005;
+        const Real closing = step % 80 < 40 ? 0 : 0.2 * std::sin(2 * M_PI * step / 40);
+        strip.steer(5.9 + closing, turn, step % 60 < 50 ? 0.02 : 5);
+        const Real before = strip.w.pairs.valid_until.empty() ? 0 : strip.w.pairs.valid_until[0];
+        strip.w.find(h);
+        CAPTURE(step);
+        std::set<std::uint64_t> listed;
+        for (const Candidate& candidate : strip.w.pairs.candidates[0]) listed.insert(candidate.feature);
+        const std::set<std::uint64_t> expected = features_within_reach(strip);
+        REQUIRE(std::ranges::includes(listed, expected));
+        most = std::max(most, expected.size());
+        searched += strip.w.pairs.fresh[0] != 0;
+        extended += strip.w.pairs.fresh[0] == 0 && strip.w.pairs.valid_until[0] > before;
+        strip.w.drift(h);
+    }
+    CHECK(most > 20);
+    CHECK(extended > steps / 20);
+    CHECK(searched < steps / 2);
+}
 
 TEST_CASE("a strip that rolls up and turns finds all contacts with itself while few steps search", "[unit][long]") {
     // With a crossing the ends pass each other, and nothing is held apart.
