@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "components/counting_sort.h"
@@ -30,31 +29,6 @@ std::vector<Edge> unique_edges(const Mesh& mesh) {
     counting_sort(edges, spare, node_count, [](const Edge& edge) { return edge.first; });
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
-}
-
-/// Returns the number of connected components, where tetrahedra that share a node are connected. Unused nodes do not
-/// count.
-std::size_t count_components(const Mesh& mesh) {
-    std::vector<Index> parent(mesh.nodes.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](Index n) {
-        while (parent[static_cast<std::size_t>(n)] != n) {
-            Index& up = parent[static_cast<std::size_t>(n)];
-            up = parent[static_cast<std::size_t>(up)];
-            n = up;
-        }
-        return n;
-    };
-    std::vector<bool> used(mesh.nodes.size(), false);
-    for (const std::array<Index, 4>& t : mesh.tetrahedra)
-        for (const Index n : t) {
-            used[static_cast<std::size_t>(n)] = true;
-            const Index first = root(t[0]), other = root(n);
-            parent[static_cast<std::size_t>(std::max(first, other))] = std::min(first, other);
-        }
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < parent.size(); ++n) count += used[n] && parent[n] == static_cast<Index>(n);
-    return count;
 }
 
 void measure_edges(const Mesh& mesh, MeshReport& report) {
@@ -116,7 +90,7 @@ MeshReport inspect(const Mesh& mesh) {
     report.labels = mesh::count_labels(mesh);
     report.boundary_fault = mesh::manifold_fault(triangles);
     report.closed_manifold = report.boundary_fault.empty();
-    report.components = count_components(mesh);
+    report.components = count_parts(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);
     return report;

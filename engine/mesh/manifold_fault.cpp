@@ -38,6 +38,15 @@ std::vector<Side> sides_of(std::span<const BoundaryTriangle> boundary) {
 
 }  // namespace
 
+std::size_t count_parts(const Mesh& mesh) {
+    UnionFind parts;
+    parts.start(mesh.nodes.size());
+    for (const std::array<Index, 4>& t : mesh.tetrahedra)
+        for (const Index n : t) parts.join(t[0], n);
+    for (const std::array<Index, 4>& t : mesh.tetrahedra) parts.number(t[0]);
+    return static_cast<std::size_t>(parts.number_count);
+}
+
 std::string manifold_fault(std::span<const BoundaryTriangle> boundary) {
     if (boundary.empty()) return "no boundary triangle";
     const std::vector<Side> sides = sides_of(boundary);

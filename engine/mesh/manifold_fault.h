@@ -1,12 +1,17 @@
-// Checks that the boundary of a mesh is a closed manifold.
+// Topology of a mesh: its parts, and whether its boundary is a closed manifold.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 
+#include "skerry/mesh.h"
 #include "systems/collision/build_surface.h"
 
 namespace skerry::mesh {
+
+/// Number of parts of a mesh. Tetrahedra that share a node belong to the same part.
+std::size_t count_parts(const Mesh& mesh);
 
 /// Describes the first violation of a closed manifold, with the node numbers of the mesh, and counts such violations:
 /// "node 3, at which parts of the boundary meet without a common edge (2 such meetings in total)". Returns an empty

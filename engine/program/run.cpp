@@ -218,6 +218,21 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& worl
     return found;
 }
 
+/// Returns one note for each mesh of several parts. The note names one body with this mesh.
+std::vector<std::string> separate_parts(const ScenePlan& plan) {
+    std::vector<std::string> found;
+    std::vector<bool> seen(plan.meshes.size(), false);
+    for (const BodyPlan& body : plan.bodies) {
+        if (seen[body.mesh]) continue;
+        seen[body.mesh] = true;
+        const std::size_t parts = mesh::count_parts(plan.meshes[body.mesh]);
+        if (parts > 1)
+            found.push_back("the mesh of body \"" + body.settings.name + "\" has " + grouped(parts) +
+                            " parts without a common node, which can move apart");
+    }
+    return found;
+}
+
 }  // namespace
 
 RunResult simulate(const RunOptions& asked) {
@@ -267,6 +282,7 @@ RunResult simulate(const RunOptions& asked) {
                          .frame_step = memory.frame_step,
                          .row_step = run_plan.even() ? 0 : run_plan.probe_step};
     result.notes = plan.notes;
+    for (std::string& note : separate_parts(plan)) result.notes.push_back(std::move(note));
     if (const std::string note = stiff_note(plan, world, start.step_count, run_plan.longest_call()); !note.empty())
         result.notes.push_back(note);
     if (!options.quiet)

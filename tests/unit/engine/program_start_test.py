@@ -103,6 +103,16 @@ class ProgramStartTest(ProgramCase):
         clean = self.skerry("run", self.two_tetrahedra("clean", "1 3 2 5"))
         self.assertNotIn("NOTE", clean.stderr)
 
+    def test_a_mesh_of_two_parts_is_noted(self):
+        self.write("halves.node", "8 3 0 0\n" + "".join(
+            f"{4 * part + k} {x} {y} {z + 2 * part}\n" for part in (0, 1)
+            for k, (x, y, z) in enumerate([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])))
+        self.write("halves.ele", "2 4 0\n0 0 1 2 3\n1 4 5 6 7\n")
+        scene = self.write("halves.json", {"materials": {"rubber": {"E": 1e5}}, "seconds": 0.01, "bodies": [
+            {"name": "halves", "mesh": {"file": "halves.ele"}, "material": "rubber"}]})
+        self.assertIn('NOTE: the mesh of body "halves" has 2 parts without a common node, which can move apart',
+                      self.skerry("run", scene).stderr)
+
     def test_a_mesh_with_a_node_in_a_wrong_place_is_refused_with_its_file_and_its_faults(self):
         # The apex of the second tetrahedron lies on the wrong side: turned, it would lie in the first tetrahedron.
         scene = self.two_tetrahedra("tangled", "1 3 2 5", apex=0.5)
