@@ -90,7 +90,7 @@ MeshReport inspect(const Mesh& mesh) {
     report.labels = mesh::count_labels(mesh);
     report.boundary_fault = mesh::manifold_fault(triangles);
     report.closed_manifold = report.boundary_fault.empty();
-    report.components = count_parts(mesh);
+    report.components = mesh::count_parts(mesh);
     measure_edges(mesh, report);
     measure_tetrahedra(mesh, report);
     return report;

@@ -15,16 +15,19 @@ import sources
 
 # Limits for all functions whose demangled name contains a word, by instruction set. The four numbers are the counts of
 # KINDS; each limit is for the function with the highest count. The limits are the counts of the present code with GCC
-# 12 in the preset dev, which this script prints. After a change that lowers a count, write the lower number here.
-KINDS = ("memory calls", "other calls", "stack accesses", "scalar comparisons")
+# 12 in the preset dev, which this script prints. After a change that lowers a count, write the lower number here. An
+# unrolled loop has more accesses to the stack in its code, not in its run. The copies in compute_run are arguments of
+# the rare viscous stress.
+KINDS = ("copies", "other calls", "stack accesses", "scalar comparisons")
 LIMITS = {
-    "compute_run": {"x86-64": (0, 4, 2059, 99), "x86-64-v3": (0, 4, 360, 7), "x86-64-v4": (0, 7, 230, 5)},
+    "compute_run": {"x86-64": (2, 2, 3513, 144), "x86-64-v3": (2, 2, 814, 11), "x86-64-v4": (0, 2, 225, 8)},
     "skerry::distances(": {"x86-64": (0, 0, 468, 100), "x86-64-v3": (0, 0, 79, 0), "x86-64-v4": (0, 0, 2, 0)},
     "sort_by_counting(": {"x86-64": (1, 0, 11, 4), "x86-64-v3": (1, 0, 3, 0), "x86-64-v4": (1, 0, 3, 0)},
-    "BodySearch::compare_": {"x86-64": (0, 5, 118, 57), "x86-64-v3": (0, 5, 24, 0), "x86-64-v4": (0, 5, 10, 0)},
+    "BodySearch::compare_": {"x86-64": (0, 4, 118, 57), "x86-64-v3": (0, 5, 24, 0), "x86-64-v4": (0, 5, 10, 0)},
 }
-# memcpy, memmove or memset.
+# Calls of memcpy, memmove or memset, and the instructions that replace them.
 MEMORY_FUNCTION = re.compile(r"\bmem(cpy|move|set)\b")
+STRING_INSTRUCTION = re.compile(r"(movs|stos)[bwlq]\b")
 # Calls of functions that end the program, or that stand in a part of a function that is rarely reached.
 COLD = re.compile(r"\.cold\b|fail|terminate|throw|_Unwind_Resume|__cxa_")
 VECTOR = re.compile(r"%[xyz]mm\d+")
@@ -65,9 +68,10 @@ def counts_of(instructions):
     stack = re.compile(r"\(%r[sb]p" if has_frame else r"\(%rsp")
     calls = [operands for _, name, operands in instructions if name.startswith("call") and not COLD.search(operands)]
     memory = sum(bool(MEMORY_FUNCTION.search(operands)) for operands in calls)
+    strings = sum(name == "rep" and bool(STRING_INSTRUCTION.match(operands)) for _, name, operands in instructions)
     accesses = sum(bool(stack.search(operands) and VECTOR.search(operands)) for _, _, operands in instructions)
     scalar = sum(bool(SCALAR_COMPARISON.fullmatch(name)) for _, name, _ in instructions)
-    return memory, len(calls) - memory, accesses, scalar
+    return memory + strings, len(calls) - memory, accesses, scalar
 
 
 def instruction_set_of(command):
