@@ -47,8 +47,8 @@ function(skerry_arch_options out arch)
     if(SKERRY_WIDE_VECTORS_${id})
         list(APPEND options -mprefer-vector-width=512)
     endif()
-    # Copies in full registers: a load of 32 bytes waits for stores of 16 bytes, as GCC copies by default. With those,
-    # finding candidates for contacts takes 1.4 times as long where registers have 256 bits.
+    # Copies in full registers: a load of 32 bytes waits for stores of 16 bytes, as GCC copies by default. With copies
+    # of 16 bytes, finding candidates for contacts takes 1.4 times as long where registers have 256 bits.
     check_cxx_compiler_flag("-march=${arch} -mmove-max=512 -mstore-max=512" SKERRY_WIDE_MOVES_${id})
     if(SKERRY_WIDE_MOVES_${id})
         list(APPEND options -mmove-max=512 -mstore-max=512)

@@ -22,8 +22,9 @@ constexpr Real most_size_ratio = 999;                    // longest over shortes
 constexpr Real most_pivot_distance = 1;
 
 struct Extent {
-    Real size = 0;    // longest edge of the bounding box [m]
-    Real height = 0;  // extent along the direction of gravity [m]
+    Real size = 0;               // longest edge of the bounding box [m]
+    Real height = 0;             // extent along the direction of gravity [m]
+    Vec3 center = Vec3::Zero();  // center of the bounding box in the frame of the mesh [m]
 };
 
 Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity) {
@@ -37,7 +38,7 @@ Extent extent_of(const Mesh& mesh, const BodySettings& body, const Vec3& gravity
         lowest = std::min(lowest, down.dot(node));
         highest = std::max(highest, down.dot(node));
     }
-    return {(upper - lower).maxCoeff(), highest - lowest};
+    return {(upper - lower).maxCoeff(), highest - lowest, (lower + upper) / 2};
 }
 
 /// Formats an estimate with two digits, for example "20,000" or "3.9".
@@ -109,13 +110,13 @@ void warn_of_pose(const ColliderSettings& collider, std::vector<std::string>& wa
 
 /// Warns if a pin rotates about the origin of the world, where no centre of rotation was given, and the body is far
 /// away.
-void warn_of_pivots(const BodyPlan& body, Real size, std::vector<std::string>& warnings) {
+void warn_of_pivots(const BodyPlan& body, const Extent& extent, std::vector<std::string>& warnings) {
     for (std::size_t p = 0; p < body.pins.size(); ++p) {
         const Motion& motion = body.pins[p].motion;
         const Vec3& center = motion.keys.empty() ? body.pins[p].pivot : motion.keys.front().position;
         const bool turns = motion.turns() || !motion.angular_velocity.isZero(0);
-        const Real distance = body.settings.position.norm();
-        if (!turns || !center.isZero(0) || !(distance > most_pivot_distance * size)) continue;
+        const Real distance = (body.settings.position + rotation_matrix(body.settings.rotation) * extent.center).norm();
+        if (!turns || !center.isZero(0) || !(distance > most_pivot_distance * extent.size)) continue;
         warnings.push_back("pin " + std::to_string(p) + " of body \"" + body.settings.name +
                            "\" rotates about the origin of the world, " + with_unit(distance, "m") +
                            " away: give the centre of rotation as " +
@@ -141,7 +142,7 @@ std::vector<std::string> plan_warnings(const ScenePlan& plan) {
                           body.settings.rotation == before->settings.rotation;
         extents.push_back(copy ? extents.back() : extent_of(plan.meshes[body.mesh], body.settings, gravity));
         if (!copy) warn_of_sag(plan, body, extents.back().height, warnings);
-        warn_of_pivots(body, extents.back().size, warnings);
+        warn_of_pivots(body, extents.back(), warnings);
         before = &body;
     }
     warn_of_sizes(plan, extents, warnings);

@@ -218,12 +218,12 @@ std::vector<std::string> bad_boundaries(const ScenePlan& plan, const World& worl
     return found;
 }
 
-/// Returns one note for each mesh of several parts. The note names one body with this mesh.
+/// Returns one note for each mesh of several parts that deforms. The note names one body with this mesh.
 std::vector<std::string> separate_parts(const ScenePlan& plan) {
     std::vector<std::string> found;
     std::vector<bool> seen(plan.meshes.size(), false);
     for (const BodyPlan& body : plan.bodies) {
-        if (seen[body.mesh]) continue;
+        if (seen[body.mesh] || body.settings.dynamics == BodyDynamics::rigid) continue;
         seen[body.mesh] = true;
         const std::size_t parts = mesh::count_parts(plan.meshes[body.mesh]);
         if (parts > 1)

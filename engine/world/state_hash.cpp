@@ -160,6 +160,7 @@ void add_motor_keys(Hash& hash, const JointTable& joints) {
     for (const std::size_t row : in_slot_order(joints.slot)) {
         const std::span<const JointMotorKey> keys = joints.keys_of(row);
         if (keys.empty()) continue;
+        hash.add(joints.slot[row]);
         add_rows(hash, keys);
         hash.add(keys.size());
     }

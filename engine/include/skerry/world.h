@@ -211,8 +211,8 @@ public:
     /// Resets all bodies to the poses of their BodySettings. Time, colliders, attachments and loads do not change.
     void reset();
     /// Continues from the state of `saved`, which must be a clone() of this world. Handles of objects that `saved` has
-    /// stay valid; handles of objects that were added later become stale. Threads and callbacks of this world
-    /// stay. Whether forces are measured is taken from `saved`.
+    /// stay valid; handles of objects that were added later become stale, unless objects were added to `saved`
+    /// as well. Threads and callbacks of this world stay. Whether forces are measured is taken from `saved`.
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);

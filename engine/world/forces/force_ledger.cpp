@@ -270,7 +270,10 @@ void ForceLedger::add_pairs(const Model& model, std::span<const std::uint8_t> re
     for (const PairSums& of_step : scratch.forces.pairs) {
         PairRow& row = pair(key_of(model, of_step.partners));
         row.sums += of_step.sums;
-        row.still += of_step.sums;
+        const ContactPartners& of = of_step.partners;
+        const bool both_rested = rested[static_cast<std::size_t>(of.first)] != 0 &&
+                                 (of.second == no_index || rested[static_cast<std::size_t>(of.second)] != 0);
+        if (!both_rested) row.still += of_step.sums;
         row.peak.add(of_step.sums.impulse, of_step.contacts);
         row.touched = true;
         add_to_partners(row.key, of_step.sums.impulse, of_step.contacts);

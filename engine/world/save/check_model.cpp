@@ -349,12 +349,28 @@ void check_joints(const Hdf5File& file, const Model& model) {
         const Range keys = table.motor_keys[j];
         require(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(table.key.size()),
                 "motor_keys", "a range that does not exist", "a range of the rows of /joints/key");
+        require(keys.size() == 0 || table.drive[j] != JointDrive::none, "motor_keys", "keys without a motor",
+                "no keys");
         require(std::ranges::adjacent_find(table.keys_of(j), std::greater_equal<>(), &JointMotorKey::time) ==
                     table.keys_of(j).end(),
                 "key", "keys whose times do not ascend", "ascending times");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",
                 "finite numbers");
     }
+    std::vector<Range> ranges;
+    for (const Range& keys : table.motor_keys)
+        if (keys.size() > 0) ranges.push_back(keys);
+    std::ranges::sort(ranges, {}, &Range::begin);
+    Index end = 0;
+    for (const Range& keys : ranges) {
+        if (keys.begin != end)
+            file.complain("/joints/motor_keys", "a range of keys that begins at row " + std::to_string(keys.begin),
+                          "row " + std::to_string(end) + ", where the last range ends");
+        end = keys.end;
+    }
+    if (end != static_cast<Index>(table.key.size()))
+        file.complain("/joints/key", std::to_string(table.key.size()) + " rows",
+                      std::to_string(end) + ", as many as the motors of joints have keys");
 }
 
 void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) {

@@ -22,7 +22,8 @@ struct OwnElements {
     Ragged<Index> covered;
 };
 
-/// Keeps the data that depend only on the mesh, the materials of the tetrahedra and the element kind of one body. These
+/// Keeps the data that depend only on the mesh, the materials of the tetrahedra, the element kind and the rotation with
+/// which the elements of one body were built. These
 /// do not change during the life of a BodyRecord. Data are built when they are first needed, and several threads may
 /// ask for them. A copy of a cache is empty.
 class FieldCache {

@@ -252,7 +252,9 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             blame(world, report);
             break;
         }
-        attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
+        // An attempt at the same step is repeated with the same length.
+        if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0)
+            attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
         const Real within = left_in_long_step(model, left, clock.long_step);
         const StepPlan plan = plan_step(model, within, attempt.at_most());
         store_shapes(*world.executor, model, steps_per_round(world), world.scratch.watch_pieces);

@@ -32,6 +32,8 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
 StepPlan plan_step(const Model& model, Real left, Real fast_limit) {
     StepPlan plan;
     plan.stable = trusted_step(model, &plan.stiffest);
+    Index fastest = no_index;
+    plan.regular = step_of_turns(model, plan.stable, fastest);
     const Real longest = std::min(plan.stable, fast_limit);
     // The tolerance prevents an extra step for a remaining time that is only a rounding error.
     plan.steps = std::isfinite(longest) ? std::max(1.0, std::ceil(left / longest - 1e-9)) : 1.0;

@@ -92,9 +92,11 @@ Real lag_between_steps(const WorldState& world);
 
 // plan_step.cpp
 struct StepPlan {
-    Real h = 0;                 // s
-    Real steps = 1;             // number of steps of length `h` until the end of the planned interval
-    Real stable = 0;            // longest step that stability and the settings allow [s]
+    Real h = 0;       // s
+    Real steps = 1;   // number of steps of length `h` until the end of the planned interval
+    Real stable = 0;  // longest step that stability and the settings allow [s]
+    // Longest step that also suits rotating joints. Shorter attempts are compared with it [s].
+    Real regular = 0;
     Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
 };
 /// Plans the next step of an interval of which `left` seconds remain. The step is at most `fast_limit` seconds long.

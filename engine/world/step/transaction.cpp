@@ -214,9 +214,9 @@ AttemptLimits limits_of_shorter_attempt(const WorldState& world, const StepPlan&
                        .limit = attempt.limit,
                        .body = attempt.body};
     if (found.crossings == 0 && found.verdict.fault == StepFault::too_fast) {
-        const Real least = plan.h > plan.stable / most_shortening
-                               ? plan.stable
-                               : plan.stable * most_shortening / most_shortening_against_speed;
+        const Real least = plan.h > plan.regular / most_shortening
+                               ? plan.regular
+                               : plan.regular * most_shortening / most_shortening_against_speed;
         const Real slow = slow_enough(fastest, world.scratch.parameters.max_strain_step, least);
         next.slow_enough = std::clamp(slow, plan.h * most_at_once, plan.h * least_at_once);
         next.fastest = fastest.body;
@@ -235,7 +235,7 @@ AttemptLimits limits_of_shorter_attempt(const WorldState& world, const StepPlan&
 AttemptLimits limits_of_next_attempt(const StepScratch& scratch, const StepPlan& plan, const AttemptLimits& attempt) {
     const StrainRate& fastest = scratch.findings.verdict.fastest;
     AttemptLimits next{.longest = attempt.longest * step_growth,
-                       .slow_enough = slow_enough(fastest, scratch.parameters.max_strain_step, plan.stable),
+                       .slow_enough = slow_enough(fastest, scratch.parameters.max_strain_step, plan.regular),
                        .fastest = fastest.body,
                        .limit = attempt.limit,
                        .body = attempt.body};
@@ -270,7 +270,7 @@ StepOutcome judge(const StepScratch& scratch, bool beyond_lists, const StepPlan&
     if (scratch.taken()) return StepOutcome::committed;
     if (crosses && ++attempt.with_crossings < tries_at_one_length) return StepOutcome::again_with_crossings;
     if (crosses || found.verdict.fault == StepFault::too_fast || found.verdict.fault == StepFault::unsolved) {
-        if (plan.h > plan.stable / (crosses ? most_shortening : most_shortening_against_speed))
+        if (plan.h > plan.regular / (crosses ? most_shortening : most_shortening_against_speed))
             return StepOutcome::again_shorter;
         return crosses ? StepOutcome::again_letting_through : StepOutcome::refused;
     }
@@ -295,7 +295,7 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
     const bool leapfrog = world.model.settings.integrator == Integrator::leapfrog;
     scratch.parameters.work_lag = leapfrog ? 0 : scratch.parameters.lag;
     scratch.parameters.let_invert =
-        attempt.letting_through || !(plan.h > plan.stable / most_shortening_against_inversion);
+        attempt.letting_through || !(plan.h > plan.regular / most_shortening_against_inversion);
     scratch.parameters.long_step = times_in_long_step(world.clock.long_step, plan);
     scratch.parameters.problem_wanted = world.record.problem_watch.wants(world.record.counters.steps + 1);
     scratch.parameters.forces_wanted = world.record.forces.on();

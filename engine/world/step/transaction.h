@@ -18,14 +18,14 @@ struct StepPlan;
 struct WorldState;
 
 /// Outcome of one attempt at a step of length h. After all outcomes but `committed` the world is in its state before
-/// the attempt.
+/// the attempt. The regular step is StepPlan::regular.
 ///
 ///     attempt -- good ------------------------------------------------------------> committed
 ///      |---- features near enough to cross were not in the lists -----------------> again_with_longer_lists -> attempt
 ///      |---- features cross, fewer than 4 attempts of this length ----------------> again_with_crossings ----> attempt
-///      |---- features cross; h > stable step / 128 -------------------------------> again_shorter -----------> attempt
-///      |---- a body is too fast or unsolved; h > stable step / 1024 --------------> again_shorter -----------> attempt
-///      |---- an element turns inside out; h > stable step / 4 --------------------> again_shorter -----------> attempt
+///      |---- features cross; h > regular step / 128 ------------------------------> again_shorter -----------> attempt
+///      |---- a body is too fast or unsolved; h > regular step / 1024 -------------> again_shorter -----------> attempt
+///      |---- an element turns inside out; h > regular step / 4 -------------------> again_shorter -----------> attempt
 ///      |---- features cross at the shortest length -------------------------------> again_letting_through ---> attempt
 ///      '---- not finite, too far; too fast or unsolved at the shortest length ----> refused
 enum class StepOutcome {
@@ -42,8 +42,8 @@ struct AttemptLimits {
     // Upper bound of the step length after crossings, inversions or steps that Newton's method could not solve [s]. The
     // bound grows in each committed step.
     Real longest = infinity;
-    Real slow_enough = infinity;   // upper bound of the step length by the rate of deformation [s]
-    Index fastest = no_index;      // body that deforms fastest, as row of BodyTable
+    Real slow_enough = infinity;   // upper bound by the rate of deformation and the rotation of joints [s]
+    Index fastest = no_index;      // body that causes this bound, as row of BodyTable
     int with_longer_lists = 0;     // number of attempts at this step whose contact lists were incomplete
     int with_crossings = 0;        // number of attempts with this step length in which features crossed
     bool letting_through = false;  // true if the next attempt is the last, which accepts crossings and inversions

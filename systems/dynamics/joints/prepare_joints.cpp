@@ -37,12 +37,11 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
                  .drive = joints.drive[j],
                  .motor = joints.motor[j],
                  .most_impulse = step.kick * joints.motor[j].most};
-    const Real start = joints.target(j, step.t), end = joints.target(j, step.t + step.h);
     if (axis.drive == JointDrive::position) {
-        axis.motor.target = start;
-        axis.target_rate = (end - start) / step.h;
+        axis.motor.target = joints.target(j, step.t);
+        axis.target_rate = (joints.target(j, step.t + step.h) - axis.motor.target) / step.h;
     } else {
-        axis.motor.target = (start + end) / 2;
+        axis.motor.target = joints.mean_target(j, step.t, step.h);
     }
     return axis;
 }
@@ -64,6 +63,31 @@ Real JointInputs::target(std::size_t j, Real t) const {
     if (after == keys.end()) return keys.back().target;
     const JointMotorKey &a = *(after - 1), &b = *after;
     return a.target + (t - a.time) / (b.time - a.time) * (b.target - a.target);
+}
+
+std::span<const JointMotorKey> JointInputs::keys_inside(std::size_t j, Real t, Real h) const {
+    const std::span<const JointMotorKey> keys = rows_of(key, motor_keys[j]);
+    const auto begin = std::ranges::upper_bound(keys, t, {}, &JointMotorKey::time);
+    return {begin, std::ranges::lower_bound(begin, keys.end(), t + h, {}, &JointMotorKey::time)};
+}
+
+bool JointInputs::target_moves(std::size_t j, Real t, Real h) const {
+    if (drive[j] == JointDrive::none) return false;
+    const Real start = target(j, t);
+    return target(j, t + h) != start ||
+           std::ranges::any_of(keys_inside(j, t, h), [&](const JointMotorKey& k) { return k.target != start; });
+}
+
+Real JointInputs::mean_target(std::size_t j, Real t, Real h) const {
+    const std::span<const JointMotorKey> inside = keys_inside(j, t, h);
+    if (inside.empty()) return (target(j, t) + target(j, t + h)) / 2;
+    Real sum = 0;
+    JointMotorKey last{t, target(j, t)};
+    for (const JointMotorKey& k : inside) {
+        sum += (k.time - last.time) * (last.target + k.target) / 2;
+        last = k;
+    }
+    return (sum + (t + h - last.time) * (last.target + target(j, t + h)) / 2) / h;
 }
 
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before) {

@@ -84,9 +84,11 @@ struct JointInputs {
     /// Target of the motor of joint `j` at time `t`. Before the first key and after the last, the target is constant.
     Real target(std::size_t j, Real t) const;
     /// True if joint `j` has a motor whose target changes in the step of length `h` that starts at time `t`.
-    bool target_moves(std::size_t j, Real t, Real h) const {
-        return drive[j] != JointDrive::none && target(j, t) != target(j, t + h);
-    }
+    bool target_moves(std::size_t j, Real t, Real h) const;
+    /// Mean target of the motor of joint `j` in the step of length `h` that starts at time `t`.
+    Real mean_target(std::size_t j, Real t, Real h) const;
+    /// Keys of joint `j` at times between `t` and `t + h`, both excluded.
+    std::span<const JointMotorKey> keys_inside(std::size_t j, Real t, Real h) const;
 };
 
 /// Displacement of a slider [m] or angle of a hinge [rad] between the joint frames of the two bodies; 0 for other kinds

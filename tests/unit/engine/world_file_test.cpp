@@ -5,7 +5,9 @@
 #include <iterator>
 
 #include "components/split_mix.h"
+#include "components/types.h"
 #include "engine/world/save/world_file.h"
+#include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/temporary_folder.h"
@@ -175,6 +177,27 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
     CHECK_THAT(refusal("/settings/method", 0, 5), Contains("/settings: method: found 255"));
     CHECK_THAT(refusal("/settings/tolerance", 0, 1), Contains("tolerance: found -1"));
     CHECK_THAT(refusal("/materials/young_modulus", 0, 2), Contains("state_hash"));
+}
+
+TEST_CASE("a saved world in which two motors share their keys is refused", "[unit]") {
+    World world;
+    const MaterialHandle material = world.add_material({});
+    for (const Real x : {0.0, 1.0}) {
+        const BodyHandle body =
+            world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}),
+                           {.material = material, .position = {x, 0, 0}, .dynamics = BodyDynamics::rigid});
+        const JointMotor motor{.strength = 1, .keys = {{.time = 0, .speed = 1}, {.time = 1, .speed = 2}}};
+        Joints(world).add({.kind = JointKind::hinge, .first = body, .motor = motor});
+    }
+    const SavedFile saved(world);
+    CHECK(saved.refusal(saved.bytes).empty());
+    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    const auto keys = std::ranges::find(sets, "/joints/motor_keys", &ValuesInFile::path);
+    REQUIRE(keys != sets.end());
+    std::vector<char> bytes = saved.bytes;
+    std::memcpy(bytes.data() + keys->begin + sizeof(Range), bytes.data() + keys->begin, sizeof(Range));
+    renew_head(bytes);
+    CHECK_THAT(saved.refusal(bytes), Contains("/joints: motor_keys: found a range of keys that begins at row 0"));
 }
 
 TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {
