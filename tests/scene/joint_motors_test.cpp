@@ -168,7 +168,7 @@ TEST_CASE("a pulse of speed within one step turns a joint by its mean, and wakes
     const JointMotor motor{
         .strength = 50,
         .keys = {{.time = 3.0005, .speed = 0}, {.time = 3.001, .speed = 1}, {.time = 3.0015, .speed = 0}}};
-    Arm arm({.motor = motor}, Vec3::Zero(), sleep);
+    Arm arm({.motor = motor}, {0, 0, -standard_gravity}, sleep);
     REQUIRE(arm.world.advance(3).ok());
     CHECK(arm.world.report().asleep == (sleep ? 1 : 0));
     REQUIRE(arm.world.advance(1).ok());
