@@ -23,15 +23,16 @@ void for_each_node(const CollisionInputs& inputs, Index body, auto&& visit) {
 }
 
 /// The rigid motion of a body since the last search: X moves to `now` + rotation (X - before).
-struct RigidPart {
+struct RigidDisplacement {
     Vec3 before = Vec3::Zero(), now = Vec3::Zero();  // centres [m]
     Mat3 rotation = Mat3::Identity();
 };
 
 /// Computes the rigid motion that is nearest to the displacements u of the surface nodes if the rotation is small. The
 /// rotation vector minimises the sum of |w x r - u|^2.
-RigidPart rigid_part(const CollisionInputs& inputs, Index body, const SelfSearch& self, auto&& position) {
-    RigidPart part;
+RigidDisplacement rigid_displacement(const CollisionInputs& inputs, Index body, const SelfSearch& self,
+                                     auto&& position) {
+    RigidDisplacement part;
     for_each_node(inputs, body, [&](Index n) {
         part.before += self.origin[n];
         part.now += position(n);
@@ -54,7 +55,7 @@ RigidPart rigid_part(const CollisionInputs& inputs, Index body, const SelfSearch
 
 /// Computes the boxes of the motion since the last search. position(n): position of node n [m].
 void fit_motion(const CollisionInputs& inputs, Index body, SelfSearch& self, auto&& position) {
-    const RigidPart part = rigid_part(inputs, body, self, position);
+    const RigidDisplacement part = rigid_displacement(inputs, body, self, position);
     for_each_node(inputs, body, [&](Index n) {
         self.moved[n] = position(n) - part.now - part.rotation * (self.origin[n] - part.before);
     });
