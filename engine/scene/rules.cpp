@@ -84,7 +84,7 @@ void RuleTable::refuse_withdrawn(const std::string& key, const Place& place) con
 }
 
 Place RuleTable::place_of(const Json& json, const Place& outer) const {
-    if (!json.is_object()) outer.refuse(described(json), "an object of the type " + in_quotes(name_));
+    if (!json.is_object()) outer.refuse(described(json), "an object with keys such as " + listed(known_names()));
     if (const auto own = json.find("name"); own != json.end() && own->is_string())
         return outer.of(name_ + " " + in_quotes(own->get_ref<const std::string&>()));
     return outer;

@@ -96,6 +96,9 @@ TEST_CASE("unknown keys are named with their place and the nearest known key", "
         {"deep",
          scene_with(R"("colliders": [{"shape": {"sphere": {"radius": 1, "heigth": 2}}}])"),
          {"colliders[0].shape.sphere.heigth", "one of the keys \"radius\""}},
+        {"a text in place of an object",
+         scene_with(R"("colliders": [{"shape": "plane"}])"),
+         {"colliders[0].shape: found the text \"plane\"", "expected an object with keys such as", "\"plane\""}},
     });
 }
 
