@@ -108,8 +108,8 @@ void warn_of_pose(const ColliderSettings& collider, std::vector<std::string>& wa
                        ": keys are poses of the collider itself; correct the keys, or delete \"position\"");
 }
 
-/// Warns if a pin rotates about the origin of the world, where no centre of rotation was given, and the body is far
-/// away.
+/// Warns if a pin rotates about the origin of the world because no centre of rotation was given, and the body is far
+/// from the origin.
 void warn_of_pivots(const BodyPlan& body, const Extent& extent, std::vector<std::string>& warnings) {
     for (std::size_t p = 0; p < body.pins.size(); ++p) {
         const Motion& motion = body.pins[p].motion;

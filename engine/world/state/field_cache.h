@@ -23,9 +23,8 @@ struct OwnElements {
 };
 
 /// Keeps the data that depend only on the mesh, the materials of the tetrahedra, the element kind and the rotation with
-/// which the elements of one body were built. These
-/// do not change during the life of a BodyRecord. Data are built when they are first needed, and several threads may
-/// ask for them. A copy of a cache is empty.
+/// which the elements of one body were built. These do not change during the life of a BodyRecord. Data are built when
+/// they are first needed, and several threads may ask for them. A copy of a cache is empty.
 class FieldCache {
 public:
     FieldCache();

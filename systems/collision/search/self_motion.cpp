@@ -22,7 +22,7 @@ void for_each_node(const CollisionInputs& inputs, Index body, auto&& visit) {
     for (Index v = vertices.begin; v < vertices.end; ++v) visit(inputs.surface.vertices.node[v]);
 }
 
-/// The rigid motion of a body since the last search: X moves to `now` + rotation (X - before).
+/// The rigid motion of a body since the last search: a point X moves to now + rotation (X - before).
 struct RigidDisplacement {
     Vec3 before = Vec3::Zero(), now = Vec3::Zero();  // centres [m]
     Mat3 rotation = Mat3::Identity();
