@@ -67,8 +67,8 @@ double fused(std::size_t rounds, double factor, double summand) {
     return fused_rounds<Number>(rounds, factor, summand, std::make_index_sequence<chains>{});
 }
 
-/// Combines all numbers by exclusive or. It takes one cycle and runs on more units than an addition, so loads decide the
-/// time.
+/// Combines all numbers by exclusive or. It takes one cycle and runs on more units than an addition, so loads decide
+/// the time.
 double read(const double* from, std::size_t count) {
     using Bits = Register<unsigned long long>::type;
     constexpr std::size_t width = register_bytes / sizeof(double), at_once = 8;
