@@ -9,18 +9,16 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Accuracy
 
 This page shows how close the engine comes to known solutions. `scripts/accuracy` runs the tests tagged
-`[accuracy]` in `tests/scene/accuracy` and `tests/property`, writes this page, and lists all {rows} checks in
-`build/accuracy/accuracy.csv`. The checks form {items} items, one for each problem with a known solution. The table
-shows the {shown} items with the largest ratios of error to tolerance, and of each item the check with the largest
-ratio. Errors and tolerances in % are relative to the expected value, all others are absolute. In the formulas,
-`n` is a number of elements, and `h` the time step or, in some items, a length. [Accuracy](methods/accuracy.md)
-explains the formulas.
+`[accuracy]`, writes this page, and lists all {rows} checks in `build/accuracy/accuracy.csv`. They form {items} items, one
+for each known solution ([formulas](methods/accuracy.md)). For the {shown} items with the largest ratio of error to
+tolerance, the table shows the check with the largest ratio. Errors and tolerances in % are relative, others
+absolute. `n` is a number of elements, `h` the time step or, in some items, a length.
 
 | item | checks | quantity | formula | expected | found | error | tolerance |
 |---:|---:|---|---|---:|---:|---:|---:|
 """
 COLUMNS = ["item", "quantity", "formula", "expected", "found", "error", "tolerance", "kind", "note"]
-SHOWN = 30  # rows of the page
+SHOWN = 12  # rows of the page
 
 
 def number(value):
