@@ -9,8 +9,8 @@ from records import by_item, cells, rows_of, write_csv
 HEADER = """# Accuracy
 
 This page shows how close the engine comes to known solutions. `scripts/accuracy` runs the tests tagged
-`[accuracy]`, writes this page, and lists all {rows} checks in `build/accuracy/accuracy.csv`. They form {items} items, one
-for each known solution ([formulas](methods/accuracy.md)). For the {shown} items with the largest ratio of error to
+`[accuracy]`, writes this page, and lists all {rows} checks in `build/accuracy/accuracy.csv`. They form {items} items,
+one for each known solution ([formulas](methods/accuracy.md)). For the {shown} items with the largest ratio of error to
 tolerance, the table shows the check with the largest ratio. Errors and tolerances in % are relative, others
 absolute. `n` is a number of elements, `h` the time step or, in some items, a length.
 
