@@ -78,10 +78,10 @@ struct BodyTable {
     Column<std::uint16_t> unstrained;
     // Time since which the body has been still (update_sleep.h) [s].
     Column<Real> still_time;
-    // These columns are used with the engine's own limits of stillness, for which the sleep time is divided into two
-    // halves. |drift| is the largest distance of a node from its still_position in the current half [m]. `drift` is
-    // negative if a later measurement in the half found a smaller distance. `drift_before` is the largest distance in
-    // the previous half [m].
+    // Measurements of stillness (stillness.h), used if the engine chooses the limits of stillness. The sleep time is
+    // divided into two halves. |drift| is the largest distance of a node from its still_position in the current half
+    // [m]. `drift` is negative if a later measurement in the half found a smaller distance. `drift_before` is the
+    // largest distance in the previous half [m].
     Column<Real> drift, drift_before;
     // `shape_drift`: largest distance, measured in the current half of the sleep time, between the shape of the body
     // and its shape at the start of the half (stillness.h: shape_distance) [m]. `creep_before`: largest distance in the
@@ -93,8 +93,8 @@ struct BodyTable {
     Column<Real> frame_speed;  // greatest speed of a node relative to the frame in this step [m/s]
     // Greatest distance of a node from its displacement_origin, a point that moves with the frame [m].
     Column<Real> displacement;
-    // Bound on the motion of the nodes relative to the frame [m]. Let t be any earlier time. Since t no node has moved
-    // further than the growth of `travel` since t plus twice the value of `displacement` at t.
+    // Bound on the motion of the nodes relative to the frame [m]: the sum of all changes of `displacement`. Since an
+    // earlier time t no node has moved further than travel - travel(t) + 2 displacement(t).
     Column<Real> travel;
     // no tetrahedron of the body changes the sign of its volume while `travel` is below this value [m]
     Column<Real> uninverted_until;

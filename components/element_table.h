@@ -42,8 +42,8 @@ struct TetrahedronBlockTable {
     Column<TetrahedronNodes> node;
     Column<ElementLane> volume;    // volume at rest; 0 in an unused lane [m^3]
     Column<ElementLane> altitude;  // smallest altitude at rest; infinite in an unused lane [m]
-    // Factor on the limit max_strain_step of the change of the deformation gradient F in a step. The factor is above 1
-    // if an implicit element covers the tetrahedron.
+    // Leeway: factor on the largest allowed change of the deformation gradient F in a step (max_strain_step). It is
+    // above 1 for a tetrahedron that an implicit element covers.
     Column<ElementLane> leeway;
     Column<std::uint8_t> sliver;  // bit l: the tetrahedron of lane l is a sliver (element_list.h)
     // No tetrahedron of the block changes the sign of its volume while BodyTable::travel is below this value [m].

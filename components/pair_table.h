@@ -42,7 +42,7 @@ struct CandidatePlace {
     Index candidate;
 };
 
-/// A pair of features that find_contacts tested and that could meet within the step.
+/// A pair of features that could meet within the step, as found by find_contacts.
 struct NearCandidate {
     Index pair;       // row of PairTable
     Index candidate;  // index in the candidate list of the pair
@@ -81,13 +81,15 @@ struct PairTable {
     Column<Real> travel;
     Column<Real> travel_bound;  // `travel` plus the distance by which the partners may approach in this step [m]
     // Distance by which the partners may approach in this step at their greatest speeds [m]. It is computed from
-    // speeds, which are state. Frames are not state and must not decide about a contact.
+    // velocities in the world, not from velocities in the frames: frames are not part of the state, so no contact may
+    // depend on them.
     Column<Real> closing;
-    // Relative motion of the partners in an attempt at this step in which the candidate list became invalid [m]. The
-    // value is made negative when the list has been rebuilt for this motion.
+    // Relative motion of the partners for which an earlier attempt at this step requested a longer candidate list [m].
+    // It is made negative when the list has been rebuilt for this motion.
     Column<Real> longer_motion;
     Column<Real> valid_until;  // the candidate list is complete while travel_bound is below this value [m]
-    // 1: the candidate list was made for this step, so that earlier motion of the frames does not shorten its validity.
+    // 1: the candidate list was made at the positions at the start of this step. Earlier motion of the frames then does
+    // not shorten its validity.
     Column<std::uint8_t> fresh;
     // Whether the surfaces intersected at the last search. Surfaces that are apart stay apart, because find_crossings
     // prevents them from crossing.
@@ -176,12 +178,12 @@ struct BoundingSphere {
 
 /// Working memory of the searches. It is reused in later steps, so that a steady state allocates nothing.
 struct SearchMemory {
-    // Flags by body and by collider, at the start of a step: 1 if the distances of the object to all others are
-    // unknown.
+    // By body and by collider: 1 if the object was added, or moved by the user, since the last search. Its distances to
+    // other objects are then unknown. The values are those at the start of the step.
     Column<std::uint8_t> body_forgotten, collider_forgotten;
-    // Flag by body, valid while any_unmeasured is set: 1 if the body was marked as forgotten (see SearchState) in some
-    // attempt at this step. BodyTable::max_speed and frame_speed do not include the speed of such a body until the step
-    // is committed, because a rejected attempt leaves the two columns unchanged.
+    // By body: 1 if the speed of the body in BodyTable::max_speed and frame_speed is out of date. This is so from the
+    // step after a user has added or moved the body until a step is committed, because a rejected attempt leaves both
+    // columns unchanged. Valid while any_unmeasured is set.
     Column<std::uint8_t> body_unmeasured;
     bool any_unmeasured = false;
     // For each body: sum of its travel, the path length of its frame, and the distance it may move in this step [m].
@@ -210,7 +212,8 @@ struct SearchMemory {
     std::vector<Column<FoundPair>> found_pairs;  // by block of the broad search: found pairs in no particular order
     Column<FoundPair> pairs;                     // all found pairs, in key order
     Column<Index> group_begin, group_end;        // ranges of `pairs`, one for each kind and slot of the first body
-    // For each pair: row of the pair in the previous PairTable; no_index for a new or forgotten pair.
+    // For each pair: row of the pair in the previous PairTable. It is no_index for a new pair, and for a pair of an
+    // object that the user has moved.
     Column<Index> old_row;
     Column<Index> old_list;  // by candidate list: previous index of the list
     // For each previous candidate list: 1 if a pair that is still listed has taken the list over.
@@ -227,9 +230,9 @@ struct SearchMemory {
     std::vector<Column<FoundCandidate>> found;  // by block of the search: found candidates
 };
 
-/// Decides when the broad search runs again, and counts the searches. Bodies and colliders that the user has moved are
-/// marked as forgotten: all their pairs are found and searched again, while other pairs keep their candidate lists. New
-/// rows, for which the columns are too short, count as forgotten. The rows of removed bodies and colliders are erased
+/// Limits that decide when the broad search runs again, and counts of searches. An object that the user has added or
+/// moved is *forgotten*: all its pairs are found and searched again, while other pairs keep their candidate lists. New
+/// rows of objects, for which the columns are too short, count as forgotten. The rows of removed objects are erased
 /// from the columns.
 struct SearchState {
     static constexpr Real forgotten = -infinity;
@@ -246,8 +249,8 @@ struct SearchState {
     void forget_body(std::size_t row) {
         if (row < body_valid_until.size()) body_valid_until[row] = forgotten;
     }
-    /// Ends an attempt at a step. `taken`: the step was committed, so the speeds of all bodies are known. Otherwise all
-    /// bodies that were marked as forgotten when the step began are marked again.
+    /// Ends an attempt at a step. If the step was committed (`taken`), the speeds of all bodies are known. Otherwise
+    /// the bodies that were marked as forgotten at the start of the step are marked again.
     void end_step(bool taken) {
         if (!memory.any_unmeasured) return;
         for (std::size_t row = 0; row < memory.body_unmeasured.size(); ++row)

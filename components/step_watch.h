@@ -36,7 +36,7 @@ struct StepWatch {
     static constexpr Real not_evaluated = -1;
 
     std::uint64_t steps = 0;  // number of steps since the current round began
-    // true: the current round is the second round of a pair; the energies are checked after the second round.
+    // True in every second round. The balance of energy is checked at the end of such a round.
     bool second = false;
     Index body = 0;  // row of BodyTable whose check is in progress
     Index kept = 0;  // in this round, the shapes of all bodies in rows below this row have been stored

@@ -15,8 +15,8 @@ namespace skerry {
 /// once.
 ///
 /// A round body has one degenerate triangle, its core. For a sphere or cylinder all three corners are the centre. For a
-/// capsule the first corner is one end of the axis, and the other two corners are the other end; only the side from
-/// corner 0 to corner 1 is an edge. A side without an edge has the row no_index in `edge`.
+/// capsule corner 0 is one end of the axis, and corners 1 and 2 are the other end; only the side from corner 0 to
+/// corner 1 is an edge. A side without an edge has the row no_index in `edge`.
 struct TriangleTable {
     Column<std::array<Index, 3>> node;    // rows of NodeTable
     Column<std::array<Index, 3>> edge;    // rows of EdgeTable; edge k connects corner k and corner (k + 1) % 3

@@ -49,7 +49,8 @@ void Team::gather(Executor& executor, FunctionRef<void()> work) {
     together_ = true;
     std::atomic<bool> has_leader{false};
     executor.run_blocks(workers, [&](Index) {
-        // The first thread that arrives becomes the leader, because no particular block is certain to run first.
+        // The first thread that arrives becomes the leader. The thread of a fixed block could not lead, because an
+        // executor may run this block late.
         if (has_leader.exchange(true)) {
             help();
             return;

@@ -60,9 +60,10 @@ std::vector<std::pair<std::string, std::size_t>> count_materials(const ScenePlan
     return named;
 }
 
-/// Groups the bodies by mesh, materials, elements and dynamics. `built`: world of the plan in which no step was planned
-/// yet; the result contains the dynamics that the bodies have there, and details of their steps. Without `built` the
-/// dynamics of the plan are used, and the stable step of each explicit group is computed in a separate world.
+/// Groups the bodies by mesh, materials, elements and dynamics. If `built` is given, it must be the world of the plan
+/// in which no step was planned yet. The result then contains the dynamics of the bodies in this world, and details of
+/// their stable steps. Otherwise the dynamics of the plan are used, and the stable step of each explicit group is
+/// computed in a separate world.
 std::vector<BodyKindReport> body_kinds(const ScenePlan& plan, World* built = nullptr) {
     using Labels = std::vector<std::pair<int, std::size_t>>;
     std::map<std::tuple<std::size_t, std::size_t, Labels, ElementKind, BodyDynamics>, std::size_t> row;

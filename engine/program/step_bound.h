@@ -46,8 +46,8 @@ struct StepBound {
     // small.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // Fraction of the tetrahedra for which `without` was not computed, because the mesh is large and even the best of
-    // these worst tetrahedra allows a step that is only `alike_ratio` times as long; 0 if there is no such fraction.
+    // Fraction of tetrahedra for which `without` was not computed, or 0. In a large mesh it is not computed if the step
+    // of the best of these worst tetrahedra is only `alike_ratio` times the shortest step.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };

@@ -14,7 +14,7 @@ namespace {
 // A part is reported if its bending stiffness exceeds the stiffness of the material by this factor. Two layers of cubic
 // cells of smoothed elements exceed it by 1.08 to 1.17, one layer by 1.3 to 1.5.
 constexpr Real reported_stiffness = 1.25;
-// Excess of bending stiffness that the recommended cells leave.
+// Excess of the bending stiffness, relative to that of the material, with cells of the recommended size.
 constexpr Real accepted_excess = 0.1;
 
 /// Elements of a body: tetrahedra by material, and the constants of these materials.
@@ -31,7 +31,7 @@ struct ElementsOfThinBody {
 
 /// A coordinate of the place of a part. Rounding errors are printed as 0.
 std::string coordinate(Real value, const mesh::ThinPart& part) {
-    constexpr Real rounding = 1e-6;  // share of the length of the part
+    constexpr Real rounding = 1e-6;  // coordinates below this fraction of the length of the part are rounding errors
     return short_number(std::abs(value) < rounding * part.length ? 0 : value);
 }
 

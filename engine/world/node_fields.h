@@ -6,7 +6,7 @@
 
 namespace skerry {
 
-/// World::node_stress and World::node_strain of a body, in half of the time of both calls.
+/// Returns the results of World::node_stress and World::node_strain for a body, in half of the time of both calls.
 NodeFields node_fields(const World& world, BodyHandle body);
 
 }  // namespace skerry

@@ -245,7 +245,7 @@ BodyHandle add_valid_body(WorldState& state, const Mesh& mesh, const BodySetting
     return handle;
 }
 
-/// Makes bodies explicit for which this costs less since the body `added` requires short steps.
+/// Makes implicit bodies explicit if explicit steps cost less for them, now that the body `added` requires short steps.
 void revise_choices(World& world, WorldState& state, BodyHandle added) {
     Model& model = state.model;
     if (model.implicit_nodes.size() == 0 || model.has_frame(static_cast<std::size_t>(model.row(added, "add_body"))))
@@ -353,7 +353,8 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
 
 namespace {
 
-/// Forgets which objects had the deepest overlap of held surfaces, if one of them is removed. The depth remains.
+/// If one of the two objects with the deepest overlap of held surfaces is removed, deletes the reference to this pair.
+/// The stored depth remains.
 void forget_held(HeldDepth& held, std::uint32_t slot, bool is_collider) {
     const PairSlots pair = slots_of_pair(held.pair);
     if (is_collider ? pair.is_collider && pair.second == slot

@@ -20,8 +20,8 @@ public:
     bool test(const Candidate& candidate, Real least) {
         std::array<Index, 3> node{};
         const TouchingFeature feature = feature_of_candidate(candidate, node);
-        // A rim is tested only once: the candidate of the rim point whose position depends on the face tests the
-        // complete rim. The candidates of the other points on the rim are skipped.
+        // The rim is tested once, by the candidate of the rim point that depends on the face. The candidates of the
+        // other points of the rim are skipped.
         const bool has_rims = collider_point_follows(geometry_.shape, 0);
         const bool is_another =
             feature.kind == Kind::face && has_rims && !collider_point_follows(geometry_.shape, feature.of_shape);

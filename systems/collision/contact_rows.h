@@ -13,9 +13,8 @@
 
 namespace skerry {
 
-/// Data of a pair, used to test the candidates of the pair. If one of two bodies is a rigid cylinder, it is the first
-/// body. If both bodies are cylinders, the first body is the cylinder whose middle node is the point in the feature
-/// keys.
+/// Data of a pair that the tests of its candidates share. A rigid cylinder is the first body. If both bodies are
+/// cylinders, the first is the one whose middle node is the point in the feature keys.
 struct PairData {
     const CollisionInputs& inputs;
     std::uint64_t key;

@@ -14,8 +14,7 @@ namespace skerry {
 
 namespace {
 
-// Lower bound of the ratio between the displacement of the rim nodes of a cylinder and the displacement of rim points
-// between these nodes.
+// Smallest ratio of the displacement of the rim nodes of a cylinder to the displacement of any rim point.
 constexpr Real of_rim_nodes = 0.95;
 
 // An edge counts as parallel to the axis of a cylinder if the sine of the angle between them is below this limit. Such
@@ -59,8 +58,8 @@ private:
         asleep_until[c] = travel_base + (distance > 0 ? of_rim_nodes : 1) * distance - scale.shell;
         return distance <= near_surface();
     }
-    /// True if the candidate needs no closer test, because the lower bound `bound` of its distance is large enough.
-    /// Otherwise the contact points will provide a sharper bound.
+    /// True if the lower bound `bound` of the distance shows that the candidate needs no closer test. Otherwise the
+    /// contact points give a sharper bound.
     bool is_far(Index c, Real bound) { return bound > near_surface() && !note(c, bound); }
     Real near_surface() const { return near - scale.radii; }
 

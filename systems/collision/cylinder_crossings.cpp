@@ -243,9 +243,10 @@ private:
     }
     /// Appends a crossing. `arm`: vector from the centre of the cylinder to the contact point at the start of the step
     /// [m]. `along` and `left`: distances between the surfaces at the contact point at the start and at the end of the
-    /// step [m]. Suppose that an earlier attempt at the step already had this contact, and `left` is still negative.
-    /// Then the rotation of the cylinder has used up the gap, and the distance of the contact is reduced by the
-    /// overlap.
+    /// step [m].
+    ///
+    /// If an earlier attempt at the step already had this contact and `left` is still negative, the rotation of the
+    /// cylinder has used up the gap. The distance of the contact is then reduced by the overlap.
     void put(const Candidate& candidate, Index number, const Stencil& stencil, const Vec3& arm, const Vec3& normal,
              Real along, const Vec3& surface_velocity, Real left = 0) {
         const auto row_at = [&](Real distance) {

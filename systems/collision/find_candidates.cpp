@@ -35,8 +35,7 @@ bool mark_forgotten(std::size_t count, bool all, Column<Real>& valid_until, Colu
     return any;
 }
 
-/// Adds the bodies that are forgotten in this attempt at the step to body_unmeasured, the set of bodies without known
-/// speed.
+/// Adds the bodies marked as forgotten to body_unmeasured, the bodies whose stored speeds are out of date.
 void note_unmeasured(SearchMemory& memory) {
     const std::size_t count = memory.body_forgotten.size();
     if (!memory.any_unmeasured) memory.body_unmeasured.clear();
@@ -279,8 +278,8 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Requests new displacement origins for bodies in expired pairs whose displacement has used up more than a quarter of
-/// the skin, the margin of a candidate list.
+/// Requests new displacement origins for bodies in expired pairs whose displacement uses up more than a quarter of the
+/// skin (the margin of the list of pairs or candidates).
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real good_part = 0.25;

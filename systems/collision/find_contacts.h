@@ -9,11 +9,13 @@
 
 namespace skerry {
 
-/// Fills the contact table in key order. A candidate becomes a contact if its gap could close within the step of length
-/// h. A margin accounts for the velocity that forces can add. Crossings from an earlier attempt at this step are added
-/// unchanged. A candidate that cannot touch before the pair has travelled a known distance is skipped after one
-/// comparison. Impulses and slips are set to zero, regions to no_index and states to open. Returns false if no
-/// candidate has to be tested. Runs in parallel over blocks of candidates.
+/// Fills the contact table in key order. Returns false if no candidate has to be tested. Runs in parallel over blocks
+/// of candidates.
+///
+/// A candidate becomes a contact if its gap could close within the step of length h; a margin accounts for the velocity
+/// that forces can add. A candidate that cannot touch before the pair has travelled a known distance is skipped after
+/// one comparison. Crossings from an earlier attempt at this step are added unchanged. In all new rows impulses and
+/// slips are zero, regions are no_index and states are open.
 bool find_contacts(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                    PairTable& pairs, CrossingTable& crossings, ContactTable& contacts);
 

@@ -202,7 +202,7 @@ std::uint64_t test_block(const CollisionInputs& inputs, bool use_budgets, const 
     return tested;
 }
 
-/// True if a pair moves further in this step than the distance for which its candidate list is valid.
+/// True if a pair moves further in this step than its candidate list allows.
 bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion, Index p,
                     PairTable& pairs) {
     if (pairs.kind[p] != PairKind::collider && pairs.state[p] != PairState::apart) return false;
@@ -217,7 +217,7 @@ bool is_beyond_list(const CollisionInputs& inputs, const CollisionSettings& sett
     return !holds_for_motion(parts, motion, pairs.fresh[p] != 0, pairs.self);
 }
 
-/// True if any pair moves further than its candidate list is valid for. This happens almost never.
+/// True if any pair moves further in this step than its candidate list allows. This happens almost never.
 bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings,
                      const StepMotion& motion, PairTable& pairs) {
     std::atomic<bool> any{false};
@@ -229,9 +229,9 @@ bool any_beyond_list(Executor& executor, const CollisionInputs& inputs, const Co
     return any;
 }
 
-/// Requests candidate lists with a longer validity for the pairs that move further than their present lists allow.
-/// Returns the number of requests. `hopeless` counts the pairs for which no list is requested. The reason is that the
-/// list was already made for such a motion, that the motion is not finite, or that requests are not `allowed`.
+/// Requests longer candidate lists for the pairs that move further than their lists allow. Returns the number of
+/// requests. `hopeless` counts the pairs for which no list is requested: their list was already made for such a motion,
+/// the motion is not finite, or requests are not `allowed`.
 Index extend_lists(const CollisionInputs& inputs, const CollisionSettings& settings, const StepMotion& motion,
                    bool allowed, PairTable& pairs, Index& hopeless) {
     Index count = 0;

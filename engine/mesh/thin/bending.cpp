@@ -7,9 +7,9 @@ namespace skerry::mesh {
 
 namespace {
 
-// Fraction of the excess of energy that remains when the nodes are free to move. The energy is computed for nodes at
-// the places of exact bending, where it is an upper bound. Against statically solved strips of one or two layers the
-// fraction is 0.65 to 1: the least where a strip is two flat cells wide.
+// Factor from the computed excess of bending energy to the true excess. The energy is computed for nodes at the
+// positions of exact bending. If nodes are free to move, the energy is lower. Strips of one or two layers of cells,
+// solved statically, have factors of 0.65 to 1; the factor is least for strips two flat cells wide.
 constexpr Real remaining_excess = 0.8;
 
 /// Displacements of pure bending with the curvature 1, about the middle of a column.
@@ -36,8 +36,8 @@ Real energy_density(const Mat3& displacement_gradient, const Bending& bending, E
     return mu * strain.squaredNorm() + lambda / 2 * strain.trace() * strain.trace();
 }
 
-/// The tetrahedra that columns cross, and all others that share a node with them: with these the elements around the
-/// crossed tetrahedra are complete.
+/// The tetrahedra that columns cross, and all others that share a node with them. The others are needed to make all
+/// elements that cover a crossed tetrahedron.
 struct Surroundings {
     std::vector<std::array<Index, 4>> tetrahedra;
     std::vector<MaterialZone> zones;  // with numbers of `tetrahedra`
@@ -99,7 +99,8 @@ Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3>
 std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn> columns, std::size_t part_count,
                                     std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials) {
     const Surroundings nearby = surroundings_of(mesh, columns, zones);
-    // A tetrahedron is bent once for each part that crosses it, about the first column of the part that crosses it.
+    // In each tetrahedron, the bending of a part is that about the first column of the part that crosses the
+    // tetrahedron.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
     std::vector<Real> exact(part_count, 0), found(part_count, 0);
     for (const BentColumn& bent : columns) {
@@ -124,8 +125,8 @@ std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn
                 visit(e, row, elements.part[e] == ElementPart::volume ? 1U : 0U);
             }
     };
-    // Number of elements that cover a tetrahedron: those of the volumetric stress, and all others. All have equal
-    // shares of it.
+    // Number of elements that cover a tetrahedron: elements with the volumetric part of the stress, and all other
+    // elements. The elements of each kind get equal shares of the tetrahedron.
     std::vector<std::array<int, 2>> covered(nearby.tetrahedra.size(), {0, 0});
     for_each_share([&](std::size_t, std::size_t row, std::size_t kind) { ++covered[row][kind]; });
     for_each_share([&](std::size_t e, std::size_t row, std::size_t kind) {

@@ -125,7 +125,7 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
 }
 
 Index outdated_choice(const Model& model, DynamicsEstimate& now) {
-    // Least ratio of the step that was assumed to the present step. The costs that the choice compares change by it.
+    // A choice is tested again if the step that it assumed is longer than the present step by at least this factor.
     constexpr Real much_longer = 1.5;
     if (model.implicit_nodes.size() == 0) return no_index;
     const Real step = step_with_frame(model), others = cost_of_elements(model.elements.volume.size());
@@ -138,8 +138,9 @@ Index outdated_choice(const Model& model, DynamicsEstimate& now) {
         now.implicit_step = step;
         now.deforming_step = std::max(step, model.settings.implicit_step);
         now.explicit_step = std::min(before.explicit_step, step);
-        // The stored costs contain those of the bodies that were there at the time. These bodies count twice, more for
-        // the explicit steps, so the body changes only if this certainly saves time.
+        // The stored costs already include the bodies that existed at that time, so these bodies count twice. Both
+        // costs become too large, the explicit cost more because explicit steps are shorter. A body therefore becomes
+        // explicit only if this certainly saves time.
         now.explicit_cost = (others + before.explicit_cost * before.explicit_step) / now.explicit_step;
         now.implicit_cost = (others + before.implicit_cost * before.implicit_step) / step;
         now.damped_above = 0;  // an explicit body is not damped by its steps

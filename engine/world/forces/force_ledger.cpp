@@ -91,8 +91,8 @@ void ForceLedger::start(const Model& model, const RestingContactTable& resting, 
     take_over_rest(model, resting);
 }
 
-/// Starts the sums of pairs and attachments of sleeping bodies with the forces of the last step before the bodies fell
-/// asleep, multiplied by one second.
+/// Initialises the forces on sleeping bodies. The sums of pairs and attachments start with the forces of the last step
+/// before the bodies fell asleep, times one second.
 void ForceLedger::take_over_rest(const Model& model, const RestingContactTable& resting) {
     Column<Vec3> force, held;
     for (std::size_t c = 0; c < resting.size(); ++c) force.push_back(resting.contact.impulse[c] / resting.step[c]);
@@ -172,8 +172,8 @@ Real ForceLedger::seconds_of(const Model& model, const PairKey& key) const {
 }
 
 bool ForceLedger::shows_contacts() const {
-    // Gaps that a step leaves open are a small part of the distance that bodies travel in it. A contact needs a
-    // hundredth of this step to close them.
+    // A step may leave gaps open that are a small part of the distance travelled in the step. A call of a hundredth of
+    // this step is long enough for contacts to close them.
     constexpr Real shortest_share = 0.01;
     return call_.whole > 0 && call_.whole >= shortest_share * step_before_;
 }
@@ -182,7 +182,7 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
     if (!(call_.whole > 0)) return false;
     const auto body = static_cast<std::size_t>(model.attachments.body[attachment]);
     if (rests(model, static_cast<Index>(body))) return true;
-    // On a rigid body, the reaction is the change of momentum that weight and contacts do not explain.
+    // The reaction on a rigid body is its change of momentum minus the impulses of weight and contacts.
     const bool rigid = model.is_rigid(body), implicit = is_implicit(model, body);
     if (rigid && !shows_contacts()) return false;
     constexpr Real digits = 2 * std::numeric_limits<Real>::epsilon();
@@ -202,7 +202,8 @@ bool ForceLedger::shows_reaction(const Model& model, std::size_t attachment, con
             if (rigid) add_position(n, model.nodes.mass[n]);
             noise += model.nodes.mass[n] * digits * model.nodes.velocity[n].norm();
         }
-    // An error counts as small up to this fraction of the force, or this acceleration of the held nodes [m/s^2].
+    // The reaction counts as measured if its rounding error is at most this fraction of the force, or at most this
+    // acceleration of the held nodes [m/s^2].
     constexpr Real small_share = 0.01, small_acceleration = 1e-3;
     return noise <= small_share * impulse.norm() + small_acceleration * held * call_.whole;
 }
@@ -241,9 +242,9 @@ void ForceLedger::add_to_partners(const PairKey& key, const Vec3& impulse, Index
         bodies_[key.second].add(-impulse, key.second == key.first ? 0 : contacts);
 }
 
-/// Completes the sums of a pair at the end of a step. If both bodies slept in this step and had no contact in it, their
-/// mean forces over the time in which both were still count as the forces of this step. If a body was awake, the step
-/// is added to this still time, and the sums over the still time are cleared when a body moves.
+/// Completes the sums of a pair at the end of a step. If both bodies were asleep and the step has no contact between
+/// them, their mean forces over the time in which both were still are used. If a body was awake, its still time grows
+/// by the step, or the sums over the still time are cleared because a body moved.
 void ForceLedger::end_pair_step(const Model& model, std::span<const std::uint8_t> rested, PairRow& row) {
     const std::size_t first = body_row(model, row.key.first);
     const std::size_t second = row.key.bodies ? body_row(model, row.key.second) : first;

@@ -29,7 +29,7 @@ void add(const ContactSums& sums, PairSide side, ForceReport& report) {
     report.pressing_impulse += sums.pressing;
 }
 
-/// True if the forces between the two objects of a pair are mean values over the time in which both were still.
+/// True if both objects of a pair sleep. Their forces are then mean values over the time in which both were still.
 bool rests(const Model& model, const PairKey& key) {
     const auto asleep = [&](std::uint32_t slot) {
         return model.bodies.asleep[static_cast<std::size_t>(model.body_map.row(model.body_map.handle_of_slot(slot)))] !=
@@ -114,7 +114,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
     (void)world_->model.row(collider, "forces");
     const ForceLedger& ledger = world_->record.forces;
     ForceReport report = report_of(ledger, ledger.collider(collider.slot), ledger.seconds_on(world_->model, no_index));
-    // Forces act for another time on implicit bodies than on other bodies, if the step length changes.
+    // If the step length changes, forces act for different times on implicit bodies and on other bodies.
     Real shortest = infinity, longest = 0;
     bool touched = false, awake = false;
     for (const ForceLedger::PairRow& pair : ledger.pairs()) {
@@ -127,7 +127,7 @@ ForceReport Forces::on(ColliderHandle collider) const {
         add(pair.sums, PairSide::second, report);
     }
     if (touched) report.seconds = longest;
-    constexpr Real small_share = 0.01;  // error of the mean force that two different times may cause
+    constexpr Real small_share = 0.01;  // largest error of the mean force due to these different times
     const bool even = !touched || longest - shortest <= small_share * longest;
     report.measured = report.seconds > 0 && even && ((touched && !awake) || ledger.shows_contacts());
     return report;

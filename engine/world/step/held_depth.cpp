@@ -44,8 +44,8 @@ bool is_in_front(const Model& model, const TrianglePoint& nearest, const Vec3& p
     return over_face && (at(b) - at(a)).cross(at(c) - at(a)).dot(point - at(a)) > 0;
 }
 
-/// Adds the depth of the held nodes of one body inside the held part of the surface of another body. A point in front
-/// of the nearest face is not tested for being inside, because that test takes a sum over all triangles.
+/// Adds the depths of held nodes of one body behind held triangles of another body. A node in front of its nearest face
+/// is outside, so the slow test by the winding number, a sum over all triangles, is not needed.
 void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t pair, HeldDepth& deepest) {
     const Model& model = world.model;
     const SurfaceTree tree = fitted_tree(world, static_cast<std::size_t>(other));

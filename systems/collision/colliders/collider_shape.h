@@ -30,9 +30,9 @@ ColliderPoint collider_point(const ColliderGeometry& geometry, Index k, const Ve
 bool collider_point_follows(ColliderShape shape, Index k);
 
 /// Index of the flat region of a shape in which `point` can move furthest, or no_index if the shape has no flat region.
-/// A flat region is a volume near a flat or hollow side of the shape. In this volume the distance between the shape and
-/// a segment or triangle is least at a corner of the segment or triangle, so only nodes can touch. A plane has one
-/// region, a box one at each of its six faces, a cylinder one at each end, and a bucket one inside and one below.
+/// A flat region is a volume near a flat or hollow side of the shape. If a segment or triangle lies in this volume, one
+/// of its corners is nearest to the shape, so only nodes can touch. A plane has one region, a box one at each of its
+/// six faces, a cylinder one at each end, and a bucket one inside and one below.
 Index flat_place(const ColliderGeometry& geometry, const Vec3& point);
 
 /// Distance that a point can move in the frame of the collider while it stays in the flat region `place` [m]. The

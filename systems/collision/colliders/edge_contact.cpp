@@ -14,7 +14,7 @@ namespace {
 // complete edge, the distance would change by a hundredth of the default contact distance, which is 0.02 edge lengths.
 constexpr Real flat_slope = 2e-4;
 
-// Where the derivative of the distance along the edge exceeds this value, the edge can only touch after it has rotated.
+// A derivative of the distance along the edge above this value shows that the edge can only touch after a rotation.
 constexpr Real steep_slope = 0.05;
 
 // Accuracy of the position of a minimum or of an end of a flat stretch, as a fraction of the edge length.
@@ -177,9 +177,9 @@ public:
 private:
     bool passes(Real slope) const { return slope_low_ < slope && slope_high_ > slope; }
 
-    /// first_place: parameter from which on the distance falls by no more than `slope` per length. last_place:
-    /// parameter up to which the distance rises by no more than `slope` per length. At a kink, both parameters are on
-    /// the flatter side, whose normal is valid along the flat stretch.
+    /// first_place: the parameter after which the distance falls by at most `slope` per length. last_place: the
+    /// parameter before which the distance rises by at most `slope` per length. At a kink both parameters are on the
+    /// flatter side, whose normal is valid along the flat stretch.
     Real first_place(Real slope) const {
         return PlaceOfSlope(along_, interval_, slope_low_, slope_high_, -slope, false).find().high;
     }

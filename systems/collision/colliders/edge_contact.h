@@ -30,10 +30,11 @@ struct EdgeContact {
 };
 
 /// Finds the points between the ends of an edge at which the distance between the edge and a part of a collider has a
-/// minimum. `a`, `b`: ends of the edge in the frame of the collider. If the distance is nearly constant on a stretch of
-/// the edge, for example along a side of a box, the two ends of this stretch are found. The position where the distance
-/// begins to rise is found, too. An edge that lies on a side and extends beyond the side is therefore supported at the
-/// border of the side before it rotates about the border.
+/// minimum. `a`, `b`: ends of the edge in the frame of the collider.
+///
+/// If the distance is nearly constant on a stretch of the edge, for example along a side of a box, the two ends of this
+/// stretch are found. The position where the distance begins to rise is found, too. So an edge that extends beyond a
+/// side is supported at the border of the side before it rotates about the border.
 EdgeContact edge_contact(const ColliderGeometry& geometry, Index part, const Vec3& a, const Vec3& b);
 
 }  // namespace skerry

@@ -45,10 +45,10 @@ struct Touch {
 /// from the edges of the face is returned.
 Touch nearest_touch(const ColliderGeometry& geometry, const TouchingFeature& feature, const std::array<Vec3, 3>& nodes);
 
-/// True if a crossing can be detected from the positions at the end of the step alone, because the collider is a plane.
-/// No feature can move around a plane, so a feature that has passed a plane is behind it at the end. A feature that a
-/// contact stops in front of the plane has not crossed the plane, however near it is. The result is false for round
-/// bodies, because no part of their surface may be behind the plane at any time of the step.
+/// True if the positions at the end of the step suffice to detect a crossing, because the collider is a plane. No
+/// feature can move around a plane, so a feature that has passed the plane is behind it at the end. A feature that a
+/// contact stops in front of the plane has not crossed it, however near it is. False for round bodies, because no part
+/// of their surface may be behind the plane at any time of the step.
 bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feature);
 
 /// Upper bound of the decrease in distance between the collider and any point of the feature, while both move for h
@@ -56,11 +56,12 @@ bool the_end_tells(const ColliderGeometry& geometry, const TouchingFeature& feat
 Real greatest_approach(const RigidMotion& motion, Real h, const TouchingFeature& feature);
 
 /// Finds the time in the step at which a feature and a collider are nearly in contact, and returns their nearest points
-/// at this time; no value if they do not meet. The method is conservative advancement, similar to time_of_contact. If
-/// the_end_tells is true, only the end of the step is tested, and the nearest points are returned if the feature is
-/// behind the plane then. Features that touch or overlap the collider at the start of the step yield no value. Neither
-/// does a face whose edges touch first, because edges are tested as separate features. `time_of_touch`: null, or
-/// receives the time as a fraction of the step if it was found by conservative advancement.
+/// at this time; no value if they do not meet. The method is conservative advancement, similar to time_of_contact.
+/// `time_of_touch`: null, or receives the time as a fraction of the step if conservative advancement has found it.
+///
+/// If the_end_tells is true, only the end of the step is tested, and the nearest points are returned if the feature is
+/// behind the plane then. There is no value for features that touch or overlap the collider at the start of the step,
+/// and for a face whose edges touch first: edges are tested as separate features.
 std::optional<Touch> first_touch(const ColliderGeometry& geometry, const RigidMotion& motion, Real h,
                                  const TouchingFeature& feature, Real* time_of_touch = nullptr);
 

@@ -38,10 +38,12 @@ private:
 };
 
 /// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
-/// side in the frame of the cylinder. Each rim has the point that reaches furthest towards the side. If an end of the
-/// cylinder nearly faces the side, each rim also has points that support the cylinder on the side. When the cylinder
-/// rotates about its axis by less than a radian per step, none of these points approaches the side. Points that rotate
-/// with the cylinder would approach the side if the end is tilted.
+/// side in the frame of the cylinder.
+///
+/// Each rim has the point that reaches furthest towards the side. If an end of the cylinder nearly faces the side, each
+/// rim also has points that support the cylinder on the side. None of these points approaches the side when the
+/// cylinder rotates about its axis by less than a radian per step. Points fixed to a tilted cylinder would approach the
+/// side.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {

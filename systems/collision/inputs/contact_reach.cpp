@@ -27,8 +27,8 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     const Real own_distance = body.contact_distance[first];
     const Real own_edge = body.mean_edge[first];
     if (kind == PairKind::collider) {
-        // The signed distance from a shape is valid at any depth, so the zone need not include depths behind the
-        // surface of the shape. But points of the shape may be behind a face of the body.
+        // Signed distances from the shape are valid at any depth. So the zone contains no depth behind the surface of
+        // the shape, but depths of points of the shape behind a face of the body.
         const Real half = own_distance / 2, radius = body.round_radius[first], kept = half + radius;
         return {kept, half, own_edge, face_depth_fraction * own_edge, 0, kept, radius};
     }

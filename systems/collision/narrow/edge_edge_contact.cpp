@@ -15,13 +15,14 @@ namespace {
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad].
-// If another edge lies on one of these faces, the contact normal is exactly at the limit of the range. If the other
-// edge lies on two edges of a face, the contact normal is outside of the range, because the flatter one of the two
-// edges permits a smaller distance: by a hundredth of the width of the face if the two edges are equally long. Without
-// this tolerance, the contact at the less flat edge would be lost. The resting edge would then fall onto the face,
-// regain the contact and be pushed out, again and again (docs/methods/collision.md 4.5). The rotation of the features
-// in the step is added to the tolerance. Otherwise an edge could cross another edge in the same step in which the point
-// in front of it was stopped.
+// The rotation of the features in the step is added to it, because an edge could otherwise cross another edge in the
+// step in which a point in front of it was stopped.
+//
+// The tolerance is needed for resting edges (docs/methods/collision.md 4.5). If another edge lies on one of the faces,
+// the normal is exactly at the limit of the range. If it lies on two edges of a face, the normal is outside of the
+// range: the flatter of the two edges permits a smaller distance, by a hundredth of the width of the face if both edges
+// are equally long. The contact at the other edge would be lost; the edge would fall onto the face, regain the contact
+// and be pushed out, again and again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -87,10 +88,10 @@ public:
 
     bool convex() const { return is_axis_ || convex_; }
 
-    /// Distance by which another edge may come nearer than the contact distance if it crosses this edge at `fraction`
-    /// of the length [m]. Without this slack, an edge with a bend of min_bend would have a negative gap as soon as its
-    /// nodes have left the other body and the edge is tested. Stacked blocks would then vibrate for ever. The slack
-    /// decreases towards the ends of the edge, where the faces are narrower.
+    /// Slack: distance by which another edge that crosses this edge at `fraction` of the length may come nearer than
+    /// the contact distance [m]. It decreases towards the ends of the edge, where the faces are narrower. Without the
+    /// slack, an edge with a bend of min_bend would have a negative gap as soon as it is tested, after its nodes have
+    /// left the other body. Stacked blocks would then vibrate for ever.
     Real slack(Real fraction) const { return 4 * fraction * (1 - fraction) * slack_; }
 
     /// True if a point in the given direction from the edge is nearer to the edge than to the two faces of the edge.

@@ -30,12 +30,13 @@ struct PointTriangleContact {
     Real sleep = 0;
 };
 
-/// Tests a point against the nearest part of a triangle: its face, an edge or a vertex. If an edge or vertex is
-/// nearest, only one triangle reports the contact: the triangle with the lowest row among the triangles at this edge or
-/// vertex. It reports the contact only if no other triangle at the edge or vertex is nearer to the point. The normal is
-/// the normal of the face, or points from the edge or vertex to the point. If the point is too close to the edge or
-/// vertex, the normal is the mean of the normals of the adjacent faces. The core of a round body can be touched from
-/// all sides. Points at a larger distance than `near` are not tested closely.
+/// Tests a point against the nearest part of a triangle: its face, an edge or a vertex. Points at a larger distance
+/// than `near` are not tested closely.
+///
+/// If an edge or vertex is nearest, only one triangle reports the contact: the triangle with the lowest row of all
+/// triangles at this edge or vertex, and only if none of them has a face nearer to the point. The normal is the normal
+/// of the face, or points from the edge or vertex to the point. If the point is too close to the edge or vertex, the
+/// normal is the mean of the normals of the adjacent faces. The core of a round body can be touched from all sides.
 PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::span<const Vec3> position,
                                             const Vec3& point, Index triangle, const PairScale& scale, Real near,
                                             Surfaces surfaces);
