@@ -39,9 +39,10 @@ struct RestingMemory {
     RestingContactTable next;
 };
 
-/// Updates the stored contacts between sleeping bodies after a step in which forces acted for the time `kick` [s]. Adds
-/// the contacts of this step whose partners both are asleep or stand still. Retains the stored contacts of pairs that
-/// this step left out. Returns false if nothing changes; this costs one pass over the contacts and one over the pairs.
+/// Updates the stored contacts between sleeping bodies after a step. `kick`: time for which forces acted in this step
+/// [s]. Contacts of this step are stored if both partners are asleep or stand still. Contacts that are already stored
+/// remain if this step has left out their pair. Returns false if nothing changes, which is found in one pass over the
+/// contacts and one over the pairs.
 bool keep_resting_contacts(const ContactTable& contacts, const RestingInputs& inputs, Real kick, RestingMemory& memory,
                            RestingContactTable& kept);
 

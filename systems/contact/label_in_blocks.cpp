@@ -9,8 +9,8 @@ namespace skerry {
 namespace {
 
 // Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes some microseconds, about as
-// long as a worker needs to join. Every block counts its contacts for each other block, so the number of blocks must
-// stay small.
+// long as it takes a worker to join. The number of blocks must stay small, because each block counts its contacts for
+// each other block.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.
@@ -32,8 +32,8 @@ struct Blocks {
     }
 };
 
-/// Table over pairs of blocks (a, b). It first counts the contacts of block a whose region begins in block b, and later
-/// holds positions for these contacts in a sorted list. A region begins at its first contact.
+/// Table over pairs of blocks (a, b). Each entry first counts the contacts of block a whose region begins in block b.
+/// Later it is a position for these contacts in a sorted list. A region begins at its first contact.
 class Places {
 public:
     Places(std::size_t blocks, Column<Index>& place) : blocks_(blocks), place_(place) {

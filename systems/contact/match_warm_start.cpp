@@ -60,7 +60,7 @@ Rows rows_of_pair(std::span<const ContactKey> key, std::uint64_t pair) {
     return {static_cast<std::size_t>(begin - key.begin()), static_cast<std::size_t>(end - key.begin())};
 }
 
-/// Largest distance between a vanished contact and the contact that takes over its impulse; 0 if no body of the pair is
+/// Largest distance over which a contact takes over the impulse of a vanished contact; 0 if no body of the pair is
 /// rigid or implicit [m].
 Real reach_of_pair(const ContactsNow& now, std::size_t row) {
     const auto has_frame = [&](Index body) {
@@ -121,7 +121,7 @@ bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStar
         if (nearest != rows.end)
             impulse[nearest] += scale * turn(last.impulse[gone], last.normal[gone], now.normal[nearest]);
     };
-    // a block never splits a pair, because impulses are moved only between contacts of one pair
+    // Blocks never split a pair, because impulses pass only between contacts of one pair.
     parallel_for(executor, last.key.size(), contact_block, [&](std::size_t begin, std::size_t end) {
         end = start_of_pair(last.key, end);
         for (std::size_t row = start_of_pair(last.key, begin); row < end;) {

@@ -13,11 +13,12 @@
 
 namespace skerry {
 
-/// Sets each impulse to the last impulse with the same contact key, from the last step or from the step in which the
-/// bodies fell asleep. The impulse is rotated with the contact normal. It is also scaled by the ratio of `kick`, the
-/// time for which forces act in this step [s], to that time in the old step. New contacts get zero. All tables are in
-/// key order, so they are read side by side. Parallel over blocks of contacts. Returns false if there is nothing to do
-/// (skipped).
+/// Sets each impulse to the last impulse of the contact with the same key: the impulse of the last step, or of the step
+/// in which the bodies fell asleep. New contacts get zero. Returns false if there is nothing to do (skipped). Parallel
+/// over blocks of contacts.
+///
+/// The impulse is rotated with the contact normal. It is multiplied by `kick`, the time for which forces act in this
+/// step [s], and divided by that time in the old step. All tables are in key order, so they are read side by side.
 bool match_warm_start(Executor& executor, std::span<const ContactKey> key, std::span<const Vec3> normal,
                       const WarmStartTable& last, const RestingContactTable& resting, Real kick,
                       std::span<Vec3> impulse);
@@ -41,11 +42,12 @@ struct ContactsNow {
     }
 };
 
-/// Adds the impulse of each vanished contact to a contact of the same pair: to the nearest one within twice the contact
-/// distance whose normal is similar. Pairs without a rigid or implicit body are left out. Two flat faces in contact
-/// have more contacts than degrees of freedom; rounding makes contacts come and go, and a vanished contact would lose
-/// its part of the weight. Call it after match_warm_start. Parallel over blocks of pairs. Returns false if there is
-/// nothing to do (skipped).
+/// Adds the impulse of each vanished contact to a contact of the same pair: the nearest one within twice the contact
+/// distance whose normal is similar. Pairs without a rigid or implicit body are left out. Call it after
+/// match_warm_start. Returns false if there is nothing to do (skipped). Parallel over blocks of pairs.
+///
+/// The reason: two flat faces have more contacts than degrees of freedom, and rounding makes contacts come and go. The
+/// part of the weight on a vanished contact would otherwise be lost.
 bool hand_on_impulses(Executor& executor, const ContactsNow& now, const WarmStartTable& last, Real kick,
                       std::span<Vec3> impulse);
 

@@ -18,8 +18,8 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
     return sum;
 }
 
-/// Size of the tangential impulse, which friction limits: the length for the friction cone, the larger of the two
-/// tangential components for the friction pyramid.
+/// Size of the tangential impulse in the sense of the friction law. For the cone it is the length, for the pyramid the
+/// larger of the two tangential components.
 Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
     if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);

@@ -10,19 +10,19 @@ namespace skerry {
 
 struct ContactMeasures {
     Real max_penetration = 0;    // greatest penetration: overlap of the surfaces, -distance [m]
-    Real max_gap_violation = 0;  // greatest depth in the contact shell, -gap [m]
+    Real max_gap_violation = 0;  // greatest depth inside the contact distance, -gap [m]
     // Dissipated energy: -sum of impulse . (relative velocity before + relative velocity after the solve) / 2 [J].
     Real dissipated = 0;
-    // Exchange of the moving nodes with colliders and held nodes: their momentum grows by outer_impulse, their energy
-    // by outer_work - dissipated.
+    // Impulse and work that the moving nodes get from colliders and held nodes. Their momentum grows by outer_impulse,
+    // their energy by outer_work - dissipated.
     Vec3 outer_impulse = Vec3::Zero();  // [N s]
     Real outer_work = 0;                // [J]
     Index stick_count = 0;
     Index slide_count = 0;
 };
 
-/// Spins of round bodies before and after the solve. At a contact of a round body, the spin adds a velocity of the
-/// surface that the velocity of the core does not contain.
+/// Spins of round bodies before and after the solve. The spin of a round body gives its surface an additional velocity
+/// at a contact, which the velocity of the core does not contain.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};

@@ -25,10 +25,12 @@ inline constexpr int least_workers_for_blocks = 4;
 
 /// Fills `regions.contacts`, `regions.joints` and `contact_region`. Two contacts are in one region if a chain of shared
 /// moving nodes (inverse mass > 0) connects them. Nodes of the same group in `groups` count as shared, and so do bodies
-/// connected by a joint. Regions are numbered in the order of their first contacts, followed by regions that have only
-/// joints, in the order of their first joints. Each region lists its contacts and joints in order. Contacts without a
-/// moving node belong to no region. With `mode` global, all contacts and joints are in one region. Returns false if
-/// there are no contacts and no joints (skipped). The result does not depend on the number of workers.
+/// connected by a joint. With `mode` global, all contacts and joints are in one region. Contacts without a moving node
+/// belong to no region. Returns false if there are no contacts and no joints (skipped).
+///
+/// Regions are numbered in the order of their first contacts. Regions with joints only follow, in the order of their
+/// first joints. Each region lists its contacts and joints in order. The result does not depend on the number of
+/// workers.
 bool separate_regions(Executor& executor, std::span<const Stencil> stencil, std::span<const Real> inverse_mass,
                       const NodeGroups& groups, ContactRegions mode, SeparationMemory& memory, RegionTable& regions,
                       std::span<Index> contact_region);

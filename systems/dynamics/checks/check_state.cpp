@@ -22,8 +22,8 @@ Vec3 motion(const CheckInputs& state, std::size_t node) {
     return state.push_out.empty() ? state.velocity_next[node] : Vec3(state.velocity_next[node] + state.push_out[node]);
 }
 
-/// Greatest squared node speeds of a node block [m^2/s^2]: first in the world, then relative to the velocity `frame`.
-/// An entry is NaN if the velocity of a node is not finite or its square overflows.
+/// Greatest squared node speeds of a node block [m^2/s^2], in the world and relative to the velocity `frame`. An entry
+/// is NaN if the velocity of a node is not finite or its square overflows.
 std::array<Real, 2> max_speeds_squared(const CheckInputs& state, std::size_t block, const Vec3& frame) {
     const auto begin = static_cast<std::size_t>(state.block_begin[block]);
     const std::size_t count = static_cast<std::size_t>(state.block_end[block]) - begin;
@@ -131,10 +131,12 @@ Real8 rate_squared_of(const CheckInputs& state, std::size_t block, const LaneMat
     return det > 0.0 ? scaled / (allowed * allowed) : Real8{};
 }
 
-/// Squared deformation rates of the tetrahedra of a block over the squared leeways (factors on max_strain_step)
-/// [1/s^2]. The deformation rate is |F'|, the norm of the rate of F, or the relative speed of the corners over the
-/// smallest altitude if that ratio is less. All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds
-/// `rate` [1/s], as in most blocks. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
+/// Squared deformation rates of the tetrahedra of a block, divided by the squared leeways (factors on max_strain_step)
+/// [1/s^2]. The deformation rate is the smaller of |F'|, the norm of the rate of F, and the relative speed of the
+/// corners over the smallest altitude.
+///
+/// All lanes are 0 if the corner speeds alone show that no tetrahedron exceeds `rate` [1/s], as in most blocks.
+/// `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real8 deforming_squared(const CheckInputs& state, std::size_t block, Real rate, Real part_at_most) {
     const Real8 reach = load(state.tetrahedron_altitude[block]) * leeway_of(state, block),
                 reach_squared = reach * reach;
@@ -219,8 +221,8 @@ Fastest fastest_from_mean(const CheckInputs& state, Range blocks, Real altitude)
     return fastest;
 }
 
-/// True if a node is so fast relative to the first node of the body that the smallest tetrahedron could deform faster
-/// than `rate` [1/s]. The smallest tetrahedron is one with the smallest altitude.
+/// True if some node is so fast relative to the first node of the body that the tetrahedron with the smallest altitude
+/// could deform faster than `rate` [1/s].
 bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body, Real rate) {
     const Real altitude = state.body_min_altitude[body], limit_squared = rate * altitude * rate * altitude;
     const Range blocks = state.body_node_blocks[body];
@@ -235,10 +237,9 @@ bool parts_faster(Executor& executor, const CheckInputs& state, std::size_t body
     });
 }
 
-/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. Tests go from cheap to
-/// expensive, and end as soon as a test shows that no element exceeds `rate`. The rate of F of an element is the mean
-/// over the tetrahedra of the element. `part_at_most`: upper bound on the relative speed of two nodes of the body
-/// [m/s].
+/// Deformation rate of the fastest element of a body if the rate exceeds `rate`, else 0 [1/s]. The rate of an element
+/// is the mean over its tetrahedra. Cheap tests come first, and the function ends as soon as a test shows that no
+/// element exceeds `rate`. `part_at_most`: upper bound on the relative speed of two nodes of the body [m/s].
 Real deformation_rate(Executor& executor, const CheckInputs& state, std::size_t body, Real rate, Real part_at_most,
                       std::span<std::uint8_t> beside_fast) {
     if (!parts_faster(executor, state, body, rate)) return 0;

@@ -15,9 +15,9 @@ namespace skerry {
 
 enum class StepFault { none, not_finite, too_fast, too_far, too_stiff, unsolved };
 
-/// Deformation rate of an element, divided by the leeway of the element (its factor on max_strain_step). The
-/// deformation rate is |F'|, the norm of the rate of F, or the relative speed of two corners of a tetrahedron over its
-/// altitude if that ratio is less.
+/// Deformation rate of an element, divided by its leeway (factor on max_strain_step). The deformation rate is the
+/// smaller of |F'|, the norm of the rate of F, and the relative speed of two corners of a tetrahedron over its
+/// altitude.
 struct StrainRate {
     Real rate = 0;          // rate of the fastest element; 0 if no element exceeds the given rate [1/s]
     Index body = no_index;  // body of the fastest element: row of BodyTable
@@ -105,16 +105,21 @@ struct SpeedOutputs {
 /// Leeway: factor on max_strain_step, for implicit elements and for the tetrahedra that these elements cover.
 inline constexpr Real implicit_leeway = 5;
 
-/// Writes the greatest speeds and returns the first fault in body order. A fault is a velocity that is not finite, or
-/// an element whose F would change too much in this step of length `h` [s]. The change of F (Frobenius norm) must not
-/// exceed `max_strain_step` times the leeway, a factor of the element. F of an element is a mean over tetrahedra, so an
-/// element is tested only beside a tetrahedron whose F changes too much. A tetrahedron is tested only if two of its
-/// corners move apart by more than the allowed change of F times its smallest altitude. The returned verdict names the
-/// tetrahedron that deforms fastest. Common motion of all nodes and slow rotation of a large body are harmless and do
-/// not count. Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against
-/// the smallest altitude of the body. This test also rejects fast rotation of a large body. `fastest` is set if an
-/// element deforms too fast for a step of length `h` or `longest` [s]. `beside_fast` is work memory, one entry per
-/// node. Parallel over node blocks and bodies.
+/// Writes the greatest speeds, and returns the first fault in body order. A fault is a velocity that is not finite, or
+/// an element whose deformation gradient F would change too much in this step of length `h` [s]. Parallel over node
+/// blocks and bodies.
+///
+/// The change of F (Frobenius norm) must not exceed `max_strain_step` times the leeway, a factor of the element. F of
+/// an element is a mean over tetrahedra. So an element is tested only if F of one of its tetrahedra changes too much,
+/// and a tetrahedron only if two of its corners move apart by more than the allowed change of F times its smallest
+/// altitude. The verdict names the tetrahedron that deforms fastest. Common motion of all nodes and slow rotation of a
+/// large body cause no fault.
+///
+/// Without `body_blocks`, the speed of each node relative to the mean velocity of its body is tested against the
+/// smallest altitude of the body. This test also rejects fast rotation of a large body.
+///
+/// `fastest` is set if an element deforms too fast for a step of length `h` or `longest` [s]. `beside_fast`: work
+/// memory, one entry per node.
 StepVerdict check_state(Executor& executor, const CheckInputs& state, Real h, Real longest, Real max_strain_step,
                         const SpeedOutputs& speed, Column<std::uint8_t>& beside_fast);
 

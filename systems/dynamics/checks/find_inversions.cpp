@@ -17,8 +17,8 @@ namespace {
 // Greatest number of blocks in a part of a body. Several small bodies share a job, up to this number of blocks.
 constexpr Index blocks_per_part = 256;
 
-// Number of inversion checks of a block with narrow tetrahedra for each computation of the block's width (the least
-// width of a tetrahedron). This computation takes half of the time of a check.
+// A block with narrow tetrahedra computes its width (the least width of a tetrahedron) once in this number of checks,
+// because this takes half of the time of a check.
 constexpr std::uint8_t checks_at_narrow = 8;
 
 // Number of blocks whose travel budgets (distances that need no check) are compared together, without a branch for each
@@ -61,8 +61,8 @@ struct Body {
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
     Real travel_bound;  // upper bound on the travel (distance moved) of the body at the end of this step [m]
-    // Travel of the body from which a new travel budget (distance without a check) counts, see measure_displacement.h
-    // [m]
+    // Travel of the body at the time from which a new travel budget (distance without a check) counts, see
+    // measure_displacement.h [m]
     Real travel_base;
 
     Body(const InversionInputs& of, Real step, Index body)

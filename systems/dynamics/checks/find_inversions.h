@@ -68,8 +68,7 @@ struct InversionMemory {
     Column<InversionPart> part;  // parts of all bodies to check, in body order
     Column<Index> job;           // first row of `part` for each job; the last entry is the number of parts
     // For each block of tetrahedra: number of checks until the next travel budget (distance without a check) is
-    // computed. The number is positive only if a tetrahedron of the block is so narrow that one step would use up a
-    // budget.
+    // computed. It is above zero only if the block has a tetrahedron so narrow that one step would use up the budget.
     Column<std::uint8_t> checks_left;
 };
 
@@ -82,11 +81,12 @@ struct InversionBudgets {
     }
 };
 
-/// Finds the tetrahedra that a step of length `h` [s] inverts. Tetrahedra are checked only if their body may have moved
-/// far enough. A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of
-/// two parallel planes that enclose it. So slivers are checked often, and all other tetrahedra rarely. Each check of a
-/// block writes a new travel budget, the distance that the body may move before the next check. For a block too narrow
-/// for a budget, only every eighth check computes a new one. Parallel over parts of bodies.
+/// Finds the tetrahedra that a step of length `h` [s] inverts. Parallel over parts of bodies.
+///
+/// A tetrahedron cannot invert before its corners have moved by half of its width, the least distance of two parallel
+/// planes that enclose it. So a tetrahedron is checked only after its body may have moved that far: slivers often, all
+/// other tetrahedra rarely. Each check of a block writes a travel budget, the distance that the body may move before
+/// the next check. For a block too narrow for a budget, only every eighth check computes a new one.
 Inversions find_inversions(Executor& executor, const InversionInputs& inputs, Real h, InversionMemory& memory,
                            const InversionBudgets& budgets);
 

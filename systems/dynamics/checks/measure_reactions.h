@@ -91,12 +91,13 @@ struct ReactionInputs {
     }
 };
 
-/// Writes the impulse and moment of each attachment on its nodes, one row per attachment. The impulse gives the nodes
-/// their velocities of this step. It acts against element forces, weight, loads, the impulses of contacts and the
-/// inertia of implicit elements. Moments are about `moment_point`. A node that several attachments hold counts for the
-/// last one, whose motion it follows. Attachments of sleeping bodies and of colliders get zero rows. A rigid body
-/// counts as a whole for the last attachment that holds it. `kick`: time for which forces act [s]. `node_impulse` is
-/// work memory, by node. Sequential.
+/// Writes the impulse and moment of each attachment on its nodes, one row per attachment. Moments are about
+/// `moment_point`. `kick`: time for which forces act [s]. `node_impulse`: work memory, by node. Sequential.
+///
+/// The impulse is the one that gives the nodes their velocities of this step, against element forces, weight, loads,
+/// contact impulses and the inertia of implicit elements. If several attachments hold a node or a rigid body, the last
+/// one gets the impulse, because the node follows its motion. Attachments of sleeping bodies and of colliders get zero
+/// rows.
 void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& moment_point, Column<Vec3>& node_impulse,
                        Column<ImpulseAndMoment>& reactions);
 

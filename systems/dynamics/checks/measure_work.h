@@ -62,14 +62,15 @@ struct WorkInputs {
     }
 };
 
-/// Sum of impulse and work of two kinds of forces: the loads on all nodes, and the forces that hold the nodes listed in
-/// `held`. A holding force is the opposite of `force`. The impulse of a force F is kick F with the force interval
-/// `kick` [s]. A constant force does the work h F . velocity_next, since h velocity_next is the displacement in
-/// symplectic Euler. If a force has changed by dF since the last step, its work on a free node is greater by lag dF .
-/// velocity: each force works over half of the step before and half of the step after. `lag`: half of the step before
-/// [s]. A holding force works against weight and loads for the step length `h` [s], but against element forces for
-/// `kick`. Nodes of sleeping bodies do not count, because the forces that hold these nodes are unknown. Loads are
-/// summed over fixed groups of nodes, in a fixed order.
+/// Sums impulse and work of the loads on all nodes, and of the forces that hold the nodes listed in `held`. A holding
+/// force is the opposite of `force`. Nodes of sleeping bodies do not count, because the forces that hold them are
+/// unknown. Loads are summed over fixed groups of nodes, in a fixed order.
+///
+/// A force F has the impulse kick F, with the force interval `kick` [s]. A constant force does the work h F .
+/// velocity_next, since h velocity_next is the displacement in symplectic Euler. If a force has changed by dF since the
+/// last step, its work on a free node is greater by lag dF . velocity, because each force acts over half of the step
+/// before and half of the step after. `lag`: half of the step before [s]. A holding force does work against weight and
+/// loads for the step length `h` [s], but against element forces for `kick`.
 ExternalWork measure_work(Executor& executor, const WorkInputs& nodes, Real h, Real kick, Real lag,
                           Column<ExternalWork>& partial);
 

@@ -243,8 +243,8 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
     // Every fourth round also makes elements implicit, after mass shares have adapted.
     constexpr int rounds_of_sharing = 4;
     constexpr int rounds_of_estimates = 24;
-    // Largest factor by which a mass share may change in one round. The limit prevents an element that remains unstable
-    // from taking the masses of its neighbours.
+    // Largest factor by which a mass share may change in one round. Without this limit, an element that stays unstable
+    // would take the masses of its neighbours.
     constexpr Real most_change = 4;
     start_mass_shares(elements_, blocks_, out_.mass_share);
     if (step_.empty()) prepare();

@@ -21,7 +21,7 @@ struct ImplicitOutputs {
 struct ImplicitGoal {
     Real step;  // step for which the clusters are made [s]
     // Stable step that every explicit element must reach with its mass share [s]. It is less than `step` if mass forms,
-    // computed later, allow longer steps.
+    // which are computed later, will allow longer steps.
     Real stable;
     Real headroom;     // ratio of the assumed to the present stiffness of an implicit element
     Real most_moment;  // largest allowed ImplicitShare::moment; the search fails above it
@@ -32,13 +32,13 @@ struct ImplicitShare {
     bool too_many = false;  // the search failed: more than 3/4 of the volume would be implicit
 };
 
-/// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths; data
-/// that do not depend on the step length are computed once, and only when they are needed. All constructor arguments
-/// must outlive the search, and only the output columns may change meanwhile. Sequential.
+/// Searches for the implicit elements of a body in one shape. find() can be called for any number of step lengths. Data
+/// that do not depend on the step length are computed once, when they are first needed. All constructor arguments must
+/// outlive the search, and only the output columns may change meanwhile. Sequential.
 ///
 /// The rigorous bound on the stable step of an element needs 9x9 matrices. Most rounds therefore only estimate how the
-/// bound changes with the mass shares: the step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
-/// g_k^T / m_k with the shape gradient g_k and the element's mass share m_k at node k. The trace takes one product per
+/// bound changes with the mass shares. The step is nearly proportional to 1/sqrt(T), where T is the trace of sum_k g_k
+/// g_k^T / m_k, with the shape gradient g_k and the element's mass share m_k at node k. The trace takes one product per
 /// node.
 class ImplicitSearch {
 public:

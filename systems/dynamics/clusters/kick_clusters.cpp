@@ -155,9 +155,9 @@ void multiply(const Real* matrix, std::size_t count, const ByComponent& kick, co
     if (place < count) add_rows_at_end<1>(matrix, count, first, place, kick, sum);
 }
 
-/// Index of the tile of working memory at which cluster `c` begins. `begin` is the index of the first node of the
-/// cluster in the list of all cluster nodes. All earlier clusters, padded to complete tiles, end below this tile, since
-/// (begin + 7 c)/8, rounded down, is at most begin/8 + c.
+/// Index of the tile of working memory at which cluster `c` begins. `begin`: index of the first node of the cluster in
+/// the list of all cluster nodes. Earlier clusters are padded to complete tiles. They end below this tile, since (begin
+/// + 7 c)/8, rounded down, is at most begin/8 + c.
 std::size_t tile_of(std::size_t begin, std::size_t c) {
     return begin / tile + c;
 }

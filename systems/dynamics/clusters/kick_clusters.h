@@ -32,11 +32,13 @@ struct ClusterKickInputs {
 };
 
 /// Sets velocity_next = velocity + A^-1 m (velocity_next - velocity) for the nodes of each cluster, with the inertia
-/// matrix A of the cluster and the node masses m. If the body is unstrained and the nodes of a cluster have equal
-/// velocities, velocity_next is unchanged, since A then acts like the masses. `kick`: impulse of the forces on each
-/// node, by item of clusters.nodes [N s]. `work`: work memory whose contents persist between steps. `known`: `kick` and
-/// `work` still contain the results of a call with equal clusters, velocities and forces. Parallel over clusters.
-/// Returns false if there is no cluster (skipped).
+/// matrix A of the cluster and the node masses m. Returns false if there is no cluster (skipped). Parallel over
+/// clusters.
+///
+/// If the body is unstrained and the nodes of a cluster have equal velocities, A acts like the masses, so velocity_next
+/// is unchanged. `kick`: impulse of the forces on each node, by item of clusters.nodes [N s]. `work`: work memory whose
+/// contents persist between steps. `known`: true if `kick` and `work` still contain the results of a call with equal
+/// clusters, velocities and forces.
 bool kick_clusters(Executor& executor, const ClusterKickInputs& inputs, std::span<const Vec3> velocity, bool known,
                    Column<Vec3>& kick, Column<Real>& work, std::span<Vec3> velocity_next);
 

@@ -85,9 +85,9 @@ Vec3 lane_of(const LaneVec3<Real8>& v, std::size_t l) {
     return {v.x[l], v.y[l], v.z[l]};
 }
 
-/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to the viscous impulse
-/// of the element. F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the
-/// element's inertia. With this impulse the element retains the momentum of its deformation instead of the velocity.
+/// Adds the impulse -weight F' g_k to the forces of an element on its nodes k in this step, and to its viscous impulse.
+/// F' is the rate of the deformation gradient, g_k the shape gradient, and `weight` the increase of the element's
+/// inertia. The impulse keeps the momentum of the deformation constant while the inertia increases.
 void keep_momentum(const ElementInputs& elements, const LaneMat3<Real8>& rate, std::size_t b, std::size_t l,
                    Real weight, Real kick, const PatchForces& patches) {
     const auto after = std::ranges::upper_bound(patches.blocks, static_cast<Index>(b), {}, &Range::begin);

@@ -45,14 +45,14 @@ struct StiffenOutputs {
     }
 };
 
-/// Raises the assumed stiffness of an implicit element to twice its present stiffness if the present stiffness has come
-/// close to the assumed one. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that
-/// the larger inertia adds at unchanged velocities [J].
+/// Raises the assumed stiffness of implicit elements whose present stiffness has come close to it: to twice the present
+/// stiffness. Updates the inertia matrices of the clusters concerned. Returns the kinetic energy that the larger
+/// inertia adds at unchanged velocities [J]. Sequential, in element order.
 ///
 /// A stiffened element retains the momentum of its deformation, not the velocity. The difference is an impulse of the
 /// step (docs/methods/clusters.md 6). It is added to the element forces, which act for the time `kick` [s], and to the
-/// viscous impulses. Only blocks marked in `patches.stiffening` by compute_element_forces at the same positions are
-/// tested; the marks are then cleared. Sequential, in element order.
+/// viscous impulses. Only blocks are tested that compute_element_forces has marked in `patches.stiffening` at the same
+/// positions. The marks are then cleared.
 Real stiffen_clusters(const ElementInputs& elements, const StiffenInputs& bodies, Real kick, const PatchForces& patches,
                       const StiffenOutputs& out);
 

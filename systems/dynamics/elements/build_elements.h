@@ -35,11 +35,13 @@ struct AppendedElements {
     std::vector<Index> element;  // index in the list for each lane; no_index in an unused lane
 };
 
-/// Assigns the elements of a list to lanes of blocks, patch after patch. A patch is a spatially compact group of up to
-/// elements_per_patch elements, found by repeated halving along the longest side. Within a patch all elements of a
-/// block have the same part of the stress (ElementPart) and the same material. Elements with equal numbers of nodes are
-/// adjacent, so that few rows are unused. In all other respects elements stay in order. Inversion barriers (guards)
-/// have patches of their own, after all others. `rest_position`: rest positions of the nodes of the body [m].
+/// Assigns the elements of a list to lanes of blocks, patch after patch. A patch is a compact group of up to
+/// elements_per_patch neighbouring elements, found by repeatedly halving the body along its longest side.
+/// `rest_position`: rest positions of the nodes of the body [m].
+///
+/// Within a patch, all elements of a block have the same part of the stress (ElementPart) and the same material.
+/// Elements with equal numbers of nodes are adjacent, so that few rows are unused. In all other respects elements stay
+/// in order. Inversion barriers (guards) have patches of their own, after all others.
 ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_position);
 
 /// Appends the elements of a new body to the tables, in the lanes `places`. These lanes may have been assigned for

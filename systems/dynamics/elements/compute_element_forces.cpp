@@ -224,7 +224,7 @@ struct Run {
     }
 
     /// Total first Piola-Kirchhoff stress of the elements of a block [Pa], times minus their volume. Adds the
-    /// dissipation to `relaxed`, which dissipated_of converts to an energy.
+    /// dissipation of the springs to `relaxed`, in the unit that dissipated_of() converts to joules.
     template <class Law>
     [[gnu::always_inline]] Parts<LaneMat3<KernelReal>> stress_of(const Law& law, std::size_t block,
                                                                  const Parts<LaneMat3<KernelReal>>& F,
@@ -247,8 +247,8 @@ struct Run {
             for (std::size_t part = 0; part < kernel_parts; ++part) Q[part] = whole(elastic(part), F[part]);
         }
         if (!elements.viscous_time.empty() && elements.viscous_time[block] > 0) {
-            // The call alone needs the copies: a variable whose address is taken is stored in memory, even if the call
-            // is not made.
+            // The copies are needed because a variable whose address is taken is stored in memory, even if the call is
+            // not made.
             if (rests_easy(block, F))
                 note(block, false, false);
             else

@@ -136,13 +136,15 @@ struct ElementMemory {
     }
 };
 
-/// Computes the forces of the elements on their nodes, and sums the forces over each patch. The first Piola-Kirchhoff
-/// stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions x_k and the gradients g_k
-/// at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 + f_2 + ...). Sums run block
-/// by block and lane by lane, so that the bits do not depend on the number of workers. Corotational elements start the
-/// search for their frame from `rotation` and write next.rotation; other laws write no frame. The forces of patches of
-/// bodies that are left out stay unchanged. `kick`: time for which forces act [s]. Returns the dissipated energy [J].
-/// Parallel over patches.
+/// Computes the forces of the elements on their nodes, and sums the forces over each patch. Returns the dissipated
+/// energy [J]. Parallel over patches.
+///
+/// The first Piola-Kirchhoff stress P of an element depends on F = sum_k (x_k - x_0) (x) g_k, with the node positions
+/// x_k and the gradients g_k at rest. The force on node k is f_k = -V P g_k, with the rest volume V, and f_0 = -(f_1 +
+/// f_2 + ...). Sums run block by block and lane by lane, so that the bits do not depend on the number of workers.
+///
+/// Corotational elements start the search for their frame from `rotation` and write next.rotation; other laws write no
+/// frame. The forces of patches of bodies that are left out stay unchanged. `kick`: time for which forces act [s].
 Real compute_element_forces(Executor& executor, const ElementInputs& elements, std::span<const Vec3> position,
                             std::span<const Vec3> velocity, Real kick, std::span<const ElementRotation> rotation,
                             const ElementMemory& next, const PatchForces& patches);

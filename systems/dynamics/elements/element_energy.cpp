@@ -16,9 +16,10 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) is true. The search for a
-/// corotational frame starts from the frame of the same lane of the block before, since neighbours rotate alike. The
-/// search therefore also runs for skipped blocks. Laws without a frame do not use this argument.
+/// Calls visit(block, material, volume, F, frame) for every block for which asks(block) is true. The search for the
+/// corotational frame of a lane starts from the frame of the same lane in the previous block, because neighbours have
+/// similar rotations. The search therefore also runs for skipped blocks. Laws without a frame ignore the argument
+/// `frame`.
 template <class Ask, class Visit>
 void for_each_block_of(const ElementInputs& elements, Range blocks, std::span<const Vec3> position, Ask&& asks,
                        Visit&& visit) {

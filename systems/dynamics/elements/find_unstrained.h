@@ -52,11 +52,12 @@ struct UnstrainedOutputs {
     }
 };
 
-/// Finds the awake bodies that are unstrained. All nodes of an unstrained body have bitwise the same velocity, and none
-/// of its elements is strained, rotated or has a strained spring. A body stays unstrained while its velocities are
-/// equal; its strains are checked again every unstrained_steps steps. The rotations and spring strains of its elements
-/// stay the same for the next step. Code that moves nodes other than by their velocities must set `unstrained` to 0.
-/// Returns the number of unstrained bodies. Parallel over bodies.
+/// Finds the awake bodies that are unstrained, and returns their number. Parallel over bodies.
+///
+/// All nodes of an unstrained body have bitwise the same velocity, and none of its elements is strained or rotated or
+/// has a strained spring. A body stays unstrained while its velocities are equal; its strains are checked again every
+/// unstrained_steps steps. The rotations and spring strains of its elements stay the same for the next step. Code that
+/// moves nodes other than by their velocities must set `unstrained` to 0.
 Index find_unstrained(Executor& executor, const UnstrainedInputs& inputs, const UnstrainedOutputs& out);
 
 }  // namespace skerry
