@@ -70,8 +70,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
         stiff.take_rigid_motion(next);
     }
     for (std::size_t n = 0; n < of.count; ++n) taken -= stiff.mass(of.place(n)) / 2 * next[n].squaredNorm();
-    // The energy of the spin uses the moments of inertia of the new shape. It includes the energy error that the
-    // rotation of this step makes (docs/methods/rigid_bodies.md 2).
+    // The energy of the spin is computed with the moments of inertia of the new shape. It includes the energy error of
+    // the rotation in this step (docs/methods/rigid_bodies.md 2).
     const Mat3 turned_for_step =
         turn_of_step(out.rotation_shaped[r], out.moments_next[r], momentum, spins.push_spin[r], h);
     const Vec3 spin_before = spin_of(bodies.rotation[r], spins.moments[r], momentum),

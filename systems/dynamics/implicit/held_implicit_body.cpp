@@ -236,8 +236,8 @@ Real strain_held_body(const ImplicitBodies& bodies, std::size_t r, Real h, Real 
         if (nodes.held(n)) continue;
         const Vec3 before = frame.across * velocity[n], during = next[n], change = (during - before) / theta;
         taken += stiff.mass(k) * (lossy * change.squaredNorm() + h * damping * during.squaredNorm());
-        // The reported work of contacts uses the mean of the velocities `before` and `during`. The losses above assume
-        // `during` alone, so the difference is added.
+        // The reported work of contacts uses the mean of the velocities `before` and `during`, while the losses above
+        // assume `during`. The difference is added here.
         taken += (to_mesh * contact[n]).dot(before - during) / 2;
         next[n] = before + change;
     }

@@ -150,8 +150,8 @@ void carry_long_steps(const ImplicitTimes& times, std::span<const Index> body, s
         step.answer.swap(step.answer_next);
         step.contact.swap(step.contact_next);
         if (!times.ends) continue;
-        // The next long step assumes that contact forces continue with their mean over the elapsed part of this long
-        // step.
+        // Contact forces are assumed to continue in the next long step with their mean over the elapsed part of this
+        // long step.
         for (std::size_t n = 0; n < of_body.size(); ++n)
             of_body[n] = times.length * (times.length / step.done) * step.answer[n];
     }

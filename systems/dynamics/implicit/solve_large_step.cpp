@@ -90,9 +90,9 @@ private:
 };
 
 bool find_velocity(Real inertia, Real within, StiffBody& stiff) {
-    // `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on the squared decrement
-    // relative to the sum of all energies. `still_good`: a new matrix factor is computed if more than this fraction of
-    // the decrement remains after a step.
+    // Limits of Newton's method. `close`: bound on the Newton decrement relative to the first one. `rounding`: bound on
+    // the squared decrement relative to the sum of all energies. `still_good`: a new matrix factor is computed if more
+    // than this fraction of the decrement remains after a step.
     constexpr Real close = 1e-3, rounding = 1e-13, still_good = 0.1;
     constexpr int most_steps = 50, most_halvings = 20;
     LargeStep& step = stiff.large_step;

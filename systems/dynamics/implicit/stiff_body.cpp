@@ -200,8 +200,8 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
 }
 
 bool StiffBody::becomes_small(std::span<const Vec3> displacement, const Vec3& angular_momentum) {
-    // `calmer`: the bounds of becomes_large() are multiplied by this fraction. `still`: below this fraction of
-    // small_strain, energies are mostly rounding errors.
+    // Fractions of the bounds of becomes_large() below which strain counts as small again. `calmer`: fraction of all
+    // bounds. `still`: fraction of small_strain alone; below it, energies are mostly rounding errors.
     constexpr Real calmer = 0.25, still = 0.1;
     if (energy_of_spin(angular_momentum) > calmer * stretching_spin_) return false;
     const Displacements at(displacement, node_);
@@ -393,7 +393,7 @@ std::span<const Mat3> StiffBody::column(std::size_t node) {
     Index& slot = slot_of_[node];
     ++uses_;
     if (slot == no_index) {
-        // If there were fewer slots than nodes touched in one step, every step would compute all columns again.
+        // With fewer slots than nodes touched in one step, every step would compute all columns again.
         const std::size_t most = std::max({std::size_t(1), column_memory / (size() * sizeof(Mat3)), touched_.size()});
         ++columns_made_;
         if (node_in_.size() < std::min(most, size())) {

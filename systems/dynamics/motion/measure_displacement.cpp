@@ -13,11 +13,12 @@ namespace {
 // The work for a body takes some microseconds when its displacement origins move.
 constexpr std::size_t displaced_bodies_per_job = 16;
 
-// Displacement, as a fraction of the mean edge, at which the displacement origins move to the nodes. A pair list that
-// was made while the two bodies had the displacements a and b is valid for a travel of skin - 2 (a + b)
-// (contact_reach.h). So at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are lost, and sleeping
-// candidates wake too early by this travel. A body that vibrates by less than this displacement adds nothing to its
-// travel in the long run.
+// Displacement at which the displacement origins move to the nodes, as a fraction of the mean edge.
+//
+// A list of pairs that was made while the two bodies had the displacements a and b is valid for a travel of skin - 2 (a
+// + b) (contact_reach.h). With this limit, at most 4 x 0.01 = 0.04 mean edges of the skin of 0.3125 mean edges are
+// lost. Candidates are then tested again too early by this travel. A body that vibrates by less than this displacement
+// adds nothing to its travel in the long run.
 constexpr Real longest_displacement = 0.01;
 
 void move_on(MovingFrame& frame, Real seconds) {
@@ -27,8 +28,8 @@ void move_on(MovingFrame& frame, Real seconds) {
     frame.path += way.norm();
 }
 
-/// Mean velocity of the nodes; zero if the mean is not finite. A frame may have any velocity; with the mean velocity
-/// nodes move little in the frame.
+/// Mean velocity of the nodes, or zero if the mean is not finite. A frame could have any velocity; with the mean
+/// velocity the nodes move little relative to the frame.
 Vec3 mean_velocity(std::span<const Vec3> velocity, Range nodes) {
     Vec3 sum = Vec3::Zero();
     for (Index n = nodes.begin; n < nodes.end; ++n) sum += velocity[static_cast<std::size_t>(n)];

@@ -14,8 +14,8 @@ namespace {
 namespace limits = own_sleep_limits;
 
 /// Number of measurements of the drift (displacement of the nodes) that are due after the fraction `part` of one half
-/// of the sleep time. They are unevenly spaced: at equal intervals an oscillation that returns at each measurement
-/// would seem still.
+/// of the sleep time. The intervals between measurements differ: with equal intervals, an oscillation of the same
+/// period would seem still.
 int looks_due(Real part) {
     constexpr Real golden = 0.6180339887498949;
     const int slot = static_cast<int>(part * limits::looks);

@@ -7,7 +7,7 @@
 
 namespace skerry {
 
-/// Limits for a still body if the user sets no sleep speed.
+/// Limits for a still body. They are used unless the user sets a sleep speed.
 namespace own_sleep_limits {
 /// Limit of the speed of all nodes, as a fraction of sqrt(gravity times the mean edge).
 inline constexpr Real speed = 0.01;

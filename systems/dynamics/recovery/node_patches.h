@@ -37,7 +37,7 @@ public:
     }
     /// Materials of the tetrahedra around a node, each once.
     std::vector<Index> materials_around(Index node) const;
-    /// A quarter of the volume of the tetrahedra around a node, all or those of one material [m^3].
+    /// A quarter of the volume of the tetrahedra around a node [m^3]: of all tetrahedra, or of those of one material.
     Real node_volume(Index node) const;
     Real node_volume(Index node, Index material) const;
     /// Nodes of the kind `inner` in the tetrahedra around a node.

@@ -48,7 +48,8 @@ private:
     }
     Real volume(std::size_t place) const { return body_.elements.volume[block_of(place)][place % element_lanes]; }
 
-    /// External forces with which the elements would be at rest [N].
+    /// Sums, at each node that needs it, the external force with which the elements around the node would be at rest
+    /// [N].
     void sum_forces() {
         const RaggedView<RecoveryPlan::Corner> corners = plan_.corners.view();
         force_.assign(corners.size(), Vec3::Zero());
@@ -95,8 +96,9 @@ private:
         return mean(plan_.strained[row], plan_.volumetric[row]);
     }
 
-    /// Balances the traction of the elements around a surface node. Inner nodes around give the force per volume, of
-    /// weight and inertia, that the elements of the surface node balance as well.
+    /// Deformation gradient at the surface node of face `f`, with a stress that balances the traction. The traction is
+    /// the external force on the elements around the node, divided by the surface area. The part of this force due to
+    /// weight and inertia is subtracted; per volume it equals that at the inner nodes around.
     std::optional<Mat3> gradient_at(std::size_t f, std::span<const Index> strained,
                                     const MaterialConstants& material) const {
         const RecoveryPlan::Face& face = plan_.faces[f];

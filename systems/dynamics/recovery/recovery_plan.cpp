@@ -40,8 +40,8 @@ public:
     RecoveryPlan take() { return std::move(plan_); }
 
 private:
-    /// Turns the rest positions into the frame of the gradients. These were turned with the body when it was added, and
-    /// the deformation gradient of the rest shape is the inverse of that rotation.
+    /// Rotates the rest positions into the frame of the gradients. The gradients were rotated with the body when it was
+    /// added. The elements have the inverse of this rotation as deformation gradient in the rest shape of the mesh.
     void turn_rest() {
         for (Index b = body_.blocks.begin; b < body_.blocks.end; ++b) {
             const auto block = static_cast<std::size_t>(b);
@@ -100,8 +100,8 @@ private:
         }
     }
 
-    /// Numbers the nodes whose force is needed, and lists the corners of elements there. The lists are complete,
-    /// because all tetrahedra around these nodes are near.
+    /// Numbers the nodes at which the force of the elements is needed, and lists the element corners at these nodes.
+    /// All tetrahedra around these nodes are near, so the lists are complete.
     void list_corners() {
         force_row_.assign(rest_.size(), no_index);
         Index count = 0;
@@ -127,7 +127,8 @@ private:
     }
 
     void add_smooth(Index n) {
-        // Stresses of single tetrahedra scatter too much for a quadratic fit, which has two samples or more per term.
+        // A quadratic fit needs two samples or more per term. It is not used for stresses of single tetrahedra, which
+        // scatter too much.
         constexpr std::size_t enough = 2 * quadratic_terms;
         smooth_[static_cast<std::size_t>(n)] = static_cast<Index>(plan_.smooth.size());
         std::vector<Index> strained, volumetric;

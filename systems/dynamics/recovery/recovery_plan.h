@@ -27,7 +27,7 @@ struct RecoveryMesh {
 
 /// Plan of recover_nodes for some nodes of a body. Blocks are counted from the first block of the body, so that a plan
 /// stays valid when the rows of the body move in the tables. A place is the index of a lane in the listed blocks.
-/// Lengths are measured in the frame of the gradients of the elements.
+/// Lengths are measured in the frame of the element gradients.
 struct RecoveryPlan {
     std::vector<Index> nodes;  // nodes to recover, in the order of the results
     std::vector<Index> block;  // blocks whose elements are needed, ascending
@@ -74,7 +74,7 @@ struct RecoveryPlan {
     // They are listed only if the fit is not determined.
     Ragged<Index> strained_around, volumetric_around;
 
-    /// Source of the value of a node: a row of `smooth`, or several rows of `extrapolations` if that is no_index.
+    /// Source of the value of a node: a row of `smooth`, or the rows `extrapolations` if `smooth` is no_index.
     struct Value {
         Index smooth;
         Range extrapolations;

@@ -10,8 +10,8 @@
 
 namespace skerry {
 
-/// Surface triangle. Its deformation gradient within its plane, times its area, is
-/// weight ((x1 - x0) along_first^T + (x2 - x0) along_second^T).
+/// Surface triangle. The area times the deformation gradient in the plane of the triangle is weight ((x1 - x0)
+/// along_first^T + (x2 - x0) along_second^T), with the corner positions x0, x1 and x2.
 struct SurfaceTriangle {
     std::array<Index, 3> node;
     Vec3 along_first, along_second;  // [m^3]
@@ -26,8 +26,9 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();    // outward area vector of the node: a third of that of its triangles [m^2]
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // The gradients F of least squared difference from the gradients within the triangles are
-    // stretch inverse + b across^T, where b = F N is free. Both are computed for a smooth surface only.
+    // Terms of a least-squares fit: of all F, those that differ least from the deformation gradients within the
+    // triangles are F = stretch inverse + b across^T, where b = F N is free. Both are computed for a smooth surface
+    // only.
     Mat3 inverse = Mat3::Zero();  // inverse of the summed projectors onto the planes of the triangles [1/m^2]
     Vec3 across = Vec3::Zero();
 };
@@ -39,9 +40,10 @@ SurfaceAround surface_around(std::span<const std::array<Index, 3>> surface, std:
 /// Sum of area times the deformation gradient within the plane of each triangle [m^2]. `position`: of all nodes [m].
 Mat3 surface_stretch(std::span<const SurfaceTriangle> triangles, std::span<const Vec3> position);
 
-/// Deformation gradient F with P(F) N = traction for the outward normal N, and otherwise the least squared difference
-/// from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`: of surface_stretch.
-/// `start`: first guess of F N. The surface must be smooth. Empty if Newton's method finds no F.
+/// Deformation gradient F for which P(F) N is the traction, with the outward normal N. Of all such F it is the one that
+/// differs least from the deformation gradients within the triangles (docs/methods/elasticity.md 7.9). `stretch`:
+/// result of surface_stretch. `start`: first guess of F N. The surface must be smooth. Empty if Newton's method finds
+/// no F.
 std::optional<Mat3> surface_gradient(const MaterialConstants& material, const SurfaceAround& around,
                                      const Mat3& stretch, const Vec3& traction, const Vec3& start);
 

@@ -121,11 +121,12 @@ struct RigidKicks {
     }
 };
 
-/// Computes the impulse and moment of gravity and loads on each body. Also computes the node velocities with these
-/// impulses, which are the start values for contacts. Gravity and loads act for the time `kick`, but on the frames of
-/// implicit bodies for the complete step `h`. Sleeping bodies get no impulse. A held rigid body gets the impulse that
-/// moves it with its attachment; the velocities of its nodes are already set. The frame of a held implicit body has no
-/// momentum and no degrees of freedom. Parallel over bodies. Returns false if there is no rigid body (skipped).
+/// Computes the impulse and moment of gravity and loads on each body, and the node velocities with these impulses,
+/// which are the start values for contacts. Parallel over bodies. Returns false if there is no rigid body (skipped).
+///
+/// Gravity and loads act for the time `kick`, but on the frames of implicit bodies for the complete step `h`. Sleeping
+/// bodies get no impulse. A held rigid body gets the impulse that moves it with its attachment; the velocities of its
+/// nodes are already set. The frame of a held implicit body has no momentum and no degrees of freedom.
 bool kick_rigid_bodies(Executor& executor, const RigidBodies& bodies, const RigidHolds& holds,
                        const RigidForces& forces, Real h, Real kick, const RigidKicks& out);
 

@@ -1,8 +1,9 @@
-// Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K. The nonzero
-// eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L, where Y is a 3x3 matrix, V the volume, H = dP/dF, and L
-// L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms. Each term contributes a
-// closed-form term to A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test for a given limit c is that
-// lambda_max(A) < c if c I - A is positive definite.
+// Bounds the largest eigenvalue of M^-1/2 K M^-1/2 for an element with mass matrix M and stiffness K.
+//
+// The nonzero eigenvalues are those of the 9x9 matrix A(Y) = V H(Y L^T) L. Y is a 3x3 matrix, V the volume, H = dP/dF,
+// and L L^T = Q the tensor of inverse masses. H, or an upper bound on it, is a sum of a few terms, each of which gives
+// a closed-form term of A. The bound is lambda_max(A) <= (tr A^16)^(1/16). A cheaper test shows that lambda_max(A) < c
+// for a given c: c I - A is positive definite.
 #include "systems/dynamics/stability/element_stiffness.h"
 
 #include <array>

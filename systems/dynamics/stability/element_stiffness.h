@@ -35,12 +35,15 @@ enum class Sharpness {
     // ten times `enough`.
     stepped
 };
-/// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]. The stiffness is K
-/// = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of the mass shares
-/// m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the elements have that
-/// additional mass. If the material law has a corotational frame, `q` is the initial guess of the frame and receives
-/// the frame found. Lanes without volume get 0. If all eight lanes are below `enough` [1/s^2], all lanes get `enough`
-/// instead, in a tenth of the time.
+/// Upper bound on the squared highest frequency lambda_max(M^-1/2 K M^-1/2) of each element [1/s^2]; 0 in lanes without
+/// volume.
+///
+/// The stiffness is K = V G^T H G with the volume V, the gradients G at rest and H = dP/dF. M is the diagonal matrix of
+/// the mass shares m_a of the corners a, and `Q` is the sum of g_a g_a^T / m_a over the corners. With `frame` the
+/// elements have that additional mass.
+///
+/// If the material law has a corotational frame, `q` is the initial guess of the frame and receives the frame found. If
+/// all eight lanes are below `enough` [1/s^2], all lanes get `enough` instead, in a tenth of the time.
 Real8 frequency_squared_bound(const MaterialConstants& material, const LaneMat3<Real8>& F, const ViscousPart& viscous,
                               const Real8& volume, const LaneMat3<Real8>& Q, LaneQuaternion<Real8>& q, Real enough = 0,
                               Sharpness sharpness = Sharpness::trace, const FramePart* frame = nullptr);

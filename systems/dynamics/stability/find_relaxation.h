@@ -8,9 +8,9 @@
 
 namespace skerry {
 
-/// Estimate of the lowest frequency at which a free body of this size and shape vibrates [1/s]. The estimate is the
-/// frequency of a beam with the length and the least thickness of the body (from radii of gyration), but at most the
-/// frequency of a ball. `speed`: speed of sound sqrt(E / rho) [m/s].
+/// Estimate of the lowest frequency at which a free body of this size and shape vibrates [1/s]. It is the smaller of
+/// the frequencies of a beam and of a ball. The length and the thickness of the beam come from the radii of gyration of
+/// the body. `speed`: speed of sound sqrt(E / rho) [m/s].
 Real lowest_frequency_estimate(std::span<const Vec3> position, std::span<const Real> mass, Real speed);
 
 /// Values that find_relaxation writes for each block of the body.
@@ -20,10 +20,11 @@ struct RelaxationOutputs {
     std::span<Real> relaxing_share;
 };
 
-/// Finds the relaxation rates of the losses of a body. They divide a band of frequencies, from `highest`, the highest
-/// frequency of the body, to 1/rates_below of `lowest`, an estimate of the lowest frequency [1/s]. The ratio of the
-/// ends of the band is limited to 100 to 10,000. All elements get the same rates, so that losses depend neither on the
-/// position of an element nor on its number. `stiffness_sum`: stiffness sum by node, as in stable_step(). Sequential.
+/// Finds the relaxation rates of the losses of a body. They divide a band of frequencies, from `highest` down to
+/// `lowest` / rates_below. `highest` is the highest frequency of the body, `lowest` an estimate of its lowest frequency
+/// [1/s]. The ratio of the ends of the band is limited to 100 to 10,000. All elements get the same rates, so that
+/// losses depend neither on the position of an element nor on the number of elements. `stiffness_sum`: stiffness sum by
+/// node, as in stable_step(). Sequential.
 void find_relaxation(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, std::span<const Real> stiffness_sum, Real lowest, Real highest,
                      const RelaxationOutputs& out);

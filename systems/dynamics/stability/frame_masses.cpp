@@ -1,8 +1,9 @@
-// Finds masses of elements from H = 2 mu 1 + lambda 1 1^T, an upper bound on dP/dF of the material law at rest. This
-// bound gives stiffness to rotations, the law does not. Since the highest modes of a mesh rotate little, the highest
-// frequency with H is within some per cent of the highest frequency of the body. Each element gets the mass K_e / c,
-// where K_e is its stiffness with H. These masses add up to no more than the masses of the nodes if c is above the
-// highest eigenvalue of the complete body.
+// Divides the masses of nodes among elements in proportion to a stiffness at rest (docs/methods/stable_step.md 2.4).
+//
+// The stiffness K_e of an element is computed with H = 2 mu 1 + lambda 1 1^T, an upper bound on dP/dF of the material
+// law at rest. Unlike the law, this H resists rotations. The highest modes of a mesh rotate little, so the highest
+// frequency with H is within some per cent of the true one. Each element gets the mass K_e / c. If c is above the
+// highest eigenvalue of the complete body, these masses add up to no more than the masses of the nodes.
 #include "systems/dynamics/stability/frame_masses.h"
 
 #include <algorithm>

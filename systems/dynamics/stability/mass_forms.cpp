@@ -1,10 +1,13 @@
-// Chooses the matrix Q of the mass form G Q^-1 G^T of each element. G is the matrix of the gradients of the element at
-// rest, V is its volume. With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W
-// G^T. This stiffness has one number per node, the same for x, y and z. The coupled matrix of all elements is therefore
-// a third as wide as the true stiffness. Its eigenvalues are sharper bounds than the worst single element. W = 2 mu 1 +
-// lambda tr(Z) Z^-1, with Lame's mu and lambda, is an upper bound on dP/dF at rest for every positive definite Z. A
-// good Z is the square root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find Z and
-// these modes together.
+// Chooses the matrix Q of the mass form G Q^-1 G^T of each element (docs/methods/stable_step.md 2.3). G contains the
+// gradients of the element at rest, V is its volume.
+//
+// With the bound w on omega^2 and W = w Q^-1 / V, the stiffness of the element is at most G V W G^T. This stiffness is
+// the same for x, y and z, so the matrix of all elements is a third as wide as the true stiffness matrix. Its
+// eigenvalues are sharper bounds than the worst single element.
+//
+// For every positive definite Z, W = 2 mu 1 + lambda tr(Z) Z^-1 is an upper bound on dP/dF at rest, with Lame's mu and
+// lambda. A good Z is the square root of the mean of grad u grad u^T over the highest modes u. Rounds of iteration find
+// Z and these modes together.
 #include "systems/dynamics/stability/mass_forms.h"
 
 #include <algorithm>

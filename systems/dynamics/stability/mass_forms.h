@@ -16,14 +16,19 @@ inline constexpr Real products_of_group = 4e8;
 /// m^2)].
 inline constexpr Real form_of_implicit = 1e-100;
 
-/// Finds the matrices Q of the explicit elements of a body. An element gets the mass form G Q^-1 G^T from its nodes,
-/// where row k of G is the gradient of node k. These forms add up to no more than the masses of the nodes: sum_e G Q^-1
-/// G^T <= diag(mass). A Cholesky decomposition verifies this for the complete body. If the decomposition would cost
-/// more than `most_products` multiplications, groups of elements are verified one by one. The stiffness K and the mass
-/// M of the body then satisfy K <= max_e lambda_max(A) M with A = V H (Q x 1), the volume V and H = dP/dF, as for any
-/// other way to share the mass. The bound is sharp for the rest shape. The matrices do not depend on the shape and are
-/// valid for every shape. `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block;
-/// 0 if nothing was found [1/(kg m^2)]. Sequential, about 10 us per tetrahedron.
+/// Finds the matrices Q of the explicit elements of a body (docs/methods/stable_step.md 2.3). Sequential, about 10 us
+/// per tetrahedron.
+///
+/// An element gets the mass form G Q^-1 G^T from its nodes, where row k of G is the gradient of node k. The sum of
+/// these forms is at most the matrix of the nodal masses, diag(mass). A Cholesky decomposition verifies this for the
+/// complete body, or for groups of elements if it would cost more than `most_products` multiplications.
+///
+/// The stiffness K and the mass M of the body then satisfy K <= max_e lambda_max(A) M with A = V H (Q x 1), the volume
+/// V and H = dP/dF. The matrices do not depend on the shape, and the bound is valid for every shape. It is sharp for
+/// the rest shape.
+///
+/// `position`: any shape that is not degenerate, for sorting the nodes [m]. `form`: Q by block; 0 if nothing was found
+/// [1/(kg m^2)].
 void find_mass_forms(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                      std::span<const Real> mass, Real most_products, std::span<ElementForm> form);
 

@@ -28,12 +28,13 @@ Index sums_of(Range blocks) {
     return (blocks.size() + blocks_summed - 1) / blocks_summed;
 }
 
-/// Kinds of work in a piece of a stable-step check: sums over elements, bounds with frame masses (frame_masses.h), and
-/// bounds with mass forms or mass shares. In a body with frame masses, the bounds with frame masses come first.
+/// Kinds of work in a piece of a stable-step check: sums of stiffness over elements, bounds with frame masses
+/// (frame_masses.h), and bounds with mass forms or mass shares. A body with frame masses is bounded with these first.
 enum class PieceWork : std::uint8_t { sum, bound_in_frame, bound };
 
-/// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one wave of blocks.
-/// Waves contain 1, 1, 2, 4, 8... blocks, so that few bounds in a wave exceed the greatest bound of the waves before.
+/// Consecutive pieces of a stable-step check that do not wait for each other: sums, or bounds for one *wave* of blocks.
+/// Waves contain 1, 1, 2, 4, 8... blocks. A block in a wave rarely exceeds the greatest bound of the waves before, and
+/// can then be tested faster.
 struct PieceRun {
     PieceWork work;
     bool opens_wave;
@@ -142,8 +143,8 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
 /// forms and mass shares are not computed, because they are hardly sharper.
 constexpr Real well_in_frame = 1.25;
 
-/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) divides the blocks of a wave into
-/// chunks and calls body(begin, end, StepEvaluation of the chunk) for each chunk.
+/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) must divide the blocks of a wave
+/// into chunks, and call body(begin, end, StepEvaluation of the chunk) for each chunk.
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepEvaluation& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());
@@ -227,7 +228,7 @@ StableStep result_of(const StepEvaluation& look) {
     StableStep found{infinity, no_index};
     if (look.highest > 0) found = {step_of(look.highest), look.element};
     if (!(look.in_frame > 0)) return found;
-    // If both bounds of the body were computed, both are valid and the longer step is taken.
+    // Both bounds of the body are valid if both were computed. The longer step is taken.
     const Real step = step_of(look.in_frame);
     if (!(look.highest > 0) || step > found.step) found = {step, look.element_in_frame};
     return found;

@@ -18,12 +18,13 @@ struct StableStep {
     Index element = no_index;  // element that limits the step: lane e % 8 of block e / 8 of ElementBlockTable
 };
 
-/// Stable step of one body in its present shape. The mass of each node is shared among its elements: by frame_masses.h
-/// or mass_forms.h if the body has such masses, else in proportion to the stiffness of the elements and their
-/// mass_share. With the stiffness K_e and the mass M_e of element e, omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e
-/// M_e^-1/2). The material Hessian in the present shape is bounded as in docs/methods/stable_step.md 4. The step is
-/// rigorous: it is never longer than the exact limit. `stiffness_sum` is work memory, one entry per node. Sequential,
-/// deterministic.
+/// Stable step of one body in its present shape. The step is rigorous: it is never longer than the exact limit.
+/// Sequential, deterministic.
+///
+/// The mass of each node is shared among its elements: by frame_masses.h or mass_forms.h if the body has such masses,
+/// else in proportion to the stiffness of the elements and their mass_share. With the stiffness K_e and the mass M_e of
+/// element e, omega_max^2 <= max_e lambda_max(M_e^-1/2 K_e M_e^-1/2). The material Hessian in the present shape is
+/// bounded as in docs/methods/stable_step.md 4. `stiffness_sum`: work memory, one entry per node.
 StableStep stable_step(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                        std::span<const Real> mass, std::span<Real> stiffness_sum);
 
@@ -53,19 +54,19 @@ void lone_frequencies(const ElementInputs& elements, Range blocks, std::span<con
 void element_stiffnesses(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                          std::span<ElementLane> stiffness);
 
-/// Functions that bound every element of a range of blocks. Systems that are not kernels get those of the instruction
-/// set in use from the engine.
+/// Functions that bound every element of a range of blocks. The engine passes the functions for the instruction set in
+/// use to systems that are not kernels.
 struct ElementBounds {
     decltype(&skerry::element_steps) steps = &skerry::element_steps;
     decltype(&skerry::lone_frequencies) lone_frequencies = &skerry::lone_frequencies;
     decltype(&skerry::element_stiffnesses) stiffnesses = &skerry::element_stiffnesses;
 };
 
-/// Sharpens the bound of stable_step() by shifting mass between elements. In each of four rounds the share s of an
-/// element becomes s omega / omega_max, where omega is the frequency of the element alone and omega_max the highest of
-/// these frequencies. So elements of low frequency give mass to elements of high frequency (docs/methods/stable_step.md
-/// 2.1). The bound is rigorous with any positive shares, so the shares of the rest shape serve for every shape.
-/// `mass_share`: shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
+/// Sharpens the bound of stable_step() by shifting mass from elements of low frequency to elements of high frequency
+/// (docs/methods/stable_step.md 2.1). In each of four rounds the share s of an element becomes s omega / omega_max,
+/// where omega is the frequency of the element alone, and omega_max the highest of these frequencies. The bound is
+/// rigorous with any positive shares, so the shares found for the rest shape serve for every shape. `mass_share`:
+/// shares of the blocks, set by start_mass_shares() before. Sequential, for new bodies.
 void find_mass_shares(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                       std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> mass_share);
 

@@ -23,10 +23,11 @@ LaneMat3<Real8> deformation_of(const ElementInputs& elements, std::size_t block,
 /// the element counts with |g_k|^2 times the weight, where g_k is the gradient of the element at the node.
 Real8 stiffness_weight(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F);
 
-/// Sets the initial mass_share of each element. In a body with several materials, the share is the stiffness of the
-/// material if this stiffness is not already part of the weight. The share is relative to the greatest stiffness of the
-/// body, or in Pa if the weights of elements of other materials include their stiffness. In all other cases the share
-/// is 1. Inversion barriers (guards) get 0, since they act only as implicit elements of a cluster.
+/// Sets the initial mass_share of each element. It is 1, except in these cases:
+/// - Bodies of several materials: the share of an element is the stiffness of its material, unless this stiffness is
+/// already part of the weight. It is relative to the greatest stiffness of the body, or in Pa if the weights of
+/// elements of other materials include their stiffness.
+/// - Inversion barriers (guards): 0, because they act only as implicit elements of a cluster.
 void start_mass_shares(const ElementInputs& elements, Range blocks, std::span<ElementLane> mass_share);
 
 /// Adds the stiffness of each element of a block to stiffness_sum at the nodes of the element, for lanes with
@@ -51,11 +52,12 @@ inline void clear_stiffness(const ElementInputs& elements, std::size_t block, st
         for (const Index node : nodes.node[k].lane) stiffness_sum[static_cast<std::size_t>(node)] = 0;
 }
 
-/// Upper bound of omega^2 of each element of a block [1/s^2]. The share of an element in the mass of node k is
-/// m_k = mass k_k / stiffness_sum, where k_k is the stiffness of the element at the node. Without stiffness_sum every
-/// element has the full mass of its nodes. The result is then no bound for a body, but shows the frequency of the
-/// element alone. It is NaN if F is not finite. `q` is the initial guess of the corotational frame and receives the
-/// frame found. `enough` [1/s^2]: see frequency_squared_bound().
+/// Upper bound of omega^2 of each element of a block [1/s^2]; NaN if F is not finite. The element gets the mass m_k =
+/// mass k_k / stiffness_sum from node k, where k_k is the stiffness of the element at the node.
+///
+/// Without stiffness_sum every element has the full mass of its nodes. The result is then no bound for a body, but the
+/// frequency of the element alone. `q` is the initial guess of the corotational frame and receives the frame found.
+/// `enough` [1/s^2]: see frequency_squared_bound().
 Real8 frequency_squared_of(const ElementInputs& elements, std::size_t block, const LaneMat3<Real8>& F,
                            std::span<const Real> mass, std::span<const Real> stiffness_sum, LaneQuaternion<Real8>& q,
                            Real enough = 0);

@@ -18,11 +18,11 @@ namespace skerry {
 
 namespace {
 
-// Ratio of the base of the bound to omega^2 of the requested step. Most elements of a strained body have a lower
+// Ratio of the base of the bound to omega^2 of the step `goal.longest`. Most elements of a strained body have a lower
 // omega^2 than the base.
 constexpr Real above_asked = 1.1;
-// Number of rounds of an iteration for node weights d. In the limit, the ratio of the row sum to mass times d is the
-// same for all nodes.
+// Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
+// times d would be equal at all nodes.
 constexpr int rounds = 4;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight

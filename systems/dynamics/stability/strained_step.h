@@ -17,9 +17,10 @@ struct StableStepGoal {
 std::size_t strained_step_memory(Range nodes, Range blocks);
 
 /// Stable step of the explicit elements of a body with mass forms, in the present shape [s]. The result is valid if it
-/// is longer than `goal.stable`. One common bound covers all elements whose mass forms suffice for steps near
-/// `goal.longest`. The excess of omega^2 of all other elements forms a matrix, which is bounded by its row sums.
-/// `nodes`: range of all nodes of the elements. Sequential.
+/// is longer than `goal.stable`. `nodes`: range of all nodes of the elements. Sequential.
+///
+/// One bound, the base, holds for all elements whose mass forms suffice for steps near `goal.longest`. For all other
+/// elements, the excess of omega^2 over the base forms a matrix, which is bounded by its row sums.
 Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std::span<const Vec3> position,
                    std::span<const Real> mass, const StableStepGoal& goal, std::span<Real> memory);
 
