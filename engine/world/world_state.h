@@ -49,9 +49,11 @@ struct WorldState {
     /// Throws SceneError if the call comes from a callback of advance().
     void require_between_steps(const char* call) const;
     /// Completes all pending changes: removes rows, computes derived columns of new rows, wakes sleeping bodies near
-    /// the changes, and updates the nodes that draw round bodies. It is called late, so that its cost arises once for
-    /// many changes in succession. It must be called by functions that read all rows, return the contents of rows or
-    /// ask which bodies sleep, even by const functions. Functions that only find a single row need not call it.
+    /// the changes, and updates the nodes that draw round bodies. Call it as late as possible, so that many changes in
+    /// succession are completed at once.
+    ///
+    /// Functions that read all rows, return the contents of rows or ask which bodies sleep must call it, even if they
+    /// are const. Functions that only find a single row need not call it.
     void settle();
     /// Updates the nodes that only draw round bodies. `resting`: true if some bodies fell asleep in the last step.
     void draw(bool resting = false);

@@ -8,10 +8,11 @@
 namespace skerry {
 
 /// Time in [0, 1] at which the gap between two shapes has fallen to `near` [m]; no value if the gap stays larger.
-/// `gap`: gap at time 0 [m]. `free_time(gap, time)`: duration after `time` in which the shapes certainly do not meet;
-/// infinite without motion. `gap_at(time)`: gap at a later time. The search gives up after 4096 iterations and returns
-/// the time reached. Shapes that need more iterations roll over each other at a distance too small to be resolved in a
-/// step.
+/// `gap`: gap at time 0 [m]. `gap_at(time)`: gap at a later time. `free_time(gap, time)`: duration after `time` in
+/// which the shapes certainly do not meet; infinite without motion.
+///
+/// After 4096 iterations the search gives up and returns the time reached. Shapes that need so many iterations roll
+/// over each other at a distance too small to be resolved in a step.
 std::optional<Real> advance_conservatively(Real gap, Real near, auto&& free_time, auto&& gap_at) {
     // Fraction of the free time used per iteration; the remainder keeps the shapes apart in spite of rounding errors.
     constexpr Real part = 0.9;

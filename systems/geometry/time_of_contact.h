@@ -31,12 +31,15 @@ struct KeptApart {
 };
 
 /// Time in [0, 1] at which two features are nearly in contact; no value if they stay apart. The points of the features
-/// move in straight lines from `position` by `displacement`. The gap is the distance between the features minus
-/// kept.distance. At the returned time the gap is at most `contact_slack` times the gap at the start and at most
-/// kept.near, but the features have not met yet. The time is 0 if the features touch at the start. The method is
-/// additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In addition, an iteration
-/// advances as long as a slab separates the features, so that sliding features need few iterations. After some thousand
-/// iterations the search gives up and returns the time reached as time of contact.
+/// move in straight lines from `position` by `displacement`.
+///
+/// The gap is the distance between the features minus kept.distance. At the returned time the gap is at most
+/// `contact_slack` times the gap at the start and at most kept.near, but the features have not met yet. The time is 0
+/// if the features touch at the start.
+///
+/// The method is additive conservative advancement (Li, Kaufman, Jiang 2021, Codimensional IPC, section 5). In
+/// addition, an iteration advances as long as a slab separates the features, so that sliding features need few
+/// iterations. After some thousand iterations the search gives up and returns the time reached.
 std::optional<Real> time_of_contact(FeaturePair kind, const FourPoints& position, const FourPoints& displacement,
                                     const KeptApart& kept = {});
 

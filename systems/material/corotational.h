@@ -65,11 +65,13 @@ struct Corotational {
     }
 
 private:
-    /// Returns kappa for the upper bound of dP/dF. With the rotation R nearest to F, S = R^T F and G = tr(S) I - S,
-    /// kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes X of F that rotate R. Under
-    /// compression the stiffness for these changes decreases, but is kept non-negative: a negative eigenvalue deflects
-    /// the motion and does not limit the step. The eigenvalues of G lie between mean - 2 spread and mean + 2 spread.
-    /// They are sums s_i + s_j of stretches, bounded below by 1e-3, where R is about to jump.
+    /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). With the rotation R nearest to F,
+    /// S = R^T F and G = tr(S) I - S, kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes
+    /// X of F that rotate R.
+    ///
+    /// The eigenvalues of G are sums s_i + s_j of stretches. They lie between mean - 2 spread and mean + 2 spread, and
+    /// are bounded below by 1e-3, where R is about to jump. Under compression kappa is negative, but at least -mu: the
+    /// stiffness stays non-negative, because a negative eigenvalue deflects the motion and does not limit the step.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

@@ -23,11 +23,13 @@ template <class T>
         {1.0 - (yy + zz), xy + wz, zx - wy}, {xy - wz, 1.0 - (xx + zz), yz + wx}, {zx + wy, yz - wx, 1.0 - (xx + yy)}};
 }
 
-/// One Newton step towards the rotation R that maximises tr(R^T F). With S = sym(R^T F), G = tr(S) I - S and the axial
-/// vector a of R^T F, the step changes R by the rotation vector G^-1 a. Mueller's step a / tr(S) leaves a third of the
-/// error in every pass; this step leaves the cube of the error. Returns for each lane whether no further pass is
-/// needed: the step started safely inside the basin of the maximum, and its angle was less than 2e-5 rad. `trace`:
-/// tr(R^T F) for the new R, correct to fourth order in the rotation angle.
+/// One Newton step towards the rotation R that maximises tr(R^T F). It changes R by the rotation vector G^-1 a, with S
+/// = sym(R^T F), G = tr(S) I - S and the axial vector a of R^T F. The error after the step is the cube of the error
+/// before. (Mueller's step a / tr(S) leaves a third of the error.)
+///
+/// Returns for each lane whether no further pass is needed: the step started safely inside the basin of the maximum,
+/// and its angle was less than 2e-5 rad. `trace`: tr(R^T F) for the new R, correct to fourth order in the rotation
+/// angle.
 template <class T>
 [[gnu::always_inline]] inline auto turn_towards(const LaneMat3<T>& F, LaneQuaternion<T>& q, T& trace) {
     // Square of a small rotation angle. The error after a step, the cube of this angle, is below the rounding error of

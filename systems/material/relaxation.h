@@ -108,11 +108,12 @@ inline RelaxationRates relaxation_rates(Real highest, Real span) {
     return rates;
 }
 
-/// Ratio of the stiffness of each spring to the stiffness of the material law, so that a body that vibrates freely
-/// at its lowest frequency has this loss factor eta: its amplitude falls by the factor exp(-pi eta) in a period.
-/// The lowest frequency is taken to be rates_below times the lower end of the band of rates. A mode with the motion
-/// exp(z t), where z = omega (i - eta/2), has the stiffness -z^2 of the mass, and a Maxwell element of rate r adds
-/// the fraction z / (z + r) to the stiffness of the law.
+/// Ratio of the stiffness of each spring to the stiffness of the material law. With it, a body that vibrates freely at
+/// its lowest frequency has the given loss factor eta: its amplitude falls by the factor exp(-pi eta) in a period. The
+/// lowest frequency is taken to be rates_below times the lower end of the band of rates.
+///
+/// Derivation: a mode with the motion exp(z t), where z = omega (i - eta/2), needs the stiffness -z^2 times its mass. A
+/// Maxwell element of rate r adds the fraction z / (z + r) to the stiffness of the law.
 inline Real relaxing_share(Real loss_factor, Real span) {
     const std::complex<Real> z = rates_below * std::complex<Real>(-loss_factor / 2, 1), needed = -z * z;
     std::complex<Real> added = 0;

@@ -90,9 +90,11 @@ struct StableNeoHookean {
 
     /// Adds an upper bound of dP/dF to H. With Ic = |F|^2 and J = det F, dP/dF maps a change X of F to mu (1 - 1 / (Ic
     /// + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F), where d(cof F) is
-    /// the change of cof F. The first coefficient decreases under compression and is zero at F = 0. A step length from
-    /// so small a stiffness would be too long as soon as the element expands again. The bound therefore uses at least
-    /// the value of this coefficient in the rest shape.
+    /// the change of cof F.
+    ///
+    /// The bound uses the first coefficient, but at least its value in the rest shape. The coefficient decreases under
+    /// compression and is zero at F = 0. A step length from so small a stiffness would be too long as soon as the
+    /// element expands again.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

@@ -37,8 +37,9 @@ constexpr std::size_t largest_cluster = 1024;
 /// Factor by which the elements of clusters are assumed to be stiffer than at rest when cluster matrices are computed.
 /// Steps then stay stable while strain stiffens these elements.
 constexpr Real headroom = 4;
-/// In a body with more nodes than this, clusters that fill more than most_volume_of_large of the volume are taken to be
-/// connected, and so to be larger than largest_cluster. The search for implicit elements is then left out.
+/// Bodies with more nodes than this count as large. If a step length would make more than most_volume_of_large of the
+/// volume of a large body implicit, the step length is rejected without a search: the implicit elements would probably
+/// form one cluster larger than largest_cluster.
 constexpr Index nodes_of_large = 8 * static_cast<Index>(largest_cluster);
 constexpr Real most_volume_of_large = 0.25;
 // largest ratio of the stable step with clusters to the stable step without clusters

@@ -78,8 +78,8 @@ public:
     bool rigid_modes = false;  // true: deformable bodies move only as rigid bodies
     Column<Vec3> offset;  // by contact: part of the contact velocity that is independent of the unknowns, u - J v [m/s]
 
-    // Vectors by number. present: the iterate of the motion; answered: the motion that the impulses for `present`
-    // produce; change: answered - present; step: the Newton step; before: `present` before the step [m/s, rad/s]
+    // Vectors by number [m/s, rad/s]. present: motion of the current iterate. answered: motion that the impulses for
+    // `present` produce. change: answered - present. step: Newton step. before: `present` before the step.
     Column<Real> present, answered, change, step, before;
     Column<Mat3> answer;  // by contact: derivative of the impulse that the last matrix contains
     // Data by contact. way: sliding direction for which the last matrix was built, or zero. stops: 1 if the next step

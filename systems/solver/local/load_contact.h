@@ -15,10 +15,10 @@ namespace skerry {
 Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next,
                   const SolverSettings& settings, Real h);
 
-/// Half of the change of the sliding velocity by the forces of this step, perpendicular to the sliding direction. The
-/// friction law uses the velocity at the end of the step. With this correction friction acts along the sliding
-/// direction at the middle of the step; otherwise the direction would have a first-order error. Zero if there is no
-/// friction, no sliding or no change of direction [m/s]
+/// Correction of the direction of friction [m/s]: half of the change of the sliding velocity by the forces of this
+/// step, perpendicular to the sliding direction. The friction law uses the velocity at the end of the step, whose
+/// direction has a first-order error. With the correction, friction acts along the sliding direction at the middle of
+/// the step. Zero if there is no friction, no sliding or no change of direction.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` holds the predicted
@@ -52,9 +52,9 @@ LumpedContact load_contact(const RegionInputs& inputs, Index row, std::span<cons
         contact.diagonal += weight * weight * inverse_mass;
         lightest = std::max(lightest, inverse_mass);
     }
-    // If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than the
-    // contact. The contact then counts as immovable.
-    // Least ratio of the mobility to the greatest inverse mass, about a squared weight.
+    // Least ratio of the mobility to the greatest inverse mass for a movable contact. The ratio is about a squared
+    // weight. If all weights of moving nodes are below 1e-6, these nodes would have to move a million times faster than
+    // the contact, which then counts as immovable.
     constexpr Real smallest_share = 1e-12;
     if (contact.diagonal <= smallest_share * lightest) contact.node_count = 0;
     contact.inverse_diagonal = contact.node_count > 0 ? 1 / contact.diagonal : 0;

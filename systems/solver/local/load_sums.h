@@ -38,9 +38,9 @@ struct LoadSums {
     }
 };
 
-/// Scale by which the error e_nat is divided. It excludes velocities that no impulse stops, such as sliding
-/// (docs/methods/errors.md 2.1, 2.2). With them, the allowed error per step would not decrease with the step length for
-/// sliding or slightly open contacts, and these errors would add up over the steps [sqrt(J)]
+/// Scale by which the error e_nat is divided [sqrt(J)] (docs/methods/errors.md 2.1, 2.2). It excludes velocities that
+/// no impulse stops, such as sliding. If the scale included them, the allowed error of sliding or slightly open
+/// contacts would not decrease with the step length. The errors of many short steps would then add up.
 Real error_scale(const LoadSums& sums, Real gravity, Real h, Real tolerance);
 
 }  // namespace skerry

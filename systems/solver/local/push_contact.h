@@ -11,17 +11,17 @@
 
 namespace skerry {
 
-/// Penetrations smaller than this depth are not corrected. A resting contact solved to a tolerance of 1e-3 sinks by at
-/// most g h^2 / 1000 per step, so the first term is the drift of a hundred steps. The second term is the rounding error
-/// of positions some kilometres from the origin [m]
+/// Depth below which penetrations are not corrected [m]. The first term is the drift of a hundred steps: a resting
+/// contact solved to a tolerance of 1e-3 sinks by at most g h^2 / 1000 per step. The second term is the rounding error
+/// of positions some kilometres from the origin.
 inline Real push_slop(Real gravity, Real h) {
     constexpr Real of_kick = 0.1, rounding = 1e-12;  // fraction of g h^2; rounding error of positions [m]
     return of_kick * gravity * h * h + rounding;
 }
 
-/// Correction speed v for a penetration `depth`. One upper bound makes m v^2 / 2 half a thousandth of the work of
-/// lifting the mass m by `depth`; this bound is at least a hundredth of recovery_speed (docs/methods/contact.md 3.4)
-/// [m/s]
+/// Speed at which a penetration `depth` is corrected [m/s] (docs/methods/contact.md 3.4). One of its upper bounds
+/// limits the kinetic energy m v^2 / 2 to half a thousandth of the work of lifting the mass m by `depth`. This bound is
+/// at least a hundredth of recovery_speed.
 inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth, Real h) {
     // Bounds of the speed, as fractions of sqrt(gravity depth) and of recovery_speed.
     constexpr Real of_fall = 0.03, of_limit = 0.01;
@@ -29,17 +29,17 @@ inline Real push_speed(const SolverSettings& settings, Real gravity, Real depth,
     return std::min({settings.recovery * depth / h, settings.recovery_speed, cheap});
 }
 
-/// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n. A negative bias requests a push.
-/// A contact that does not penetrate requests no push, even if the velocity solve left an error. A region without
-/// penetration thus gets zero pseudo velocities, alone or within a larger region. `normal_velocity` is u_n, the normal
-/// velocity of the solved contact [m/s]
+/// Returns the bias b of the condition p_n + b >= 0 on the normal pseudo velocity p_n [m/s]. `normal_velocity`: u_n,
+/// the normal velocity of the solved contact. A negative bias requests a push. A contact that does not penetrate
+/// requests none, even if the velocity solve left an error. So a region without penetration gets zero pseudo
+/// velocities, alone or within a larger region.
 inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSettings& settings, Real gravity, Real h) {
     if (gap < -slop) return normal_velocity - push_speed(settings, gravity, -gap, h);
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap also shrinks by rotation. `loss` is the speed of this shrinking, below 0; the contact
-/// velocity does not include it. The push compensates the part of the loss that the gap cannot absorb [m/s]
+/// Bias of a contact whose gap also shrinks by rotation [m/s]. `loss`: the negative speed of this shrinking, which the
+/// contact velocity does not include. The push compensates the part of the loss that the gap cannot absorb.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;

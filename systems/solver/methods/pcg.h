@@ -15,10 +15,11 @@ SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta 
 
 /// The solver of Lazarevych et al. (2010): conjugate gradients, then projected Gauss-Seidel from the best iterate, with
 /// at most max_iterations in total. All convergence comes from the second phase (docs/methods/region_solver.md 5.1).
+/// The final impulse is the last one if it converged, otherwise the best one of both phases.
+///
 /// The first phase ends by criterion (20) or (21), by its error, after as many iterations as there are scalar rows, or
-/// after half of max_iterations. The second phase ends by its error. The error replaces (20) and (21) so that a
-/// tolerance means the same for all methods (docs/methods/contact.md 5.7). The final impulse is the last one if it
-/// converged, otherwise the best one of both phases.
+/// after half of max_iterations. The second phase ends by its error, which replaces (20) and (21) so that a tolerance
+/// means the same for all methods (docs/methods/contact.md 5.7).
 SolveResult solve_pcg_pgs(AnyOperator& op, const SolveLimits& limits,
                           ConjugateBeta formula = ConjugateBeta::polak_ribiere);
 

@@ -266,10 +266,11 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 }  // namespace
 
-/// Evaluates a motion. Sets the impulses to P( start - u / (softness D) ), where u is the contact velocity of `present`
-/// and P is Coulomb's law. Updates the velocities of the region and `answered` to the motion that these impulses
-/// produce. With d = answered - present it sets the right-hand side to K d and returns the merit d . K d [J]. Unless
-/// `wanted` is `value`, it also builds the matrix. If `wanted` is `turns`, it also marks contacts whose sliding
+/// Evaluates the motion `present`. Sets the impulses to P( start - u / (softness D) ), with the contact velocity u and
+/// Coulomb's law P. Sets the velocities of the region and `answered` to the motion that these impulses produce. With d
+/// = answered - present, sets the right-hand side to K d and returns the merit d . K d [J].
+///
+/// Unless `wanted` is `value`, also builds the matrix. If `wanted` is `turns`, also marks contacts whose sliding
 /// direction is opposite to that in the last matrix; stop_turned then changes their equations.
 Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4> start, Evaluation wanted) {
     const bool with_matrix = wanted != Evaluation::value;
@@ -293,10 +294,10 @@ Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4>
     return lack;
 }
 
-/// Changes the right-hand side for contacts whose sliding direction reversed. Such a contact has passed through
-/// sticking, and for hard contacts the velocity range of sticking is small. A Newton step for sliding would pass it
-/// again and again. The matrix therefore treats these contacts as sticking, and the right-hand side uses the impulse
-/// that would stop them.
+/// Changes the right-hand side for contacts whose sliding direction has reversed. The velocity of such a contact has
+/// passed through sticking, whose range of velocities is small for hard contacts. Newton steps for sliding would jump
+/// over this range again and again. So the matrix treats these contacts as sticking, and the right-hand side contains
+/// the impulses that would stop them.
 void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> start) {
     for (Index i = 0; i < size(); ++i) {
         const auto at = static_cast<std::size_t>(i);

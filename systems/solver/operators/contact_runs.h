@@ -1,7 +1,9 @@
-// Sweeps over contacts on implicit bodies. An impulse on a node moves all touched nodes of its body, but only the nodes
-// of the next contacts need their new velocity at once (docs/methods/implicit_bodies.md 4). A run is a sequence of
-// consecutive contacts with few nodes. During a run, impulses move only the nodes of the run. At its end, the sums of
-// the impulses by node move all other nodes. The result is that of a plain sweep, up to rounding.
+// Sweeps over contacts on implicit bodies (docs/methods/implicit_bodies.md 4).
+//
+// An impulse on a node moves all touched nodes of its body, but the next contacts of a sweep need only the new
+// velocities of their own nodes. So the contacts are divided into *runs*: sequences of consecutive contacts with few
+// nodes. During a run, impulses move only the nodes of the run. At its end, the sums of the impulses by node move all
+// other nodes. The result is that of a plain sweep, up to rounding.
 #pragma once
 
 #include <array>

@@ -8,11 +8,14 @@
 
 namespace skerry {
 
-/// Contacts are solved for straight motion of their points. Points on the axis of a capsule or on the surface of a
-/// cylinder deviate from straight motion: a spinning capsule that is pressed rotates its ends further towards the
-/// touched surface. In each step this loss would use up part of the contact distance (docs/methods/rigid_bodies.md
-/// 6.2). In joints, locked rows hold during the push, and axes stay within their limits for push and step together. The
-/// joint impulses of the push are stored in slot 0 of the workspace, which the method no longer needs.
+/// Parts of the split impulse that compensate rotation, and parts that hold joints.
+///
+/// Contacts are solved for straight motion of their points, but points on the axis of a capsule or on the surface of a
+/// cylinder move on arcs. A spinning capsule that is pressed rotates its ends further towards the touched surface. In
+/// each step this loss would use up part of the contact distance (docs/methods/rigid_bodies.md 6.2).
+///
+/// In joints, locked rows hold during the push, and axes stay within their limits for push and step together. The joint
+/// impulses of the push are stored in slot 0 of the workspace, which the method no longer needs.
 class PushedBodies {
 public:
     /// `row` lists the contacts, `rigid` the rigid bodies of the region. The contact impulses on the bodies must

@@ -56,10 +56,12 @@ PushMemory push_memory(const RegionStage& stage, Index base, std::size_t count);
 /// 2.6) [J]
 Real dissipated_by(const RegionStage& stage, Index row);
 
-/// Work against the forces of the step when nodes are displaced by h p, where p are the pseudo velocities in
-/// memory.scratch. Contact forces are not included. The force on a node times h is the change of momentum of the node
-/// minus its contact impulses; for nodes of clusters this impulse is in the inputs. The work is accurate to first order
-/// in h p. `own_masses`: the region has neither clusters nor bodies [J]
+/// Work against the forces of the step when nodes are displaced by h p, with the pseudo velocities p in memory.scratch
+/// [J]. Contact forces are not included. The work is accurate to first order in h p. `own_masses`: true if the region
+/// has neither clusters nor bodies.
+///
+/// The force on a node times h is the change of momentum of the node minus its contact impulses; for nodes of clusters
+/// this impulse is in the inputs.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry
