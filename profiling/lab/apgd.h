@@ -90,8 +90,8 @@ private:
     }
 
     // Growth of the steepness after a step that was too long: at least `steeper`, and to `beyond_curvature` times the
-    // measured curvature. The paper doubles it, and reduces it by a tenth per step. Smaller factors reject fewer steps
-    // (docs/methods/region_solver.md 5.3).
+    // measured curvature. The paper doubles it, and reduces it by a tenth per step. Smaller factors reject fewer
+    // steps.
     static constexpr Real beyond_curvature = 1.05, steeper = 1.2;
     static constexpr Real forgotten = 0.97;  // factor of the steepness after each accepted step
 

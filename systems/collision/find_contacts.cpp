@@ -16,7 +16,7 @@ namespace skerry {
 
 namespace {
 
-// Work of one block, in units of the test of one candidate between two surfaces. Each pair adds a fixed amount of work.
+// Work of one block. The unit is the test of one candidate between two surfaces. Each pair adds a fixed amount of work.
 // A candidate against a collider counts several times, because it is tested in every step and not in groups of eight. A
 // block takes a microsecond if no candidate can touch in this step, and a hundred microseconds if all candidates must
 // be tested.
@@ -38,12 +38,12 @@ bool body_stands_still(const CollisionInputs& inputs, Index body) {
     return inputs.body.asleep[body] != 0;
 }
 
-/// Work of testing one candidate of a pair, in units of the test of one candidate between two surfaces.
+/// Work of testing one candidate of a pair. The unit is the test of one candidate between two surfaces.
 Index work_of_one(const PairTable& pairs, std::size_t p) {
     return pairs.kind[p] == PairKind::collider ? candidates_worth_of_one_at_collider : 1;
 }
 
-/// Work of testing all candidates of a pair, in units of the test of one candidate between two surfaces.
+/// Work of testing all candidates of a pair. The unit is the test of one candidate between two surfaces.
 std::int64_t work_of(const PairTable& pairs, std::size_t p) {
     const Index count = pairs.looked_at[p];
     return count == 0 ? 0 : std::int64_t{count} * work_of_one(pairs, p) + candidates_worth_of_a_pair;

@@ -57,7 +57,8 @@ void for_each_awake(const CollisionSettings& settings, const PairTable& pairs, I
         if (!(travel_bound < asleep_until[static_cast<std::size_t>(c)])) test(c);
 }
 
-/// Distance up to which features must be tested closely if the partners approach by `closing` in this step [m].
+/// Distance of two features below which they must be tested closely, if the partners approach by `closing` in this step
+/// [m].
 inline Real near_distance(const PairScale& scale, Real closing) {
     return scale.contact_distance + (closing >= 0 ? closing : 0);
 }

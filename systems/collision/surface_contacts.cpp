@@ -177,7 +177,7 @@ void SurfaceContacts::measure_distances(FeaturePair kind) {
     }
 }
 
-/// Sorts out the candidates of a pair that cannot touch at the greatest speeds of the two bodies, and tests the others.
+/// Removes the candidates of a pair that cannot touch at the greatest speeds of the two bodies, and tests the others.
 /// Stores the travel up to which each candidate needs no further test.
 void SurfaceContacts::test_pair(const AwakePair& awake) {
     const Index p = awake.pair;

@@ -18,7 +18,7 @@ constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // costs of loading, measuring the warm start and writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;
 constexpr Real largest_task = 50, smallest_task = 4;  // starting a task costs about 1 microsecond
-// With this number of tasks, the last worker finishes late by at most an eighth of the total time.
+// Number of tasks per worker. With so many tasks, the last worker finishes late by at most an eighth of the total time.
 constexpr Real tasks_per_worker = 4;
 
 constexpr Real no_history = -1;

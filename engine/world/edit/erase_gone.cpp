@@ -121,7 +121,7 @@ private:
     OfBodyTables<Index> down_;
 };
 
-/// Removes the records of removed rows from a list with one record per row.
+/// Removes the records of removed table rows from a list that has one record for each row of the table.
 template <class Record>
 void erase_records(std::span<const Index> row_now, std::vector<Record>& records) {
     std::size_t row = 0;

@@ -235,8 +235,8 @@ Real scan(const Along& along, bool convex, auto&& visit) {
         const Real high = static_cast<Real>(i) / intervals;
         const SurfacePoint after = along.at(high);
         const Real falls = along.slope(before), rises = along.slope(after), length = along.length() / intervals;
-        // For a convex part, the tangents of the distance at both ends of the interval give a lower bound. For other
-        // parts, the length of the interval gives a lower bound.
+        // Lower bound of the distance in the interval. For a convex part it follows from the tangents at both ends, for
+        // other parts from the distances at both ends and the length of the interval.
         const Real bound = convex ? std::max(before.distance + std::min(Real(0), falls) * length,
                                              after.distance - std::max(Real(0), rises) * length)
                                   : 0.5 * (before.distance + after.distance - length);

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-// Vectors shorter than this have no reliable direction because of rounding errors, so a fixed direction is used instead
+// A vector shorter than this has no reliable direction because of rounding errors; a fixed direction is used instead
 // [m].
 constexpr Real min_length = 1e-14;
 

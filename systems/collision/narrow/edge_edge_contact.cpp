@@ -75,7 +75,7 @@ public:
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The bend is the same if it is measured from the second face.
+        // The bend between both faces is the same if it is measured from the second face.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;

@@ -192,8 +192,8 @@ Real check_elements(const CheckInputs& state, std::size_t block, std::span<const
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];
-    // nonzero if a node is marked in `beside_fast`; tested first, because computing gradients takes over half of the
-    // time of a block
+    // nonzero if a node of the block is marked in `beside_fast`. This test comes first, because the gradients take over
+    // half of the time of a block.
     unsigned marked = 0;
     for (Index k = 0; k < count; ++k)
         for (const Index n : state.element_node[first + static_cast<std::size_t>(k)].lane)

@@ -99,8 +99,7 @@ void measure_reactions(const ReactionInputs& inputs, Real kick, const Vec3& mome
     Index last = no_index;
     for (std::size_t a = 0; a < count; ++a) {
         const Index body = inputs.attached_body[a];
-        // Attachments of one body need not be adjacent, so the function handles a body at the first attachment of the
-        // body.
+        // The attachments of a body need not be adjacent. A body is handled at its first attachment.
         bool done = body == last || !counts(inputs, body) || !(inputs.cluster_step[static_cast<std::size_t>(body)] > 0);
         for (std::size_t earlier = 0; earlier < a && !done; ++earlier) done = inputs.attached_body[earlier] == body;
         if (!done) add_implicit_elements(inputs, static_cast<std::size_t>(body), kick, node_impulse);

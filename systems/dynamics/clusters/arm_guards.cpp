@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-// Ratio of the assumed modulus of an inactive inversion barrier (guard) to the stiffness k of the barrier
-// (docs/methods/elasticity.md 7.7). The ratio is small so that the added inertia is negligible at ordinary strain.
+// Assumed modulus of an inactive inversion barrier (guard), divided by the stiffness k of the barrier
+// (docs/methods/elasticity.md 7.7). It is so small that the added inertia is negligible at ordinary strain.
 constexpr Real modulus_at_rest = 0.01;
 
 /// True if a tetrahedron has moving corners and all its moving corners belong to one cluster.

@@ -33,7 +33,7 @@ void sort_unique(std::vector<Index>& nodes) {
 void list_nodes(std::span<const Index> nodes, Index body, UnionFind& sets, NodeClusters& clusters) {
     const auto first = static_cast<Index>(clusters.body.size());
     for (const Index n : nodes) {
-        const Index root = sets.root(n);  // smallest node of the set, which the loop therefore visits first
+        const Index root = sets.root(n);  // smallest node of the set; the loop visits it before the other nodes
         if (root == n) {
             clusters.cluster_of[n] = static_cast<Index>(clusters.body.size());
             clusters.body.push_back(body);

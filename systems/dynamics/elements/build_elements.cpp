@@ -55,7 +55,8 @@ ElementPlaces find_places(const ElementList& list, std::span<const Vec3> rest_po
     const std::vector<Vec3> centre = centres_of(list, rest_position);
     std::vector<Index> order(list.size());
     std::iota(order.begin(), order.end(), 0);
-    // Inversion barriers get patches of their own, so that inactive barriers change no sum of other elements.
+    // Inversion barriers get patches of their own. Inactive barriers then do not change the order in which the forces
+    // of other elements are summed.
     const auto group_of = [&](Index e) { return list.part[static_cast<std::size_t>(e)] == ElementPart::guard; };
     std::ranges::stable_sort(order, {}, group_of);
     std::vector<std::size_t> patch_size;

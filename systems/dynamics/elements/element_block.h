@@ -34,9 +34,9 @@ struct PatchRows {
     }
 };
 
-/// Corner: positions of one corner of several elements, as many as a kernel computes at once, in the order that the
-/// transposes below need. A full-width load per position and a few shuffles replace three gathers, each of which costs
-/// one load per lane.
+/// Corner: positions of one corner of several elements, as many as fit into a register, in the order that the
+/// transposes below need. One full-width load per position and a few shuffles replace three gathers, each of which
+/// takes one load per lane.
 #ifdef __AVX512VL__
 /// Each entry holds (x, y, z, next node's x) of two lanes: 0 and 4, 1 and 5, 2 and 6, 3 and 7.
 struct Corner {
@@ -216,7 +216,7 @@ inline LaneMat3<Real8> deformation_gradient(const BlockNodes& block, std::span<c
     return joined([&](std::size_t part) { return deformation_gradient(block, part, position); });
 }
 
-/// Copies matrices number by number. A rare call gets the copy, so that the original can stay in registers.
+/// Copies matrices number by number. A rare call gets the copy, so that the original stays in registers.
 template <class T>
 [[gnu::always_inline]] inline Parts<LaneMat3<T>> copy_of_parts(const Parts<LaneMat3<T>>& of) {
     Parts<LaneMat3<T>> copy;

@@ -79,7 +79,7 @@ private:
     std::vector<MaterialConstants> material_;
     bool any_bends_ = false;
     Real strain_by_displacement_ = 0;
-    // For each pair of nodes of an element: index of their block in the matrix, element by element.
+    // For each element and each pair of its nodes: index of the matrix block that couples both nodes.
     std::vector<Index> block_;
     std::vector<Vec3> turned_;  // work memory: shape gradients of one element in principal axes
 };

@@ -62,8 +62,8 @@ struct LargeStep {
 /// (docs/methods/implicit_bodies.md 9).
 struct LongStep {
     Real done = 0;  // elapsed time of the long step; 0 outside of a long step [s]
-    // Ratio of the elapsed time of the long step, at the end of this short step, to the length of this short step; 0 in
-    // an ordinary step.
+    // Time from the start of the long step to the end of this short step, divided by the length of this short step; 0
+    // in an ordinary step.
     Real weight = 0;
     bool rests = false;  // true if the body is asleep in this short step
     // Values at the start of the long step:

@@ -12,9 +12,9 @@ namespace skerry {
 
 namespace {
 
-/// Collects the groups of tetrahedra that the elements cover. `first_alike`: for each item, the first item of the
-/// same group, where item i belongs to tetrahedron i / items_of_tetrahedron. Groups are ordered by their first items,
-/// so that neighbouring elements stay close in memory. The tetrahedra of a group ascend.
+/// Collects the groups of tetrahedra that the elements cover. Item i belongs to tetrahedron i / items_of_tetrahedron,
+/// and `first_alike[i]` is the first item of the same group. Groups are ordered by their first items, so that
+/// neighbouring elements stay close in memory. The tetrahedra of a group ascend.
 Ragged<Index> groups_of(std::span<const Index> first_alike, Index items_of_tetrahedron) {
     std::vector<Index> group(first_alike.size());
     Ragged<Index> groups;

@@ -76,8 +76,8 @@ NodeBlockSums sum_block(const DampingInputs& bodies, std::size_t block, std::spa
     return sums;
 }
 
-/// Adds up the block sums of a body and writes the result to the entry of its first block. Momentum is then in the
-/// world frame; second moments and angular momentum are about the centre of mass.
+/// Adds up the sums over the blocks of a body, and writes the total to the entry of its first block. In the total,
+/// momentum is in the world frame; second moments and angular momentum are about the centre of mass.
 void add_up_body(const DampingInputs& bodies, std::size_t body, std::span<const Vec3> velocity,
                  std::span<NodeBlockSums> sums) {
     const Range blocks = bodies.body_node_blocks[body];
@@ -142,8 +142,8 @@ void damp_free(const DampedTowards& rigid, std::size_t count, const Vec3* positi
         next[3 * n] -= fraction * ex;
         next[3 * n + 1] -= fraction * ey;
         next[3 * n + 2] -= fraction * ez;
-        // The removed energy is m v^2/2 before minus m v^2/2 after damping. The deformation velocity is not quite
-        // orthogonal to the rigid motion if positions and velocities belong to different times.
+        // The removed energy is the difference of m v^2/2. It cannot be computed from the deformation velocity alone,
+        // which is not quite orthogonal to the rigid motion if positions and velocities belong to different times.
         work[n] = mass[n] * fraction * (ex * (vx - half * ex) + (ey * (vy - half * ey) + ez * (vz - half * ez)));
     }
 }

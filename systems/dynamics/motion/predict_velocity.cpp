@@ -91,8 +91,8 @@ private:
     [[gnu::always_inline]] void add(std::size_t n, const Vec3& sum) const {
         Vec3 total = sum + nodes.mass[n] * nodes.gravity;
         if (!nodes.load.empty()) total += nodes.load[n];
-        // The branch is used instead of a product with zero: a pinned node must not move even if the force on the node
-        // is not finite.
+        // A branch is used instead of a product with the inverse mass 0: a pinned node must not move even if the force
+        // on the node is not finite.
         if (nodes.inverse_mass[n] > 0) {
             velocity_next[n] = velocity[n] + (seconds * nodes.inverse_mass[n]) * total;
         } else {

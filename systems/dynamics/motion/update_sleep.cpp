@@ -88,7 +88,7 @@ void mark_pressed(const PressInputs& contacts, Column<std::uint8_t>& pressed) {
 bool wake_bodies(const TouchInputs& touches, std::span<const std::uint8_t> pressed,
                  std::span<const Index> attached_body, std::span<const RigidMotion> attached_motion,
                  std::span<std::uint8_t> asleep, std::span<Real> still_time) {
-    // The function returns early because the update of positions waits for it.
+    // The usual case returns early, because the update of positions waits for this function.
     if (std::ranges::all_of(asleep, [](std::uint8_t each) { return each == 0; })) return false;
     bool any = false;
     const auto wake = [&](Index body) {

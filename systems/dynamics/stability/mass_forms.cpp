@@ -139,7 +139,7 @@ public:
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
         share(groups);
-        constexpr Real above = 1.005;  // margin for modes that the vectors have not found yet
+        constexpr Real above = 1.005;  // factor above 1, for modes that the vectors have not found yet
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {
@@ -226,7 +226,7 @@ private:
     /// Moves Z by the fraction `part` towards the square root of the sum of grad v grad v^T over the iterated vectors v
     /// (estimates of the highest modes). Z and the square root are scaled to trace 1.
     void follow(Real part) {
-        constexpr Real even = 0.03;  // fraction of the isotropic part in the target
+        constexpr Real even = 0.03;  // weight of the isotropic matrix that is mixed into the target of Z
         for (std::size_t i = 0; i < form_.size(); ++i) {
             const std::size_t b = first_block() + i;
             const BlockNodes nodes = elements_.nodes_of(b);

@@ -139,8 +139,8 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
-/// Limit on the bound with frame masses, as a multiple of the bound at rest. Below this limit the bounds with mass
-/// forms and mass shares are not computed, because they are hardly sharper.
+/// Largest ratio of the bound with frame masses to this bound at rest for which the other bounds (mass forms, mass
+/// shares) are not computed. Below this ratio they are hardly sharper.
 constexpr Real well_in_frame = 1.25;
 
 /// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) must divide the blocks of a wave

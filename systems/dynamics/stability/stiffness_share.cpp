@@ -23,7 +23,8 @@ LaneMat3<Real8> inverse_mass_tensor(const ElementInputs& elements, std::size_t b
         Real8 inverse{};
         for (std::size_t l = 0; l < element_lanes; ++l) {
             const std::size_t n = static_cast<std::size_t>(nodes.node[k][l]);
-            // A node without mass never moves. A node without stiffness is padding, or the element does not act on it.
+            // A node without mass never moves. A node without stiffness is padding, or the element exerts no force on
+            // it.
             if (!(mass[n] > 0 && elements.volume[block][l] > 0)) continue;
             if (stiffness_sum.empty())
                 inverse[l] = 1 / mass[n];
@@ -59,9 +60,9 @@ Real8 bound_of(const ElementInputs& elements, std::size_t block, const LaneMat3<
         return frequency_squared_bound(material, F, {}, volume, Q, q, enough, sharpness, frame) + nothing;
     ViscousPart viscous = viscous_part(elements, block, F);
     const auto count_in = [&](const Real8& step) { count_springs(elements, block, step, viscous); };
-    // Most elements are stable at the step that other elements allow. The exact bound of these elements is not needed.
-    // With unrelaxed springs almost no element would pass this test, since all elements allow about the same step at
-    // rest.
+    // Most elements are stable at the step that other elements allow, so their exact bounds are not needed. This quick
+    // test would fail for nearly all elements with unrelaxed springs, since all elements at rest allow about the same
+    // step.
     if (enough > 0) {
         count_in(Real8{} + step_times_frequency / std::sqrt(enough));
         const Real8 compared =

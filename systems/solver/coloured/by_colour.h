@@ -14,8 +14,8 @@
 
 namespace skerry {
 
-/// Number of rows in one block of a parallel loop over nodes, or over contacts that have no order yet. Copying so many
-/// rows of 32 bytes takes several times as long as claiming the block.
+/// Number of rows in one block of a parallel loop over nodes, or over contacts that are not ordered yet. Copying so
+/// many rows of 32 bytes takes several times as long as claiming the block.
 inline constexpr std::size_t row_block = 256;
 
 inline Index row_block_count(std::size_t rows) {

@@ -11,9 +11,9 @@ constexpr Index colour_limit = 64;  // bits of ColouringMemory::colours_used
 // Bin of the tail (contacts without a colour); the bins of the hubs (nodes with many contacts) follow.
 constexpr Index tail_bin = colour_limit;
 
-/// Number of blocks into which the contacts of one colour are divided. A block has at most 64 contacts. The number of
-/// blocks is a power of two or a multiple of 16, so that 2, 4, 8 or 16 workers get equal numbers of blocks. A worker
-/// solves a block in a microsecond and claims a block in a twentieth of a microsecond.
+/// Number of blocks into which the contacts of one colour are divided. A block has at most 64 contacts: solving it
+/// takes a microsecond, claiming it a twentieth of that. The number of blocks is a power of two or a multiple of 16, so
+/// that 2, 4, 8 or 16 workers get equal numbers of blocks.
 Index blocks_of_colour(Index contacts) {
     // `even`: greatest number of workers among which the blocks of a phase can be divided evenly
     constexpr std::uint32_t most_contacts = 64, even = 16;

@@ -171,8 +171,8 @@ void solve_upper(const DenseBlock& factors, Index begin, Index end, const DenseB
     }
 }
 
-/// Calls `of(begin, count)` for ranges of columns of b, skipping gaps of at least eight zero columns. Columns are zero
-/// for nodes without a pressed contact, which do not couple to other bodies.
+/// Calls `of(begin, count)` for ranges of columns of b, without gaps of at least eight zero columns. Zero columns come
+/// from nodes without a pressed contact, which do not couple to other bodies.
 void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
     constexpr Index gap = 8;
     const auto counts = [&](Index k) {
@@ -194,8 +194,8 @@ void for_each_run_of_columns(const DenseBlock& b, auto&& of) {
 void subtract_dense_product(const DenseBlock& a, const DenseBlock& b, const DenseBlock& c) {
     Index row = 0;
     for (; row + 8 <= c.rows; row += 8) {
-        // In the eight rows from `row` on, only a few consecutive columns of a are nonzero: contacts couple each node
-        // of a face to a few consecutive nodes of the other face.
+        // Only a few consecutive columns of a are nonzero in the eight rows from `row` on, because contacts couple each
+        // node of a face to a few consecutive nodes of the other face.
         const auto [first, last] = columns_that_count(a, row);
         multiply_rows<Real8>(a.part(0, first, a.rows, last - first), b.part(first, 0, last - first, b.columns), c, row,
                              take_off);

@@ -101,9 +101,8 @@ struct ImplicitInputs {
         const auto r = static_cast<std::size_t>(body);
         return rotation[r] * (axes[r].transpose() * velocity[static_cast<std::size_t>(row)]);
     }
-    /// Change of a node's velocity by the kick (the forces of the step) on the deformation of its implicit body, in
-    /// world axes; zero for nodes of other bodies. The change comes from elastic forces. If the body is in equilibrium,
-    /// the contact impulses cancel this change [m/s]
+    /// Change of a node's velocity by the kick on the deformation of its implicit body, in world axes [m/s]; zero for
+    /// nodes of other bodies. It comes from elastic forces. In a body at rest, contact impulses cancel this change.
     Vec3 thrown(Index node, const RigidNodes& nodes) const {
         const Index row = this->row(node, nodes);
         if (row == no_index) return Vec3::Zero();

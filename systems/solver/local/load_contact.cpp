@@ -45,8 +45,8 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
     const auto [before, coming] = around_kick(inputs, row, velocity_next);
     const Real approach = before.dot(inputs.normal[row]);
     // A contact is an impact only if its approach speed clearly exceeds the velocity change by the forces of one step
-    // (docs/methods/contact.md 3.2). Weight alone gives a resting contact the speed g h. Elastic forces can push a node
-    // down in every step, and rebounds would then make the node bounce forever.
+    // (docs/methods/contact.md 3.2). The weight alone gives a resting contact the speed g h, and elastic forces can
+    // press on a node in every step. If such contacts rebounded, the node would bounce forever.
     const Real thrown = std::abs(coming.dot(inputs.normal[row]) - approach);
     constexpr Real clearly = 2;  // least ratio of the approach speed of an impact to the velocity change by forces
     const Real slowest_impact = std::max({settings.restitution_speed, clearly * inputs.gravity * h, clearly * thrown});

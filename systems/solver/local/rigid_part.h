@@ -40,7 +40,7 @@ struct RigidPart {
     Columns3 mobility;  // W_ii [1/kg]
     Columns3 frame;     // contact frame; its columns are the normal and two tangents
     LocalBlock block;   // W_ii in the contact frame, prepared for solve_block
-    Real along_normal;  // n W_ii n for the normal n, with deformable bodies taken as rigid [1/kg]
+    Real along_normal;  // n W_ii n for the normal n if deformable bodies were rigid [1/kg]
     Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
 };
 

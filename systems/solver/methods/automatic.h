@@ -64,8 +64,8 @@ SolveResult take_newton_steps(Op& op, Real error, Real tolerance, Index limit) {
     }
 }
 
-/// Alternates a few sweeps with coarse corrections by rigid-body modes, as long as the corrections reduce the error
-/// enough. Adds the number of Newton steps to `steps`.
+/// Alternates a few sweeps with coarse corrections by rigid-body modes, while the corrections reduce the error enough.
+/// `steps` grows by the number of Newton steps taken.
 template <HasNewtonSteps Op>
 SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedSweeps<Op>& sweeps,
                                        const SolveLimits& limits, Index& steps) {
@@ -94,7 +94,7 @@ SolveResult alternate_with_rigid_modes(Op& op, ErrorTest<Op>& test, AcceleratedS
 /// the Newton steps fail, the next group of sweeps is twice as long.
 template <TakesNewtonSteps Op>
 SolveResult solve_automatic(Op& op, const SolveLimits& limits) {
-    // Newton steps support only the friction cone.
+    // Newton steps do not support the friction pyramid.
     if (limits.fixed_iterations || op.law() != Friction::cone) return solve_ags(op, limits);
     ErrorTest<Op> test(op, limits);
     AcceleratedSweeps<Op> sweeps(op, test, limits.relaxation);

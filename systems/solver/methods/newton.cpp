@@ -103,8 +103,8 @@ private:
     /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) and the right-hand side -F. The right-hand side includes
     /// the impulse change of the opening contacts.
     void fill_equations() {
-        // If sticking contacts support each other, several distributions of their impulses are solutions. A small
-        // multiple of the identity selects one. It changes the steps but not the solution.
+        // If sticking contacts support each other, their impulses are not unique, and the matrix is singular. A small
+        // multiple of the identity selects one solution. It changes the steps but not the solution.
         constexpr Real redundancy = 1e-8;
         const std::vector<Index>& active = memory_.active;
         for (std::size_t a = 0; a < active.size(); ++a) {

@@ -45,7 +45,7 @@ SolveResult run_conjugate_gradients(AnyOperator& op, const SolveLimits& limits, 
                                     ConjugateBeta formula, ErrorTest<AnyOperator>& test) {
     if (test.ends(0)) return test.result();
     if (limits.fixed_iterations && test.result().error > suspicious_start) {
-        // The warm start has not been compared with zero impulses yet.
+        // With a fixed number of iterations, the warm start has not been compared with zero impulses yet.
         std::ranges::fill(op.impulse(), Vec4::Zero());
         op.refresh();
         if (test.ends(0)) return test.result();

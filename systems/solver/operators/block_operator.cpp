@@ -132,8 +132,8 @@ inline Real BlockOperator::step(Index i, Real relaxation) {
     if (change.isZero(0)) return 0;
     memory_.impulse[place] = next;
     const Real size = change.dot(times(contact.diagonal, change));
-    // |F|^2, the squared natural map for rho = 1, is estimated by the squared impulse change or by the squared velocity
-    // change that it causes, whichever is smaller.
+    // Estimate of |F|^2, the squared natural map for rho = 1: the smaller of the squared impulse change and the squared
+    // velocity change that it causes.
     swept_ += std::min(change.squaredNorm(), mobility(i) * size);
     return size;
 }

@@ -72,8 +72,8 @@ Index BodyOperator::name_of_node(Index node) const {
     return static_cast<Index>(memory_.velocity.size()) + walk_.owner(node);
 }
 
-/// Groups the unknowns into parts. A part is a rigid body, or those nodes of a deformable body that touch the same
-/// other body. Nodes of a part couple only to nodes of these two bodies.
+/// Groups the unknowns into parts, which are the blocks of the matrix. A part is a rigid body, or those nodes of a
+/// deformable body that touch the same other body. Nodes of a part couple only to nodes of these two bodies.
 void BodyOperator::list_parts(BodyEquations& equations) const {
     Column<Unknown>& unknown = equations.unknown();
     BlockFactor& factor = equations.factor();
@@ -161,8 +161,8 @@ BodyEquations& BodyOperator::list_equations(BodyEquations& equations) {
     Real work = equations.factor().work();
     for_each_body(equations.unknown(), [&](std::size_t begin, std::size_t end) {
         const Real numbers = 3 * static_cast<Real>(end - begin);
-        // Inverting the response matrix of a body has this cost. It arises once, so a tenth is counted for each of
-        // about ten steps.
+        // The response matrix of a body is inverted once for about ten Newton steps, so a tenth of the cost counts for
+        // each step.
         if (deforms(equations.unknown()[begin])) work += numbers * numbers * numbers * 0.13;
     });
     // Cost per operation in small blocks, cost per operation in large blocks (which fill the registers), and cost per

@@ -36,8 +36,8 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
-    // Uses the bound on the eigenvalues of W_ii in place of W_ii. This is exact if W_ii is a scalar times the identity,
-    // otherwise the step is damped.
+    // Uses an upper bound on the eigenvalues of W_ii instead of W_ii. The step is exact if W_ii is a scalar times the
+    // identity, otherwise it is damped.
     return project(i, impulse - u / of.steepest);
 }
 
@@ -58,7 +58,7 @@ void BodyOperator::list_runs() const {
 }
 
 void BodyOperator::for_each_in_sweep(auto&& of) {
-    // Sweeps with and without runs share one loop, because compilers would not inline a second copy of `of`.
+    // Sweeps with and without runs share one loop, because compilers would not inline the function `of` twice.
     const ContactRuns::Run all{0, size(), 0, 0};
     std::span<const ContactRuns::Run> runs(&all, 1);
     if (runs_) {

@@ -78,8 +78,8 @@ private:
         std::size_t body;  // row of RigidBodyTable
         Index first_row;   // region row of the first touched node of the body
     };
-    /// Nodes of the run that move with an impulse on one node of a contact. `count` is 0 if the node of the contact is
-    /// on no implicit body.
+    /// Nodes of the run that an impulse on one node of a contact moves. `count` is 0 if this node is on no implicit
+    /// body.
     struct Near {
         std::size_t first, count, self, row;  // `first`, `self`: indices in node_; `row`: index of a block in block_
     };

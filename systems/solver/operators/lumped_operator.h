@@ -101,7 +101,7 @@ void LumpedOperatorBy<Walk>::settle() {
 template <RegionWalk Walk>
 void LumpedOperatorBy<Walk>::extrapolate(Real factor) {
     settle();
-    // Velocities are affine functions of the impulses, so the same extrapolation applies.
+    // Velocities depend on the impulses linearly, apart from a constant. So they are extrapolated by the same factor.
     walk_.nodes(memory_.velocity.size(), [this, factor](std::size_t begin, std::size_t end) {
         extrapolate_range(begin, end, factor, memory_.velocity, memory_.scratch);
     });

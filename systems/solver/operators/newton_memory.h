@@ -20,7 +20,7 @@ struct NewtonMemory {
     Eigen::MatrixXd jacobian;         // Jacobian of the active contacts
     Eigen::VectorXd rest, change;
     std::vector<Contact> contact;
-    std::vector<Index> active;  // contacts that are not open
+    std::vector<Index> active;  // numbers of the contacts that are not open
 };
 
 }  // namespace skerry

@@ -61,7 +61,8 @@ public:
     }
     void extrapolate(Real factor) {
         extrapolate_range(0, memory_.impulse.size(), factor, memory_.impulse, memory_.previous);
-        // Velocities are affine functions of the impulses, so the same extrapolation applies.
+        // Velocities depend on the impulses linearly, apart from a constant. So they are extrapolated by the same
+        // factor.
         extrapolate_range(0, region_.velocity.size(), factor, region_.velocity, region_.scratch);
     }
     /// Recomputes the velocities from the impulses, so that rounding errors of extrapolations do not accumulate.

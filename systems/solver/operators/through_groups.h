@@ -31,7 +31,8 @@ public:
                 sum[contact.node[a]] += contact.weight[a] * impulse;
         }
     }
-    /// Applies the part of a contact's impulse that acts on its node `a`, which must be on no implicit body.
+    /// Applies the part of a contact's impulse that acts on node `a` of the contact. The node must be on no implicit
+    /// body.
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }

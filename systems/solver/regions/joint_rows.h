@@ -20,10 +20,10 @@ struct JointPlaceInRegion {
 void load_joint(const RegionStage& stage, const JointBlock& block, std::span<const Index> rigid,
                 const JointPlaceInRegion& place);
 
-/// One Newton step for a joint that shall hold at the end of the step. Predicts the error of the joint block at the end
-/// of the step from the velocities of the region, and subtracts the part that later steps shall correct. Adds the
-/// remaining error divided by h to the offset. Returns the squared mass-weighted norm of this change [kg (m/s)^2, or kg
-/// m^2 (rad/s)^2 for rows of rotation]
+/// Corrects the offset of a joint so that the joint holds at the end of the step, by one Newton step. The error of the
+/// joint block at the end of the step is predicted from the velocities of the region. The part that later steps shall
+/// correct is subtracted. The remaining error divided by h is added to the offset. Returns the squared mass-weighted
+/// norm of this change [kg (m/s)^2, or kg m^2 (rad/s)^2 for rows of rotation]
 Real correct_joint(const RegionStage& stage, const JointBlock& block, std::span<const Vec4> velocity,
                    const JointPlaceInRegion& place);
 

@@ -50,7 +50,7 @@ struct LoadedRegion {
 /// cached positions. A cached position from another region is detected: this list then holds a different node there.
 class NodeList {
 public:
-    /// Uses at most `room` entries of the columns by node, from `first` on.
+    /// The list may use at most `room` entries of the columns by node, from `first` on.
     NodeList(RegionMemory& data, std::size_t first, std::size_t room)
         : place_(data.place.span()),
           node_(data.node.span().subspan(first, room)),
@@ -126,9 +126,9 @@ template <class Region, RegionOperator Op>
 bool start_region(const RegionStage& stage, const Region& region, Op& op, RegionOutcome& outcome) {
     const SolverSettings& settings = stage.settings;
     if (settings.fixed_iterations) {
-        // If the scale is zero, nothing moves: zero impulses are the solution, and the error of another start has no
-        // scale. Separating regions use the warm start, too: with fixed iterations, a sweep must not depend on how
-        // contacts are split into regions.
+        // If the scale is zero, nothing moves, and zero impulses are the solution. The error of any other start has no
+        // scale. Regions whose contacts separate use the warm start, too: with a fixed number of iterations, a sweep
+        // must not depend on how contacts are split into regions.
         if (settings.warm_start == WarmStart::on && region.scale > 0) take_warm_start(stage, region, op);
         return false;
     }

@@ -54,7 +54,7 @@ public:
         const Asked asked = ask();
         if (!pressed && !asked.by_turns) return false;
         sweep(asked.size);
-        // The push also rotates bodies, so the loss of gap by rotation is evaluated again.
+        // The push has rotated bodies, so the gap that contacts lose by rotation is computed again.
         constexpr int turn_rounds = 2;
         for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
         return true;

@@ -39,7 +39,7 @@ void make_room(Column<T>& column, std::size_t count) {
     if (column.size() < count) column.resize(count);
 }
 
-/// Workspace slot in which loading stores the contact velocities without impulses. The method may overwrite them.
+/// Workspace slot for the contact velocities without impulses. Loading writes them; the method may overwrite them.
 inline constexpr std::size_t free_velocity_slot = 1;
 
 /// Number of workspace vectors by contact that a method needs. The first one stores the best iterate.

@@ -13,7 +13,7 @@ SolveResult solve_frictionless(const RegionStage& stage, const RegionInOrder& re
     const PushMemory memory = push_memory(stage, region.base, region.row.size());
     NormalRows rows(region.memory, region.scale, {memory.impulse, memory.bias});
     const SolveResult result = solve_ags(rows, limits_of(stage.settings, region.tolerance));
-    // Without convergence region.memory already holds the best impulses.
+    // If the method has not converged, region.memory already contains the best impulses.
     if (result.converged || !std::isfinite(result.error)) rows.keep();
     return result;
 }
@@ -43,7 +43,7 @@ RegionOutcome solve_single(const RegionStage& stage, Index row, Index base) {
     std::size_t node_count = 0;
     const LumpedContact contact =
         load_contact(stage.inputs, row, stage.out.velocity_next, stage.settings, stage.h, [&](Index global) {
-            // A stencil may contain a node twice.
+            // A node that occurs twice in the stencil must be counted once.
             for (std::size_t n = 0; n < node_count; ++n)
                 if (node[n] == global) return static_cast<Index>(n);
             node[node_count] = global;
