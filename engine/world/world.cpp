@@ -86,7 +86,7 @@ void WorldState::settle() {
     model.known_elements.clear();
     if (!edits.rows) return;
     if (edits.elements) {
-        model.clusters.clear();  // clusters name nodes by row, and rows have moved
+        model.clusters.clear();  // clusters contain rows of NodeTable, which have moved
         model.clusters_open = true;
     }
     erase_gone_rows();

@@ -39,9 +39,9 @@ struct SurfaceRanges {
 SurfaceRanges append_surface(std::span<const BoundaryTriangle> triangles, Index first_node, Index first_element,
                              SurfaceTables& surface);
 
-/// Appends the surface of a body by copying the surface of an earlier body with the same mesh. `like`: rows of the
-/// earlier surface. `behind`: offsets from rows of the earlier body to rows of the new body; the node and element
-/// offsets are inputs, all other offsets are outputs. The appended rows equal those of append_surface.
+/// Appends the surface of a body, as append_surface does, by copying the surface of an earlier body with the same mesh.
+/// `like`: rows of the earlier surface. `behind`: differences between the rows of the new and the earlier body. The
+/// differences for nodes and elements are inputs, all others are outputs.
 SurfaceRanges append_surface_again(const SurfaceRanges& like, RowsBehind& behind, SurfaceTables& surface);
 
 }  // namespace skerry

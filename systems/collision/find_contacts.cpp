@@ -118,7 +118,7 @@ void test_block(const CollisionInputs& inputs, const CollisionSettings& settings
             surfaces.add(p, {from, to});
             continue;
         }
-        surfaces.test();  // the contacts of earlier pairs must be appended first
+        surfaces.test();  // appends the contacts of the pairs collected so far, to keep the order
         const auto find = cylinder ? find_cylinder_contacts : find_collider_contacts;
         nearest = std::min(nearest, find(inputs, settings, h, p, {from, to}, pairs, found));
     }

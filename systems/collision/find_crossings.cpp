@@ -101,7 +101,7 @@ private:
 
     void add(const Candidate& candidate, FeaturePair features, const NearestPoints& met) {
         const Real length = met.offset.norm();
-        if (!(length > 0)) return;  // The features already touched at the start of the step.
+        if (!(length > 0)) return;  // the features touch at the start of the step
         const Vec3 normal = met.offset / length;
         Real along = 0;  // distance of the two nearest points along the normal, at the start of the step [m]
         for (std::size_t a = 0; a < 4; ++a)

@@ -28,7 +28,7 @@ inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        const Real length = to.norm();  // the rotation is the identity, or full revolutions about the axis of `to`
+        const Real length = to.norm();  // the vectors are zero and full revolutions about any axis, here that of `to`
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }
     const Vec3 axis = rotation / angle;

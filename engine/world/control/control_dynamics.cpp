@@ -117,7 +117,8 @@ std::vector<Vec3> deformed_shape_of(const Model& model, std::size_t body, const 
     return shape;
 }
 
-/// A rigid body keeps its volume, so that a shape with an inverted tetrahedron has no inertia that makes sense.
+/// Throws SceneError if a tetrahedron of the shape is flat or inverted. The inertia of a body that is frozen in such a
+/// shape would be wrong.
 void require_upright_shape(const Model& model, std::size_t body, std::span<const Vec3> shape) {
     const BodyRecord& record = model.body_records[body];
     const Mesh deformed{.nodes = {shape.begin(), shape.end()}, .tetrahedra = record.tetrahedra};

@@ -151,7 +151,7 @@ PointVelocity velocity_at(const Model& model, Index body, const Vec3& point) {
     return {table.momentum[r] / table.mass[r] + turn.cross(point - table.center[r]), turn};
 }
 
-/// True if a second joint of the same two bodies also disables contact between them.
+/// True if another joint of the same two bodies switches off collisions between them.
 bool parted_elsewhere(const JointTable& table, std::size_t joint) {
     for (std::size_t j = 0; j < table.size(); ++j) {
         const bool same = (table.first[j] == table.first[joint] && table.second[j] == table.second[joint]) ||

@@ -49,7 +49,7 @@ void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
         }
         elements.rotation_next[b] = elements.rotation[b];
     }
-    // The implicit elements were chosen for a deformed shape.
+    // The implicit elements of the clusters were chosen for the deformed shape, so they must be chosen again.
     model.clusters_open |= model.bodies.cluster_step[body] > 0;
 }
 

@@ -252,7 +252,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
             blame(world, report);
             break;
         }
-        // An attempt at the same step is repeated with the same length.
+        // Repeated attempts with longer lists or with crossings must keep the length of the step.
         if (attempt.with_longer_lists == 0 && attempt.with_crossings == 0)
             attempt.slow_enough = step_of_turns(model, attempt.slow_enough, attempt.fastest);
         const Real within = left_in_long_step(model, left, clock.long_step);
@@ -263,7 +263,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
-        stiffened += world.scratch.findings.stiffened;  // also counted for attempts that are not committed
+        stiffened += world.scratch.findings.stiffened;  // attempts that are not committed count, too
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);
@@ -308,7 +308,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         drift(0);
         world.query_trees.forget();  // a query during the steps may have fitted the trees to other positions
         note_held(held_in_surfaces(world), world, report);
-        // otherwise the next call would make this update and gain its energy
+        // Clusters are updated here, because their energy would otherwise be gained by the next call.
         stiffened += follow_stiffening(model);
         world.record.balance.work += stiffened;
     }

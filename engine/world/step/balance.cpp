@@ -52,7 +52,7 @@ Present measure(const Model& model, Real lag) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // the sum balance.work also uses the forces of the last step
+        if (model.forced)  // with the forces of the last step, as balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);

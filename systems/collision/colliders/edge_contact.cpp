@@ -73,7 +73,8 @@ public:
     Real place_of(Real slope, Real near) const {
         const bool is_box = geometry_.shape == ColliderShape::box;
         if (!is_box && geometry_.shape != ColliderShape::sphere) return std::numeric_limits<Real>::quiet_NaN();
-        // Edge vector without the components in which the nearest corner, edge or side extends.
+        // Edge relative to the nearest corner, edge or side of the box. Coordinates along which this feature extends
+        // are zero.
         Vec3 from = a_, along = edge_;
         for (int i = 0; i < 3 && is_box; ++i) {
             const Real at = a_[i] + near * edge_[i];

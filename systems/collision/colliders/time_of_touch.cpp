@@ -129,9 +129,9 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
     return nearest;
 }
 
-/// Nearest points of a face and the disc inside a rim. The interior of the face is touched first at the rim point that
-/// is furthest in the direction of the face, from either side of the face. If this point is beside the face, an edge of
-/// the face is nearest, unless the rim has passed through the face.
+/// Nearest points of a face and the disc inside a rim. The inner part of a face is first touched by the point of the
+/// rim that reaches furthest towards the face, from either side of it. If the projection of this point is beside the
+/// face, an edge of the face is nearest, unless the rim has passed through the face.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});

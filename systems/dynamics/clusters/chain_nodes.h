@@ -38,7 +38,7 @@ void for_each_node(const BlockNodes& nodes, std::size_t l, std::span<const Real>
 /// since they only act inside a cluster.
 struct NodeChains {
     Index first = 0;                    // smallest row of NodeTable among the connected nodes
-    UnionFind sets;                     // by row of NodeTable minus `first`
+    UnionFind sets;                     // numbered by row of NodeTable minus `first`
     std::vector<std::uint8_t> chained;  // 1 for connected nodes; by row of NodeTable minus `first`
 
     /// `modulus`: assumed moduli by block; row 0 belongs to the block blocks.begin.

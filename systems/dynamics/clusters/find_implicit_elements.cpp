@@ -89,7 +89,7 @@ ImplicitSearch::ImplicitSearch(const ElementInputs& elements, Range blocks, std:
 void ImplicitSearch::prepare() {
     const std::size_t rows = frequency_.size(),
                       count = nodes_.empty() ? 0 : static_cast<std::size_t>(nodes_.back() - first_node_) + 1;
-    marks_.resize(count);  // gaps between the nodes of the body included
+    marks_.resize(count);  // `count` includes rows between the first and the last node that are not used
     sum_.resize(count);
     ratio_.resize(count);
     for (std::vector<ElementLane>* column : {&stiffness_, &unit_, &step_, &measured_, &trace_}) column->resize(rows);
@@ -268,7 +268,7 @@ ImplicitShare ImplicitSearch::find(const ImplicitGoal& goal) {
                          [&](std::size_t b, std::size_t l) { shortest = std::min(shortest, step_[row(b)][l]); });
         found_enough = !(shortest < goal.stable);
         if (found_enough && exact_) break;
-        if (found_enough) continue;  // the estimate must be confirmed by the rigorous bound
+        if (found_enough) continue;  // the next round confirms the estimate by the rigorous bound
         if (round % rounds_of_sharing == 0) {
             give_up(goal.stable);
             found = added(goal);

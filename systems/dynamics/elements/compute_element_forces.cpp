@@ -332,7 +332,7 @@ Real compute_element_forces(Executor& executor, const ElementInputs& elements, s
     SKERRY_CHECK(rotation.size() == elements.blocks() && next.rotation.size() == elements.blocks());
     SKERRY_CHECK(elements.viscous_time.empty() || elements.implicit_modulus.size() == elements.blocks());
     parallel_for(executor, patches.blocks.size(), 1, [&](std::size_t first, std::size_t last) {
-        const FlushSubnormals flush;  // strains of springs decay to zero
+        const FlushSubnormals flush;  // decaying strains of springs would become subnormal numbers
         for (std::size_t p = first; p < last; ++p) {
             const auto begin = static_cast<std::size_t>(patches.blocks[p].begin),
                        end = static_cast<std::size_t>(patches.blocks[p].end);

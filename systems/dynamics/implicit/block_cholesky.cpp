@@ -13,7 +13,7 @@ void BlockRows::multiply(std::span<const Vec3> x, std::span<Vec3> out) const {
         for (std::size_t i = first; i < last; ++i) {
             const auto j = static_cast<std::size_t>(column[i]);
             sum += block[i] * x[j];
-            out[j] += block[i].transpose() * x[k];  // entry of row j < k, which already has a value
+            out[j] += block[i].transpose() * x[k];  // row j < k is already initialised
         }
         out[k] = sum;
     }

@@ -241,8 +241,8 @@ StrainFindings strain_implicit_bodies(Executor& executor, const ImplicitBodies& 
             taken += (back * contact[n]).dot(before + during) / 2;
             if (!loads.load.empty()) {
                 const Vec3 load = back * loads.load[of.first_node + n];
-                // Reported work of the load: the work over the displacement of the step, corrected for the time by
-                // which reported velocities are earlier or later than positions [J].
+                // Work of the load in the sense of the reported balance [J]. It is the work over the displacement of
+                // the step, corrected because reported velocities belong to a slightly different time than positions.
                 taken += h * load.dot(during - (after - before) / 2) + (loads.kick - h) * load.dot(before);
             }
             taken -= of.stiff.mass(k) / 2 * (after - before).dot(after + before);

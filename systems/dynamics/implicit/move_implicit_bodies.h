@@ -31,7 +31,7 @@ struct ImplicitBodies {
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
     std::span<const Index> body_material;       // BodyTable
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty if no body is asleep
+    std::span<const std::uint8_t> body_asleep;  // column of BodyTable; empty if no body is asleep
     std::span<const Real> material_damping;     // MaterialTable [1/s]
     std::span<const Vec3> displacement;         // ImplicitNodeTable [m]
     std::span<const Vec3> velocity;             // ImplicitNodeTable [m/s]
@@ -39,7 +39,7 @@ struct ImplicitBodies {
     // Columns for bodies that attachments hold:
     RigidHolds holds;
     std::span<const Vec3> center, rest_center;           // RigidBodyTable
-    std::span<const Vec3> rest_position, node_velocity;  // NodeTable; velocities of held nodes are prescribed
+    std::span<const Vec3> rest_position, node_velocity;  // of NodeTable; held nodes have prescribed velocities
     std::span<const Real> inverse_mass;                  // NodeTable
 
     static ImplicitBodies bind(const Binder& binder, const RigidBodyTable& rigid, const BodyTable& of_body,

@@ -29,7 +29,7 @@ struct JointInputs {
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
     std::span<const Range> body_rigid, body_nodes;  // BodyTable
-    std::span<const std::uint8_t> body_asleep;      // BodyTable; empty if no body is asleep
+    std::span<const std::uint8_t> body_asleep;      // column of BodyTable; empty if no body is asleep
     // RigidBodyTable
     std::span<const Index> holder;
     std::span<const Vec3> center, rest_center;

@@ -21,7 +21,7 @@ struct KickInputs {
     std::span<const Real> mass, inverse_mass;
     Vec3 gravity = Vec3::Zero();
     std::span<const Vec3> load = {};  // applied force; empty if no node has one [N]
-    // BodyTable; sleeping bodies are skipped; empty if no body is asleep.
+    // Column of BodyTable; empty if no body is asleep. Sleeping bodies are skipped.
     std::span<const std::uint8_t> body_asleep = {};
     // BodyTable. Elements exert no force on nodes of unstrained bodies. Empty if no body is unstrained.
     std::span<const std::uint16_t> body_unstrained = {};

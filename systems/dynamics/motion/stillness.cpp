@@ -68,7 +68,7 @@ public:
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
-                still = half;  // the next half of the sleep time is compared with the present half
+                still = half;  // The body can be still at the end of the next half of the sleep time at the earliest.
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();

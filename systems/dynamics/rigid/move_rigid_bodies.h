@@ -23,8 +23,8 @@ struct RigidBodies {
     std::span<const Index> body;
     std::span<const Range> body_nodes;          // BodyTable
     std::span<const Range> body_implicit;       // BodyTable
-    std::span<const Index> body_core_nodes;     // BodyTable; empty if all nodes of round bodies take part in the step
-    std::span<const std::uint8_t> body_asleep;  // BodyTable; empty if no body is asleep
+    std::span<const Index> body_core_nodes;     // empty if all nodes of round bodies take part in the step
+    std::span<const std::uint8_t> body_asleep;  // column of BodyTable; empty if no body is asleep
     std::span<const Real> mass;
     std::span<const Vec3> moments, rest_center, center;
     std::span<const Mat3> axes, rotation;

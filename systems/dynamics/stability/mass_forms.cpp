@@ -198,7 +198,7 @@ private:
     }
     /// Gradients of the iterated vectors (estimates of the highest modes) in one element, by direction.
     std::array<Real4, 3> gradient_of_vectors(const BlockNodes& nodes, std::size_t l) const {
-        Real4 along_x{}, along_y{}, along_z{};  // separate, so that the sums stay in registers
+        Real4 along_x{}, along_y{}, along_z{};  // three variables instead of an array, so that they stay in registers
         for (Index k = 0; k < nodes.count; ++k) {
             const Real4& vectors = vector_[local(nodes.node[k][l])];
             const ElementGradient& g = nodes.gradient[k];

@@ -16,7 +16,7 @@
 
 namespace skerry {
 
-using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // the fourth row is zero
+using PaddedMat3 = Eigen::Matrix<Real, 4, 3>;  // a 3x3 matrix padded with a row of zeros
 
 /// Impulses on touched nodes of one implicit body, and their total effect on all touched nodes of the body.
 class SpreadImpulses {

@@ -119,7 +119,7 @@ private:
         if (k == part.term_count) {
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
-            // The contact point of a rounded body is at a distance from its core.
+            // Vector from the core of a round body to the contact point on its surface.
             const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
                                                         contact_normal(i), stage_.inputs.touch);
             term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};

@@ -29,7 +29,7 @@ struct RegionTask {
 /// Data of the regions that are solved by all workers together, and the team of workers.
 struct LargeRegions {
     Team team;
-    std::vector<std::unique_ptr<ColouredRegion>> region;  // by number among the large regions of the step
+    std::vector<std::unique_ptr<ColouredRegion>> region;  // one for each large region of the step
 };
 
 /// Grows a column to at least `count` rows. Columns never shrink, since shrinking and growing again would clear rows
