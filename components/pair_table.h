@@ -178,12 +178,12 @@ struct BoundingSphere {
 
 /// Working memory of the searches. It is reused in later steps, so that a steady state allocates nothing.
 struct SearchMemory {
-    // By body and by collider: 1 if the object was added, or moved by the user, since the last search. Its distances to
-    // other objects are then unknown. The values are those at the start of the step.
+    // For each body and each collider: 1 if the object was added, or moved by the user, since the last search. Its
+    // distances to other objects are then unknown. The values are those at the start of the step.
     Column<std::uint8_t> body_forgotten, collider_forgotten;
-    // By body: 1 if the speed of the body in BodyTable::max_speed and frame_speed is out of date. This is so from the
-    // step after a user has added or moved the body until a step is committed, because a rejected attempt leaves both
-    // columns unchanged. Valid while any_unmeasured is set.
+    // For each body: 1 if its speeds in BodyTable::max_speed and frame_speed are out of date. After a user has added or
+    // moved a body they are out of date until a step is committed, because a rejected attempt leaves both columns
+    // unchanged. Valid while any_unmeasured is set.
     Column<std::uint8_t> body_unmeasured;
     bool any_unmeasured = false;
     // For each body: sum of its travel, the path length of its frame, and the distance it may move in this step [m].
