@@ -10,9 +10,10 @@ namespace skerry {
 
 namespace {
 
-// Limits beyond which a value cannot be meant. A body may sag by the first limit times its height: the estimate is
-// linear, and the softest gels reach about 1. Of all materials, aerogels are the lightest and osmium is the heaviest;
-// diamond is the stiffest. The largest centrifuges reach an acceleration of some 10,000 m/s^2.
+// Limits beyond which a value is probably a mistake. most_sag: sag of a body under its weight, estimated by linear
+// elasticity and divided by the height of the body; the softest gels reach about 1. Densities and modulus: aerogels are
+// the lightest materials, osmium is the heaviest, and diamond the stiffest. Gravity: the largest centrifuges reach some
+// 10,000 m/s^2.
 constexpr Real most_sag = 2;
 constexpr Real least_density = 2, most_density = 25000;  // [kg/m^3]
 constexpr Real most_modulus = 1.3e12;                    // [Pa]

@@ -163,7 +163,7 @@ private:
         const std::optional<Touch> touch = first_touch(cylinder_.geometry, cylinder_.motion, motion.h, feature, &time);
         return touch ? std::optional(Hit{*touch, time}) : std::nullopt;
     }
-    /// Position at the start of the step of the point of the feature that the cylinder touches [m].
+    /// Touched point of the feature: its position at the start of the step [m].
     static Vec3 touched_point(const TouchingFeature& feature, const Hit& hit) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < feature.nodes(); ++i) sum += hit.touch.weight[i] * feature.position[i];

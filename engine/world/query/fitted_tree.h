@@ -6,8 +6,8 @@
 
 namespace skerry {
 
-/// Returns the bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes. It
-/// is fitted once, until QueryTrees::forget(). `body`: row of BodyTable.
+/// Returns the bounding volume hierarchy of a body or a mesh collider, fitted to the present positions of its nodes.
+/// The fitted boxes are reused until QueryTrees::forget() is called. `body`: row of BodyTable.
 SurfaceTree fitted_tree(WorldState& world, std::size_t body);
 
 }  // namespace skerry

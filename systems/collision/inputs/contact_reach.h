@@ -82,9 +82,10 @@ inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
 }
 
-/// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step. Contacts
-/// maintain the shell distance between the surfaces of round bodies, which does not count as near contact. If the shell
-/// distance is zero, surfaces touch and may overlap by rounding errors, so only the cores are tested for crossings.
+/// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step: the sum
+/// of their radii. Surfaces closer than a small part of the shell distance, which contacts maintain, count as in
+/// contact. If the shell distance is zero, surfaces touch and may overlap by rounding errors. Then only the cores are
+/// tested for crossings.
 inline KeptApart kept_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};
 }

@@ -280,10 +280,10 @@ template <class Take>
 /// Adds the force f of lane l to force[slot[l]], one lane after the other, because two lanes may have the same node.
 [[gnu::always_inline]] inline void add_lanes(const LaneVec3<Real4>& f, const Index* slot, PatchRows<Real> force) {
     const Real4 zero{};
-    // Letters are components of f, digits are lanes: x0 y0 x2 y2.
+    // Contains x0 y0 x2 y2: letters are components of f, digits are lanes.
     const Real4 xy02 = __builtin_shufflevector(f.x, f.y, 0, 4, 2, 6);
     const Real4 xy13 = __builtin_shufflevector(f.x, f.y, 1, 5, 3, 7);
-    // Letters are components of f, digits are lanes: z0 0 z2 0.
+    // Contains z0 0 z2 0: letters are components of f, digits are lanes.
     const Real4 z02 = __builtin_shufflevector(f.z, zero, 0, 4, 2, 6);
     const Real4 z13 = __builtin_shufflevector(f.z, zero, 1, 5, 3, 7);
     const auto add = [&](Index to, const Real4& lane) { force[to] = force[to] + lane; };

@@ -63,12 +63,12 @@ public:
         } else if (ends) {
             const Real least = std::max(state_.drift_before[body_], limits::noise * edge);
             const bool first = before < half;
-            // A body whose drift grows with each measurement may move at constant speed, on ice or by a motor.
+            // A drift that grows with each measurement may be motion at constant speed, on ice or by a motor.
             const bool goes_on = !comes_back && furthest > limits::noise * edge;
             if (!first && furthest > limits::growth * least)
                 still = 0;
             else if (!first && (goes_on || !is_balanced(half) || !has_its_shape(goes_one_way)))
-                still = half;  // The body can be still at the end of the next half of the sleep time at the earliest.
+                still = half;  // keeps half of the sleep time, so that the next half is compared with this one
             state_.drift_before[body_] = furthest;
             state_.creep_before[body_] = goes_one_way ? shape_drift : 0;
             begin_half();

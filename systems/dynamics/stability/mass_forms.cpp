@@ -139,7 +139,7 @@ public:
         std::vector<ElementGroup> groups;
         cut(blocks_, groups);
         share(groups);
-        constexpr Real above = 1.005;  // factor above 1, for modes that the vectors have not found yet
+        constexpr Real above = 1.005;  // safety factor: the iterated vectors may have missed the highest mode
         Real bound = 0;
         for (const ElementGroup& group : groups) bound = std::max(bound, above * group.highest);
         for (const ElementGroup& group : groups) {

@@ -139,8 +139,8 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
     return Eigen::Quaternion<Real>(turn[0], turn[1], turn[2], turn[3]).toRotationMatrix();
 }
 
-/// Largest ratio of the bound with frame masses to this bound at rest for which the other bounds (mass forms, mass
-/// shares) are not computed. Below this ratio they are hardly sharper.
+/// If the bound with frame masses is at most this multiple of its value at rest, the bounds with mass forms and mass
+/// shares are not computed. They would hardly be sharper.
 constexpr Real well_in_frame = 1.25;
 
 /// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) must divide the blocks of a wave

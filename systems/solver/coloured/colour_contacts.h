@@ -42,7 +42,8 @@ struct ColouringMemory {
 /// size take 7 to 10 colours, but a coarse mesh under a finer one would take hundreds. The contacts of a hub therefore
 /// form one block, and the hub blocks are coloured instead.
 inline constexpr Index hub_degree = 32;
-/// A colour with fewer contacts than this number (one block) does not justify a phase. Its contacts go to the tail.
+/// A colour with fewer contacts than this number (one block) does not justify a phase of its own. Its contacts go to
+/// the tail, the last phase, which is solved by one worker.
 inline constexpr Index smallest_colour = 64;
 
 /// Colours the contacts greedily in ascending order, with at most 64 colours. Contacts without a free colour go to the

@@ -59,11 +59,11 @@ concept ContactOperator = SweptOperator<Op> &&
     requires(Op& op, const Op& constant, Index i, Real number, std::span<Vec4> out, std::span<const Vec4> in,
              const Vec4& vector, Eigen::MatrixXd matrix) {
     { constant.size() } -> std::convertible_to<Index>;
-    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // after writing to the span call refresh()
+    { op.impulse() } -> std::convertible_to<std::span<Vec4>>;  // call refresh() after writing to this span
     op.refresh();                                              // recomputes the stored velocities from the impulse
     // Slot 0: best iterate; slot 1: previous impulse of accelerated sweeps; other slots: free for the method.
     { op.workspace(i) } -> std::convertible_to<std::span<Vec4>>;
-    { op.sweep(number) } -> std::convertible_to<Real>;  // a sweep that returns only the size of its change
+    { op.sweep(number) } -> std::convertible_to<Real>;  // one sweep; returns the size of its change
     op.residual(out);      // writes -u of each contact; Lazarevych et al. (2010) call it b - A lambda
     op.multiply(in, out);  // W d
     { constant.project(i, vector) } -> std::convertible_to<Vec4>;  // projection of an impulse onto the friction law

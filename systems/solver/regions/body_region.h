@@ -17,8 +17,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     // Functions of the life cycle that replace those of LoadedRegion.
     bool moves_node(const RegionStage& stage, std::size_t n) const {
         // Nodes of implicit bodies also move with their frames.
-        return memory.node[n] != no_index && stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) ==
-                                                 no_index;
+        return memory.node[n] != no_index &&
+               stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
     /// Joints require method ags, because only sweeps support them.
     SolverMethod method(const SolverSettings& settings) const {
