@@ -111,7 +111,7 @@ public:
     }
 
 private:
-    /// Rounding error of the present time, relative to the times at which calls of advance end [s].
+    /// Tolerance for rounding errors when the present time is compared with the end of a call of advance [s].
     double slack_of_time() const { return RunPlan::slack * plan_.longest_call(); }
     void begin() {
         result_.peak_kinetic_energy = memory_.peak_kinetic_energy;

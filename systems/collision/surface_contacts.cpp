@@ -88,9 +88,9 @@ private:
         });
     }
 
-    /// True if a point of the other body touches the core (axis or centre) of a round body at this candidate. If an end
-    /// of the axis is nearest to the point, another candidate tests this end against the other surface instead. Two
-    /// ends of axes are tested against each other once.
+    /// True if this candidate is the one that makes the contact of a round body's core (axis or centre) with a point of
+    /// the other body. If an end of the axis is nearest to the point, the candidate of this end and the other surface
+    /// makes the contact. Two ends of axes are tested against each other once.
     bool core_is_touched(const Candidate& candidate, const PointTriangle& closest) const {
         const bool turned = is_point_of_second(candidate.feature);
         const BodyTable& body = inputs.body;

@@ -24,7 +24,7 @@ Eigen4 eigen_of(std::array<Vector4, 4> a) {
         Real off = 0;
         for (std::size_t p = 0; p < 4; ++p)
             for (std::size_t q = p + 1; q < 4; ++q) off += a[p][q] * a[p][q];
-        if (!(off > 1e-36)) break;  // the entries of the matrix are of order one
+        if (!(off > 1e-36)) break;  // absolute limit, because the entries of the matrix are of order 1
         for (std::size_t p = 0; p < 4; ++p) {
             for (std::size_t q = p + 1; q < 4; ++q) {
                 if (a[p][q] == 0) continue;

@@ -71,7 +71,7 @@ ThinPart measure(const Mesh& mesh, std::span<const ThinColumn* const> columns, V
         part.layers += column->area * column->layers;
     }
     part.place /= area;
-    part.volume = part.thickness / 2;  // opposite triangles have columns in the same place
+    part.volume = part.thickness / 2;  // half, because columns from opposite triangles fill the same space
     part.thickness /= area;
     part.layers /= area;
     Mat3 spread = Mat3::Zero();

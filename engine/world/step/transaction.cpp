@@ -318,7 +318,8 @@ StepOutcome try_step(WorldState& world, const StepPlan& plan, AttemptLimits& att
         case StepOutcome::again_with_crossings:
             break;
         case StepOutcome::again_shorter:
-            // After an inversion, the crossings found in earlier attempts remain contacts of the shorter attempt.
+            // The shorter attempt finds its own crossings. After an inversion it keeps the crossings of earlier
+            // attempts as contacts.
             if (!scratch.inverts()) world.cache.crossings.row.clear();
             note_try(world.model, scratch, world.record.limits);
             attempt = limits_of_shorter_attempt(world, plan, attempt);

@@ -200,8 +200,9 @@ private:
             add(1, last);
         }
     }
-    /// add_before and add_behind: add a point only if the derivative at the distance shortest_stretch from the other
-    /// point is not too steep. One evaluation shows this, because the derivative increases along the edge.
+    /// These two functions add a second contact point at least shortest_stretch before or behind the point `other`, if
+    /// the derivative there is not too steep. One evaluation shows this, because the derivative increases along the
+    /// edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;
