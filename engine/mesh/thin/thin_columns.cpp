@@ -26,8 +26,9 @@ struct Face {
 
 /// Tetrahedra that a ray through a thin part can cross: those with a node on the boundary or next to the boundary.
 struct NearBoundary {
-    std::vector<Index> number;                     // numbers of the tetrahedra in the mesh
-    std::vector<std::array<Face, 4>> beyond;       // by tetrahedron and corner: the same face of the neighbour
+    std::vector<Index> number;  // numbers of the tetrahedra in the mesh
+    // For the face opposite to each corner of each tetrahedron: the same face as part of the neighbour.
+    std::vector<std::array<Face, 4>> beyond;
     std::vector<std::array<bool, 4>> on_boundary;  // by tetrahedron and corner: true for a face on the boundary
     std::vector<Face> boundary;                    // faces on the boundary
 };

@@ -49,7 +49,7 @@ Vec3 rim_place(Real radius, Real z, const Vec3& direction) {
 /// A circle around the z axis: the edge between a curved side and a flat side of a shape.
 struct CylinderRim {
     Real radius, z;  // [m]
-    // 1 or -1: directions of the normals of the curved side (away from the axis) and of the flat side (along z).
+    // Directions of the outward normals, 1 or -1: of the curved side along the radius, of the flat side along z.
     Real outward, along;
     bool faces(const Vec3& normal, const Vec3& direction) const {
         return outward * normal.head<2>().dot(direction.head<2>()) >= -rim_angle && along * normal[2] >= -rim_angle;

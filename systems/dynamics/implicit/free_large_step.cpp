@@ -113,7 +113,7 @@ Real become_large(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     Real kinetic = 0;
     for (std::size_t n = 0; n < of.count; ++n)
         kinetic += stiff.mass(of.place(n)) / 2 * of.rows(out.velocity_next)[n].squaredNorm();
-    // The energy balance of the step already contains the growth of the linear elastic energy. It is subtracted here.
+    // Subtracts the growth of the linear elastic energy, which the energy balance of the step already contains.
     const Real linear = stiff.elastic_energy(of.rows(out.displacement_next), false) -
                         stiff.elastic_energy(of.rows(bodies.displacement), false);
     return end_in_shape(bodies, spins, r, h, kinetic + linear, stiff, out);

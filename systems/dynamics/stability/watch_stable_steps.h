@@ -25,8 +25,8 @@ struct WatchInputs {
     }
 };
 
-/// Numbers of pieces of stable-step checks: pieces for all bodies before the body in progress, pieces for the bodies
-/// whose shape is stored, and pieces for all bodies.
+/// Numbers of pieces of stable-step checks: of the bodies before the body in progress, of the bodies whose shape is
+/// stored, and of all bodies.
 struct WatchPieces {
     std::uint64_t before = 0, kept = 0, total = 0;
 };

@@ -397,11 +397,10 @@ Real softness_after(Index steps, Real softness, bool deforming) {
 }  // namespace
 
 SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index limit) {
-    // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
-    // start of the round.
+    // If the error of the region has decreased, a round ends when the square root of the merit function d . K d falls
+    // below this fraction of the error at the start of the round.
     constexpr Real enough = 0.1;
-    // A round also ends, even if the error has not decreased, when the square root of the merit falls below this
-    // fraction of the limit given by `enough`.
+    // If the error has not decreased, this limit is multiplied by `solved`.
     constexpr Real solved = 1e-3;
     constexpr Index most_in_round = 14;  // a longer round is unlikely to converge soon
     constexpr Real softer = 10;          // factor by which the softness grows after a round that did not converge
