@@ -115,7 +115,7 @@ struct AxisLaw {
     Real coordinate = 0;
     Real lower = -infinity, upper = infinity;
     JointDrive drive = JointDrive::none;
-    JointMotorRow motor{};  // the target is that of this step; for a moving target position: at the start of the step
+    JointMotorRow motor{};  // motor of this step; a moving target position is given at the start of the step
     Real target_rate = 0;   // speed of the target position [rad/s or m/s]
     Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
 };

@@ -12,7 +12,7 @@
 
 namespace skerry {
 
-/// Progress of the check of one body: the number of the next piece, and the results so far.
+/// Progress of the stable-step check of one body, and the results so far.
 struct StepEvaluation {
     std::uint64_t piece = 0;   // number of the next piece of the check
     Index broken = no_index;   // first element whose frequency bound is not finite

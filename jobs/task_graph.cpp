@@ -116,7 +116,7 @@ void TaskGraph::run_all(Executor& executor, Trace* trace) {
         return;
     }
     // The stages run one after the other, so the end time of a stage is also the start time of the next stage. This
-    // halves the number of clock reads, whose time matters in a step of some microseconds.
+    // halves the number of clock reads, whose time matters in a step of a few microseconds.
     Trace::Time time = Trace::now();
     executor.run_graph(edges, [&](Index number) { time = run_stage(number, time, executor, trace); });
 }

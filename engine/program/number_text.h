@@ -55,7 +55,8 @@ inline std::string duration_text(double seconds) {
         const char* name;
     };
     constexpr Unit units[] = {{86400, " days"}, {3600, " h"}, {60, " min"}};
-    constexpr double enough = 2;  // a duration is given in the largest unit of which it contains at least this many
+    // Smallest number of units in a duration. A larger unit is not used if the duration contains fewer of it.
+    constexpr double enough = 2;
     for (const Unit& unit : units)
         if (seconds >= enough * unit.seconds) return short_number(seconds / unit.seconds) + unit.name;
     return seconds >= 1 ? short_number(seconds) + " s" : with_unit(seconds, "s");

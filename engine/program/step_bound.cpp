@@ -94,7 +94,7 @@ Mesh taken_out(const Mesh& mesh, std::span<const Index> gone) {
     return rest;
 }
 
-// number of tetrahedra above which a mesh counts as large, so that another world of it takes seconds
+// Number of tetrahedra above which a mesh counts as large. It takes seconds to build another world with such a mesh.
 constexpr std::size_t many = 100'000;
 
 /// Returns the ratio of two steps: the longest step that one of the `count` worst tetrahedra allows, and the shortest
@@ -111,7 +111,7 @@ Real ratio_within_worst(std::span<const Real> step, std::size_t count) {
 /// tetrahedron allows [s].
 void find_steps_without(const Mesh& mesh, const StepCase& of, std::span<const Real> step, std::vector<Index> order,
                         StepBound& bound) {
-    constexpr Real least_ratio = 1.5;  // least ratio within the worst tetrahedra for which a large mesh is tried
+    constexpr Real least_ratio = 1.5;  // least alike_ratio for which a large mesh is tried
     const bool large = mesh.tetrahedra.size() > many;
     // number of rounds in which each fraction in `shares` is removed
     const std::size_t rounds = large ? 1 : 3;

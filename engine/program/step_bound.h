@@ -46,8 +46,9 @@ struct StepBound {
     // small.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // Fraction of tetrahedra for which `without` was not computed, or 0. In a large mesh it is not computed if the step
-    // of the best of these worst tetrahedra is only `alike_ratio` times the shortest step.
+    // In a large mesh, `without` is not computed for a fraction of tetrahedra whose steps are too similar. In this case
+    // alike_share is the fraction, and alike_ratio the ratio of the longest to the shortest step among these
+    // tetrahedra. If nothing was skipped, both are 0.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };

@@ -19,7 +19,7 @@ struct SceneCost {
     std::string failure{}, turning{};
 };
 
-/// Simulates a run until its end or until the trial has taken some seconds of CPU time. `overlap`: deepest overlap
+/// Simulates a run until its end or until the trial has taken a few seconds of CPU time. `overlap`: deepest overlap
 /// known so far [m].
 SceneCost try_run(World& world, const RunPlan& plan, Real overlap);
 

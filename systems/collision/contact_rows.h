@@ -13,8 +13,8 @@
 
 namespace skerry {
 
-/// Data of a pair that the tests of its candidates share. A rigid cylinder is the first body. If both bodies are
-/// cylinders, the first is the one whose middle node is the point in the feature keys.
+/// Data of a pair that the tests of its candidates share. A rigid cylinder is always the first body of its pair. If
+/// both bodies are cylinders, the first is the one whose middle node is the point in the feature keys.
 struct PairData {
     const CollisionInputs& inputs;
     std::uint64_t key;

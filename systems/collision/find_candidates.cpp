@@ -19,9 +19,9 @@ namespace skerry {
 
 namespace {
 
-// Refitting the trees of one block takes some microseconds; computing the boxes and spheres of one block takes less.
+// Refitting the trees of one block takes a few microseconds; computing the boxes and spheres of one block takes less.
 constexpr std::size_t trees_per_block = 2, bounds_per_block = 32;
-// The work for one block of this many bodies or pairs takes some microseconds.
+// The work for one block of this many bodies or pairs takes a few microseconds.
 constexpr std::size_t bounded_bodies_per_block = 128, bounded_pairs_per_block = 256, far_pairs_per_block = 64;
 
 /// Marks the bodies or colliders whose distances from other objects are unknown. Returns true if any object is marked.
@@ -250,8 +250,8 @@ void search_again(const CollisionInputs& inputs, const CollisionSettings& settin
     }
 }
 
-/// Searches the expired pairs. Each block searches one near pair, which takes some ten microseconds, and an equal share
-/// of the far pairs, which take almost no time. All blocks thus have about the same amount of work.
+/// Searches the expired pairs. Each block searches one near pair, which takes some tens of microseconds, and an equal
+/// share of the far pairs, which take almost no time. All blocks thus have about the same amount of work.
 void search_expired(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                     std::span<const Aabb> box, SearchMemory& memory, PairTable& pairs) {
     const std::size_t near = memory.near.size(), far = memory.far.size();
@@ -278,8 +278,9 @@ std::size_t count_candidates(Executor& executor, const PairTable& pairs) {
     return count;
 }
 
-/// Requests new displacement origins for bodies in expired pairs whose displacement uses up more than a quarter of the
-/// skin (the margin of the list of pairs or candidates).
+/// Requests new displacement origins for the bodies of expired pairs: from then on, displacements are measured from the
+/// present positions. Bodies with small displacements are left out, because a new origin would hardly prolong the
+/// validity of their lists.
 void request_new_origins(const CollisionInputs& inputs, const CollisionSettings& settings, SearchMemory& memory,
                          const PairTable& pairs) {
     constexpr Real good_part = 0.25;

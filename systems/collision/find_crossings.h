@@ -12,16 +12,16 @@ namespace skerry {
 /// the number of crossings; if it is not zero, the step must not be committed. Runs in parallel over the blocks of
 /// find_contacts.
 ///
-/// Only pairs with a contact distance whose surfaces are apart are tested; without a contact distance, surfaces may
-/// touch without having crossed. A pair is tested only if it could move by more than half of its least distance, a
-/// candidate only if it could move by more than half of its distance. A slow scene therefore takes one comparison per
-/// pair. BodyTable::frame_speed must be the speed of this motion.
+/// Tests only pairs with a contact distance whose surfaces are known to be apart. Without a contact distance, surfaces
+/// may touch, and a touch cannot be told from a crossing. Skips a pair if the relative motion in this step is at most
+/// half of the least distance of its candidates, and a candidate if the motion is at most half of its distance. A slow
+/// scene therefore takes one comparison per pair. BodyTable::frame_speed must be the speed of this motion.
 ///
 /// Each crossing is added to crossings.row as a contact, with the weights and the normal at the time when the features
 /// meet. find_contacts adds these contacts in the next attempt at the step. If a pair moves further than its candidate
 /// list is valid for, no features are tested. Instead beyond_lists is set, and the attempt must be repeated with new
-/// lists from find_candidates. In the last attempt pairs with crossings are marked as overlapping, and zero is
-/// returned.
+/// lists from find_candidates. In the last attempt (last_try) crossings are permitted: their pairs are marked as
+/// overlapping, and the function returns zero.
 Index find_crossings(Executor& executor, const CollisionInputs& inputs, const CollisionSettings& settings, Real h,
                      std::span<const Vec3> velocity_next, std::span<const Vec3> push_out, PairTable& pairs,
                      CrossingTable& crossings);

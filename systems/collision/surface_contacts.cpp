@@ -14,8 +14,7 @@ namespace skerry {
 
 namespace {
 
-// Rounding tolerance of the test whether faces lie between a point and another point, as a fraction of the distance of
-// the two points.
+// Rounding tolerance of the test whether faces lie between two points, as a fraction of the distance of the points.
 constexpr Real sight_slack = 1e-6;
 
 /// Tests single candidates of two surfaces.

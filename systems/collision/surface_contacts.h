@@ -32,7 +32,8 @@ public:
     Real least_distance() const { return least_distance_; }
 
 private:
-    // Small enough for the data of all collected candidates to fit into the first-level cache.
+    // Capacity of the collection. It is so small that the data of all collected candidates fit into the first-level
+    // cache.
     static constexpr std::size_t most_candidates = 256;
 
     template <class T>

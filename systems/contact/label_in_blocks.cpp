@@ -8,9 +8,9 @@
 namespace skerry {
 namespace {
 
-// Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes some microseconds, about as
-// long as it takes a worker to join. The number of blocks must stay small, because each block counts its contacts for
-// each other block.
+// Smallest block size and largest number of blocks. A block of 2^least_shift contacts takes a few microseconds, about
+// as long as it takes a worker to join. The number of blocks must stay small, because each block counts its contacts
+// for each other block.
 constexpr std::size_t least_shift = 7, most_blocks = 64;
 
 /// Splits the contacts into blocks whose size is a power of two.

@@ -21,8 +21,8 @@ struct ContactMeasures {
     Index slide_count = 0;
 };
 
-/// Spins of round bodies before and after the solve. The spin of a round body gives its surface an additional velocity
-/// at a contact, which the velocity of the core does not contain.
+/// Spins of round bodies before and after the solve. Spin adds to the velocity of the surface at a contact; the
+/// velocity of the core nodes does not contain it.
 struct RoundSpins {
     RigidNodes nodes{};
     RigidSpins spins{};

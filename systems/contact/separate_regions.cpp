@@ -126,8 +126,8 @@ Index separate_in_blocks(Executor& executor, std::span<const Stencil> stencil, s
                          std::span<Index> contact_region) {
     const Index count =
         label_in_blocks(executor, stencil, inverse_mass, groups, labels, regions.contacts, contact_region);
-    // The first item of a set of nodes without contacts is the next number after all contact numbers. The number of its
-    // region follows from this item.
+    // A set of nodes without contacts gets as its first item the next number after all contact numbers. Such sets are
+    // thereby numbered in order, and their regions follow the regions with contacts.
     const Index contacts = static_cast<Index>(stencil.size());
     Index item = contacts;
     const auto number = [&](Index node) {

@@ -28,7 +28,9 @@ inline Vec3 nearest_turn(const Vec3& rotation, const Vec3& to) {
     constexpr Real turn = 2 * std::numbers::pi;
     const Real angle = rotation.norm();
     if (angle == 0) {
-        const Real length = to.norm();  // the vectors are zero and full revolutions about any axis, here that of `to`
+        // A rotation by zero is described by the zero vector, and by full revolutions about any axis. The axis of `to`
+        // is used.
+        const Real length = to.norm();
         return length > 0 ? Vec3(turn * std::round(length / turn) / length * to) : rotation;
     }
     const Vec3 axis = rotation / angle;

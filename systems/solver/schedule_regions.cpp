@@ -29,7 +29,7 @@ constexpr Real fewest_sweeps = 4;
 // contacts.
 constexpr Real first_sweeps = 8, sweeps_of_size = 2;
 
-constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes some microseconds
+constexpr std::size_t regions_per_block = 256;  // chosen so that a block takes a few microseconds
 
 /// Number of contacts plus number of joint blocks of a region.
 Index contact_count(const RegionTable& regions, Index region) {

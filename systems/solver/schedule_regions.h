@@ -1,5 +1,6 @@
-// Order of the regions, and grouping into tasks (docs/methods/regions.md 4). The sweep counts of earlier steps and the
-// predictions affect only the time at which a region is solved, never its result.
+// Order in which regions are solved, and their grouping into tasks (docs/methods/regions.md 4). The cost of a region is
+// predicted from its sweep counts in earlier steps. A prediction affects only when a region is solved, never its
+// result.
 #pragma once
 
 #include "components/column.h"

@@ -13,7 +13,7 @@
 namespace skerry {
 namespace {
 
-constexpr std::size_t cleared_per_block = 4096;  // chosen so that a block takes some microseconds
+constexpr std::size_t cleared_per_block = 4096;  // chosen so that a block takes a few microseconds
 
 void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, RegionTable& regions) {
     LaneQueue queue(stage, regions);

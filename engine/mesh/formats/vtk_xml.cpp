@@ -70,7 +70,7 @@ public:
         ready_.erase(0, count);
         return bytes;
     }
-    /// Ends the program part that reads this array with a SceneError.
+    /// Throws a SceneError about this array.
     [[noreturn]] void complain(const std::string& found, const std::string& expected) const {
         reader_.complain(field_, found, expected, damaged);
     }

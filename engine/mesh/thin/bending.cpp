@@ -40,7 +40,7 @@ Real energy_density(const Mat3& displacement_gradient, const Bending& bending, E
 /// elements that cover a crossed tetrahedron.
 struct Surroundings {
     std::vector<std::array<Index, 4>> tetrahedra;
-    std::vector<MaterialZone> zones;  // with numbers of `tetrahedra`
+    std::vector<MaterialZone> zones;  // zones whose tetrahedra are numbered as in `tetrahedra`
     std::vector<Index> row;           // by tetrahedron of the mesh: its entry in `tetrahedra`, or no_index
     std::vector<Index> material;      // by entry of `tetrahedra`
 };
@@ -99,8 +99,7 @@ Real exact_energy(const std::array<Index, 4>& tetrahedron, std::span<const Vec3>
 std::vector<Real> bending_stiffness(const Mesh& mesh, std::span<const BentColumn> columns, std::size_t part_count,
                                     std::span<const MaterialZone> zones, std::span<const ElasticConstants> materials) {
     const Surroundings nearby = surroundings_of(mesh, columns, zones);
-    // In each tetrahedron, the bending of a part is that about the first column of the part that crosses the
-    // tetrahedron.
+    // Several columns of a part may cross a tetrahedron. The first of them determines how the part bends there.
     std::vector<std::vector<Bending>> bendings(nearby.tetrahedra.size());
     std::vector<Real> exact(part_count, 0), found(part_count, 0);
     for (const BentColumn& bent : columns) {

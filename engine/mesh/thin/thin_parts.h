@@ -16,7 +16,8 @@ struct ElasticConstants {
     Real poisson_ratio;  // Poisson's ratio
 };
 
-/// A part of a mesh that is a few cells thick, several times longer than it is thick, and not a small fraction of it.
+/// A part of a mesh that is a few cells thick and several times longer than it is thick. Parts with a very small
+/// fraction of the volume are left out.
 struct ThinPart {
     Vec3 place = Vec3::Zero();  // mean of the centroids of its boundary triangles [m]
     Real thickness = 0;         // mean thickness [m]

@@ -197,7 +197,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 void Recorder::sample(const World& world) {
     Impl& r = *impl_;
     const Real time = world.time();
-    // Without a step since the last call of sample(), the forces are already included in the sums.
+    // If no step was made since the last call of sample(), the sums already include the forces.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
         for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });

@@ -22,7 +22,7 @@ bool is_series_file(std::string_view file_name, std::string_view name);
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
-    /// Continues a series of which `frames` frames have been written, `frame_step` seconds apart. Files of these frames
+    /// Continues a series after `frames` frames, which were written `frame_step` seconds apart. Files of these frames
     /// are listed in the index if they still exist. `now` is the present state of the world.
     void go_on(const Frame& now, std::size_t frames, Real frame_step);
     /// Sets the names of the materials, in the order in which the materials were added. A material without a name is

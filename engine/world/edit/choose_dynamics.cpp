@@ -117,7 +117,7 @@ BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEs
     if (estimate.reason != DynamicsReason::cost) return BodyDynamics::explicit_elastic;
     const KnownElements* known = known_elements(model, body);
     if (!known) known = &trial.emplace(try_alone(model, body));
-    // Without a valid stable step there is something wrong with mesh or material, and the explicit body is refused.
+    // A body without a valid stable step has a faulty mesh or material. It is refused as an explicit body.
     if (!(known->rest_step > 0) || !std::isfinite(known->rest_step)) return BodyDynamics::explicit_elastic;
     compare_costs(model, body, *known, estimate);
     return estimate.implicit_cost * least_saving < estimate.explicit_cost ? BodyDynamics::implicit_elastic

@@ -76,8 +76,8 @@ bool sets_losses(const Model& model, Index material, std::span<const Index> tetr
 [[noreturn]] void refuse_losses(const std::string& body);
 
 /// Decides whether a new body, given by its mesh and placement, should be explicit or implicit. Writes the reason to
-/// `estimate`. If the costs depend on elements of which no results are stored, computes these and writes them to
-/// `trial`. `body` must be explicit.
+/// `estimate`. The costs may depend on properties of the body's elements. If no results for equal elements are stored,
+/// they are computed and written to `trial`. `body` must be explicit.
 BodyDynamics choose_dynamics(const Model& model, const NewBody& body, DynamicsEstimate& estimate,
                              std::optional<KnownElements>& trial);
 
@@ -124,7 +124,8 @@ void remember_elements(Model& model, Index row, const NewBody& body, ElementPlac
 /// Stores the results of a trial of the body `row` for later bodies with the same mesh.
 void remember_elements(Model& model, Index row, KnownElements trial);
 
-// In edit_colliders.cpp. The argument `now` is the time at which the row is added [s].
+// The following functions are defined in edit_colliders.cpp. The argument `now` is the time at which the row is added
+// [s].
 
 /// Returns surface properties, in which -1 marks a value that the settings leave out.
 SurfaceProperties surface_properties(const SurfaceSettings& settings);

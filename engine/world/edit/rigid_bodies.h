@@ -70,7 +70,8 @@ struct RigidSums {
     Vec3 angular_momentum = Vec3::Zero();  // about the origin [kg m^2/s]
 };
 RigidSums rigid_sums(const Model& model, std::size_t body);
-/// Energies and momenta of the free nodes of a held implicit body. Only the value `elastic` is that of the whole body.
+/// Energies and momenta of the free nodes of a held implicit body. The value `elastic` is an exception: it belongs to
+/// the whole body.
 RigidSums moving_sums(const Model& model, std::size_t body);
 /// Elastic forces on the nodes of an implicit body, by local node, in world axes [N].
 std::vector<Vec3> elastic_forces(const Model& model, std::size_t body);

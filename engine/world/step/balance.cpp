@@ -46,13 +46,13 @@ Present measure(const Model& model, Real lag) {
     }
     now.kinetic += added_energy(model);
     // The velocities are half a step older than the positions. The kinetic energy is corrected to first order by its
-    // change in half of the next kick, without contacts. The reason: let v and v' be the velocities before and after a
-    // kick, and m the mass. Elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
+    // change in half of the next kick, without contacts. With the velocities v and v' before and after a kick and the
+    // mass m, elastic bodies conserve m v.v' / 2 plus their elastic energy, as leapfrog does.
     if (lag != 0) {
         now.kinetic -=
             lag * kernels().elastic_power(model.all_elements(), model.all_blocks(), nodes.position, nodes.velocity);
         Real power = kicked.dot(model.settings.gravity);
-        if (model.forced)  // with the forces of the last step, as balance.work
+        if (model.forced)  // the forces of the last step are used, as in balance.work
             for (std::size_t n = 0; n < nodes.position.size(); ++n)
                 if (nodes.inverse_mass[n] > 0 && !model.is_held(static_cast<std::size_t>(nodes.body[n])))
                     power += nodes.applied_before[n].dot(nodes.velocity[n]);

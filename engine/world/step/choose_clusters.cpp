@@ -139,7 +139,7 @@ public:
         for (const std::size_t first : twin_) ++of_first_[first].bodies;
     }
 
-    /// True for a large body of which too much volume would be implicit at a step length [s]. Nothing is changed.
+    /// True if a body is large and too much of its volume would be implicit at a step length [s]. Changes nothing.
     bool too_many(std::size_t b, Real step) {
         OfTwins& twins = of_first_[twin_[b]];
         if (!(model_.bodies.nodes[b].size() > nodes_of_large) || known_of(twins, step)) return false;

@@ -99,7 +99,7 @@ struct StepPlan {
     Real regular = 0;
     Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
 };
-/// Plans the next step of an interval of which `left` seconds remain. The step is at most `fast_limit` seconds long.
+/// Plans the next step of an interval that ends in `left` seconds. The step is at most `fast_limit` seconds long.
 StepPlan plan_step(const Model& model, Real left, Real fast_limit);
 /// Longest step in which no body with a joint rotates by more than a small angle [s]. `fastest`: set to the row in
 /// BodyTable of the fastest of these bodies if this step is shorter than `shorter_than`.

@@ -28,8 +28,8 @@ constexpr Real most_shortening = 128;
 
 /// A step that deforms an element too fast, or for which Newton's method fails, is repeated with a shorter length. The
 /// shortest length is the stable step divided by this factor. The factor is large because material squeezed between a
-/// rigid body and held nodes is ejected at some hundred times the speed of the rigid body. Steps this short must remain
-/// the exception.
+/// rigid body and held nodes is ejected at several hundred times the speed of the rigid body. Steps this short must
+/// remain the exception.
 constexpr Real most_shortening_against_speed = 1024;
 
 /// A step that turns elements inside out is repeated with a shorter length. The shortest length is the stable step

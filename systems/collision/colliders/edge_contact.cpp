@@ -10,8 +10,8 @@ namespace skerry {
 
 namespace {
 
-// The derivative of the distance along the edge counts as zero if it is below this value. With such a derivative on the
-// complete edge, the distance would change by a hundredth of the default contact distance, which is 0.02 edge lengths.
+// The derivative of the distance along the edge counts as zero if it is below this value. Over the length of an edge,
+// such a derivative changes the distance by 1 % of the default contact distance (0.02 edge lengths).
 constexpr Real flat_slope = 2e-4;
 
 // A derivative of the distance along the edge above this value shows that the edge can only touch after a rotation.
@@ -125,7 +125,7 @@ public:
     }
 
 private:
-    // Distance of test parameters from a predicted position, so that they enclose the position.
+    // Test parameters are placed at this distance on both sides of a predicted position, so that they enclose it.
     static constexpr Real least_step = 0.45 * place_tolerance;
 
     /// Evaluates the derivative at `s` and shrinks the interval. Does nothing if `s` is outside of the interval.
@@ -200,7 +200,7 @@ private:
             add(1, last);
         }
     }
-    /// These two functions add a second contact point at least shortest_stretch before or behind the point `other`, if
+    /// These two functions add a second contact point, at least shortest_stretch before or after the point `other`, if
     /// the derivative there is not too steep. One evaluation shows this, because the derivative increases along the
     /// edge.
     void add_before(Real other) {

@@ -27,8 +27,8 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     const Real own_distance = body.contact_distance[first];
     const Real own_edge = body.mean_edge[first];
     if (kind == PairKind::collider) {
-        // Signed distances from the shape are valid at any depth. So the zone contains no depth behind the surface of
-        // the shape, but depths of points of the shape behind a face of the body.
+        // The signed distance from the collider is valid at any depth, so the zone needs no margin for points of the
+        // body inside the collider. face_depth is needed for points of the collider inside the body.
         const Real half = own_distance / 2, radius = body.round_radius[first], kept = half + radius;
         return {kept, half, own_edge, face_depth_fraction * own_edge, 0, kept, radius};
     }

@@ -15,14 +15,14 @@ namespace {
 constexpr Real min_bend = 0.01;
 
 // Angle by which the contact normal may lie outside of the range between the normals of the two faces of an edge [rad].
-// The rotation of the features in the step is added to it, because an edge could otherwise cross another edge in the
-// step in which a point in front of it was stopped.
+// The angle by which features may rotate in this step is added. Without it, two edges could cross in a step in which a
+// contact stops a point in front of them.
 //
 // The tolerance is needed for resting edges (docs/methods/collision.md 4.5). If another edge lies on one of the faces,
-// the normal is exactly at the limit of the range. If it lies on two edges of a face, the normal is outside of the
-// range: the flatter of the two edges permits a smaller distance, by a hundredth of the width of the face if both edges
-// are equally long. The contact at the other edge would be lost; the edge would fall onto the face, regain the contact
-// and be pushed out, again and again.
+// the normal is exactly at the limit of the range. If the other edge lies on two edges of a face, and one of these two
+// is flatter, the flatter one permits a smaller distance. The normal at the other one is then outside of the range, by
+// about 0.01 rad for edges of equal length. Without the tolerance the contact at that edge would be lost: the resting
+// edge would fall onto the face, regain the contact and be pushed out, again and again.
 constexpr Real border_angle = 3 * min_bend;
 
 Index opposite(const std::array<Index, 3>& triangle, const std::array<Index, 2>& edge) {
@@ -75,7 +75,7 @@ public:
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The bend between both faces is the same if it is measured from the second face.
+        // The angle between the two faces is the same if it is measured from the second face.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;
@@ -112,9 +112,10 @@ private:
         return squared > 0 ? Vec3(v - along.dot(v) / squared * along) : v;
     }
 
-    std::array<Vec3, 2> into_;    // vectors from the edge across each face, perpendicular to the edge [m]
-    std::array<Real, 2> border_;  // for each face: largest accepted component of `into_` along a direction [m]
-    Vec3 outward_;                // sum of the unit normals of both faces
+    std::array<Vec3, 2> into_;  // vectors from the edge across each face, perpendicular to the edge [m]
+    // for each face: largest product of `into_` and a direction for which faces() is true [m]
+    std::array<Real, 2> border_;
+    Vec3 outward_;  // sum of the unit normals of both faces
     bool is_axis_ = false, convex_ = false;
     Real slack_ = 0;  // slack of a crossing at the middle of the edge [m]
 };

@@ -15,9 +15,9 @@ enum class Side : std::uint8_t {
     behind,   // contact behind the triangle, provided that no other triangle of the body is nearer to the point
 };
 
-/// State of two surfaces. apart: a point behind a triangle has not passed through this triangle. Instead the body is
-/// thin or folded there, or an element is inverted, and the point must stay behind the triangle. may_overlap: a point
-/// behind a triangle is pushed out to the front.
+/// State of two surfaces. apart: the surfaces have not passed through each other. A point may still lie behind a
+/// triangle of a thin or folded body, or of an inverted element; then the point must stay behind this triangle.
+/// may_overlap: a point behind a triangle is pushed out to the front.
 enum class Surfaces : std::uint8_t { apart, may_overlap };
 
 struct PointTriangleContact {

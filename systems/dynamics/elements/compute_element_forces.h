@@ -99,8 +99,9 @@ inline constexpr Real near_stiffness = 0.7;
 /// Patches of elements, and columns for the forces and the dissipated energy of each patch.
 struct PatchForces {
     std::span<const Range> blocks, slots;
-    std::span<const Index> node;                            // by slot
-    std::span<const NodeLane> slot;                         // slot of each element node, times slot_width
+    std::span<const Index> node;  // by slot
+    // slot of each element node in its patch, as an offset in numbers: row index times slot_width
+    std::span<const NodeLane> slot;
     std::span<PaddedVec3> position;                         // by slot [m]; work memory
     std::span<PaddedVec3> force;                            // N, by slot
     std::span<ElementViscousImpulse> viscous_impulse = {};  // viscous impulse by block; empty if no element is viscous

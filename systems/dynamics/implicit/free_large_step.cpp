@@ -39,9 +39,9 @@ bool kick_large_free_body(const ImplicitBodies& bodies, const ImplicitLoads& loa
 
 namespace {
 
-/// Removes the rigid motion from the velocities and displacements at the end of a step. The rigid motion is that of the
-/// shape at the end of the step. Returns `taken` plus the decrease of energy [J]. `taken` must already contain the
-/// kinetic energy of the deformation at the start of the step.
+/// Removes the rigid motion of the shape at the end of the step from velocities and displacements. Returns `taken` plus
+/// the decrease of energy [J]. `taken` must already contain the kinetic energy of the deformation at the start of the
+/// step.
 Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std::size_t r, Real h, Real taken,
                   StiffBody& stiff, const ImplicitStrains& out) {
     const OfBody of(bodies, stiff, r);
@@ -57,8 +57,8 @@ Real end_in_shape(const ImplicitBodies& bodies, const ImplicitSpins& spins, std:
     out.large_next[r] = is_large;
     follow_shape(displacement_next, is_large, from_mesh * turned, stiff, out.moments_next[r], out.axes_next[r],
                  out.rotation_shaped[r]);
-    // Removes rigid-body motion from the velocities. The motion is that of the shape at the end of the step if strain
-    // is large, else that of the rest shape.
+    // Removes rigid-body motion from the velocities: the motion of the shape at the end of the step if strain is large,
+    // else the motion of the rest shape.
     for (Vec3& of_node : next) of_node = turned.transpose() * of_node;
     if (is_large) {
         step.before.resize(of.count);

@@ -184,7 +184,7 @@ bool StiffBody::becomes_large_in_places(std::span<const Vec3> displacement, cons
     if (!elements_.any_bends()) return false;
     if (energy_of_spin(angular_momentum) > stretching_spin_) return true;
     if (!looked_at_.empty()) {
-        Real way = 0;  // largest squared distance of a node from its displacement in the last evaluation [m^2]
+        Real way = 0;  // largest squared change of a node's displacement since the last evaluation [m^2]
         for (std::size_t k = 0; k < displacement.size(); ++k)
             way = std::max(way, (displacement[k] - looked_at_[k]).squaredNorm());
         if (way == 0 && angular_momentum == looked_with_) return large_there_;

@@ -141,8 +141,8 @@ public:
     void take_rigid_motion(std::span<Vec3> velocity) const;
     /// Computes node positions and lever arms (BodyShape) of the shape with the given displacements.
     void find_shape(const Displacements& displacement, BodyShape& shape) const;
-    /// Sets the shape, given by displacements, whose rigid-body motion is removed from the velocities that respond()
-    /// computes with a tangent.
+    /// Sets the shape by its displacements. respond() then removes the rigid-body motion of this shape from the
+    /// velocities, if its matrix is a tangent.
     void stand_in(const Displacements& displacement);
     /// Removes momentum and angular momentum, in the shape of stand_in(), from node velocities, by position in the
     /// elimination order [m/s].

@@ -17,8 +17,8 @@ Real angle_between(const Mat3& first, const Mat3& second) {
     return std::atan2(first.col(0).dot(second.col(1)), first.col(0).dot(second.col(0)));
 }
 
-/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge only the
-/// misalignment of the two hinge axes.
+/// Rotation vector of the first frame relative to the second, in axes of the second frame [rad]. For a hinge, the
+/// vector contains only the misalignment of the two hinge axes.
 Vec3 turning_error(JointKind kind, const Mat3& first, const Mat3& second) {
     if (kind != JointKind::hinge) return second.transpose() * rotation_vector(first * second.transpose());
     return second.transpose() * second.col(2).cross(first.col(2));

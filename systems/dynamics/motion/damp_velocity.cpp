@@ -42,7 +42,7 @@ T earlier(const T& x, const T& velocity, Real lag) {
     return x - lag * velocity;
 }
 
-// Sums over nodes, with the components of one vector side by side in a register.
+// Vectors in registers, with their components side by side. Sums over nodes use them.
 Real4 load(const Vec3& v) {
     return Real4{v[0], v[1], v[2], 0};
 }

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-// Number of bodies per job if the bodies move; a still body takes some microseconds.
+// Number of bodies per job if the bodies move; a still body takes a few microseconds.
 constexpr std::size_t watched_per_block = 64;
 
 /// Joins touching bodies and bodies connected by joints into groups. Marks bodies that touch a moving collider in

@@ -48,8 +48,7 @@ private:
     }
     Real volume(std::size_t place) const { return body_.elements.volume[block_of(place)][place % element_lanes]; }
 
-    /// Sums, at each node that needs it, the external force with which the elements around the node would be at rest
-    /// [N].
+    /// For each node that needs it, computes the external force that would balance the elements around the node [N].
     void sum_forces() {
         const RaggedView<RecoveryPlan::Corner> corners = plan_.corners.view();
         force_.assign(corners.size(), Vec3::Zero());
@@ -97,8 +96,9 @@ private:
     }
 
     /// Deformation gradient at the surface node of face `f`, with a stress that balances the traction. The traction is
-    /// the external force on the elements around the node, divided by the surface area. The part of this force due to
-    /// weight and inertia is subtracted; per volume it equals that at the inner nodes around.
+    /// the external force on the elements around the node, divided by the surface area. The part of the force that is
+    /// due to weight and inertia is subtracted first. Per volume, this part is taken to be the same as at the inner
+    /// nodes nearby.
     std::optional<Mat3> gradient_at(std::size_t f, std::span<const Index> strained,
                                     const MaterialConstants& material) const {
         const RecoveryPlan::Face& face = plan_.faces[f];

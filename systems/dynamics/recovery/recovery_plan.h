@@ -53,8 +53,8 @@ struct RecoveryPlan {
     };
     std::vector<Face> faces;
     Ragged<SurfaceTriangle> triangles;  // by face
-    // Rows of `corners` for each face. The first row is that of the node of the face, the others are those of the
-    // inner nodes of the tetrahedra around it.
+    // Rows of `corners` for each face: first the row of the face's own node, then the rows of the inner nodes of the
+    // tetrahedra around this node.
     Ragged<Index> force;
     /// Corner of an element.
     struct Corner {

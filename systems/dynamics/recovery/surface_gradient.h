@@ -26,9 +26,8 @@ struct SurfaceAround {
     Vec3 area = Vec3::Zero();    // outward area vector of the node: a third of that of its triangles [m^2]
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
-    // Terms of a least-squares fit: of all F, those that differ least from the deformation gradients within the
-    // triangles are F = stretch inverse + b across^T, where b = F N is free. Both are computed for a smooth surface
-    // only.
+    // Terms of a least-squares fit for a smooth surface: `inverse` and `across`. Among all F with a given product b = F
+    // N, F = stretch inverse + b across^T differs least from the deformation gradients within the triangles.
     Mat3 inverse = Mat3::Zero();  // inverse of the summed projectors onto the planes of the triangles [1/m^2]
     Vec3 across = Vec3::Zero();
 };

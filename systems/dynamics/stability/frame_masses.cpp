@@ -2,7 +2,7 @@
 //
 // The stiffness K_e of an element is computed with H = 2 mu 1 + lambda 1 1^T, an upper bound on dP/dF of the material
 // law at rest. Unlike the law, this H resists rotations. The highest modes of a mesh rotate little, so the highest
-// frequency with H is within some per cent of the true one. Each element gets the mass K_e / c. If c is above the
+// frequency with H is within a few per cent of the true one. Each element gets the mass K_e / c. If c is above the
 // highest eigenvalue of the complete body, these masses add up to no more than the masses of the nodes.
 #include "systems/dynamics/stability/frame_masses.h"
 

@@ -143,8 +143,8 @@ Mat3 turn_as_whole(const std::array<Real, 9>& deformation) {
 /// shares are not computed. They would hardly be sharper.
 constexpr Real well_in_frame = 1.25;
 
-/// Continues a stable-step check until `until` pieces are done. in_chunks(run, body) must divide the blocks of a wave
-/// into chunks, and call body(begin, end, StepEvaluation of the chunk) for each chunk.
+/// Continues a stable-step check until its first `until` pieces are done. in_chunks(run, body) must divide the blocks
+/// of the run into chunks, and call body(begin, end, StepEvaluation of the chunk) for each chunk.
 template <class InChunks>
 void look_on(const Pieces& pieces, Range blocks, std::uint64_t until, StepEvaluation& look, InChunks&& in_chunks) {
     SKERRY_CHECK(pieces.stiffness_sum.size() == pieces.position.size());

@@ -39,9 +39,9 @@ void continue_look(Executor& executor, const ElementInputs& elements, Range bloc
 /// Result of a stable-step check, available when all of its pieces are done.
 StableStep result_of(const StepEvaluation& look);
 
-/// Step that each element of these blocks allows by itself, with its mass shares; infinite for elements that limit no
-/// step and in unused lanes [s]. The shortest step is that of stable_step() if the body has neither mass forms nor
-/// frame masses.
+/// Step that each element of these blocks would allow alone, with its mass shares [s]. It is infinite for elements that
+/// limit no step and in unused lanes. If the body has neither mass forms nor frame masses, the shortest of these steps
+/// equals the result of stable_step().
 void element_steps(const ElementInputs& elements, Range blocks, std::span<const Vec3> position,
                    std::span<const Real> mass, std::span<Real> stiffness_sum, std::span<ElementLane> step);
 

@@ -402,8 +402,9 @@ SolveResult BodyOperator::take_newton_steps(Real error, Real tolerance, Index li
     constexpr Real enough = 0.1;
     // If the error has not decreased, this limit is multiplied by `solved`.
     constexpr Real solved = 1e-3;
-    constexpr Index most_in_round = 14;  // a longer round is unlikely to converge soon
-    constexpr Real softer = 10;          // factor by which the softness grows after a round that did not converge
+    // largest number of steps in a round; a longer round is unlikely to converge soon
+    constexpr Index most_in_round = 14;
+    constexpr Real softer = 10;  // factor by which the softness grows after a round that did not converge
     BodyEquations& equations = newton_memory();
     if (!std::exchange(inertia_is_known_, true)) assemble(equations);
     const std::span<Vec4> start = memory_.workspace[1], best = memory_.workspace[2];
