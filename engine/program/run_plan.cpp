@@ -14,7 +14,8 @@ long RunPlan::frames() const {
 }
 
 double RunPlan::length_of(long frame) const {
-    // Rounding must not shorten the last frame, because a longer run would then have another frame at this time.
+    // The last frame keeps its full length if only rounding makes it shorter. A longer run then has this frame at the
+    // same time.
     const double left = seconds - static_cast<double>(frame) * frame_step;
     return left > (1 - slack) * frame_step ? frame_step : left;
 }
@@ -46,7 +47,7 @@ double RunPlan::longest_step(const World& world) const {
 }
 
 double RunPlan::steps(const World& world) const {
-    // The frames after the first thousand have about as many steps on average.
+    // Only the first thousand frames are counted. The later ones have about the same mean number of steps.
     const long counted = std::min(frames(), 1000L);
     const double longest = longest_step(world);
     double count = 0, time = 0;

@@ -23,7 +23,7 @@ constexpr Real contact_share = 0.5;
 // Cost of the contacts of a body in a pile, divided by that of a cube on a face. In piles of 27 cubes of 27 to 729
 // nodes, and of 27 balls, the ratio was 26 to 57, for steps of 1 to 8 ms.
 constexpr Real pile_contacts = 40;
-// Cost of the contacts of an explicit body in the same piles, in a step and by node [ns].
+// Cost of the contacts of an explicit body in the same piles, per step and node [ns].
 constexpr Real node_contacts = 200;
 // Cost of factorising the matrix of an implicit body and of computing the matrix columns that contacts need [ns].
 constexpr Real factor_time = 150e6, factor_power = 2.7;

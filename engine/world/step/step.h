@@ -95,7 +95,8 @@ struct StepPlan {
     Real h = 0;       // s
     Real steps = 1;   // number of steps of length `h` until the end of the planned interval
     Real stable = 0;  // longest step that stability and the settings allow [s]
-    // Longest step that also suits rotating joints. Shorter attempts are compared with it [s].
+    // Longest step that also suits rotating joints [s]. The smallest allowed length of a repeated attempt is a fraction
+    // of it.
     Real regular = 0;
     Index stiffest = no_index;  // row in BodyTable of the body with the shortest stable step
 };

@@ -83,8 +83,8 @@ inline Real face_zone(const PairScale& scale) {
 }
 
 /// Distance that must remain between the cores (centres or axes) of round bodies during the motion of a step: the sum
-/// of their radii. Surfaces closer than a small part of the shell distance, which contacts maintain, count as in
-/// contact. If the shell distance is zero, surfaces touch and may overlap by rounding errors. Then only the cores are
+/// of their radii. The bodies count as in contact if the gap between their surfaces is below a small part of the shell
+/// distance. If the shell distance is zero, surfaces touch and may overlap by rounding errors. Then only the cores are
 /// tested for crossings.
 inline KeptApart kept_of_radii(const PairScale& scale) {
     return scale.radii > 0 && scale.shell > 0 ? KeptApart{scale.radii, contact_slack * scale.shell} : KeptApart{};

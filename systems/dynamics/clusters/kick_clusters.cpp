@@ -52,8 +52,9 @@ template <std::size_t Rows, class Visit>
 }
 
 /// Multiplies `Rows` rows of a symmetric matrix, from row `place` on, with columns 0 to width - 1; `width` is a
-/// multiple of the tile. Returns the sums of the rows. Adds the products of the transposed entries to the sums of these
-/// columns. So only one triangle of the matrix is read, because large matrices do not fit into the caches.
+/// multiple of the tile. Returns the sums of the rows. Uses each entry a second time, as the transposed entry, and adds
+/// that product to the sum of its column. Thus only one triangle of the matrix is read, which matters because large
+/// matrices do not fit into the caches.
 template <std::size_t Rows>
 [[gnu::always_inline]] inline RowSums<Rows> add_rows_and_columns(const Real* matrix, std::size_t count,
                                                                  std::size_t place, std::size_t width,

@@ -309,7 +309,8 @@ void fetch(std::span<const Index> node, std::span<const Vec3> position, PaddedVe
     SKERRY_CHECK(!node.empty());
     std::fill_n(force, node.size(), PaddedVec3{});
     const auto at = [&](std::size_t s) -> const Vec3& { return position[static_cast<std::size_t>(node[s])]; };
-    // The nodes ascend, so only the last of them can be the last of the position array.
+    // load_position reads one number past the position. Only the last node, the highest, may be at the end of the
+    // array.
     const std::size_t last = node.size() - 1;
     for (std::size_t s = 0; s < last; ++s)
         store_half(__builtin_shufflevector(load_position(&at(s)), Real4{}, 0, 1, 2, 4), to[s].lane);

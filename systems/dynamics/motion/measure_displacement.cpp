@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-// The work for a body takes a few microseconds when its displacement origins move.
+// Number of bodies per job. A body whose displacement origins move takes a few microseconds.
 constexpr std::size_t displaced_bodies_per_job = 16;
 
 // Displacement at which the displacement origins move to the nodes, as a fraction of the mean edge.

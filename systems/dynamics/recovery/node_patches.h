@@ -42,7 +42,7 @@ public:
     Real node_volume(Index node, Index material) const;
     /// Nodes of the kind `inner` in the tetrahedra around a node.
     std::vector<Index> inner_neighbours(Index node);
-    /// Nodes other than the kind `other` within two rings of tetrahedra of one material around a node.
+    /// Nodes of the kinds `inner` and `face` within two rings of tetrahedra of one material around a node.
     std::vector<Index> donors(Index node, Index material);
 
 private:

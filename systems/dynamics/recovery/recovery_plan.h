@@ -41,8 +41,8 @@ struct RecoveryPlan {
         Index face;         // row of `faces`; no_index for an inner node
     };
     std::vector<SmoothNode> smooth;
-    // Places of the elements around each row of `smooth`, ascending: elements with strain, and elements that have only
-    // the volumetric part of the stress.
+    // For each row of `smooth`: places of the elements around its node, ascending. `strained`: elements with strain.
+    // `volumetric`: elements that have only the volumetric part of the stress.
     Ragged<Index> strained, volumetric;
 
     struct Face {
@@ -65,11 +65,11 @@ struct RecoveryPlan {
     /// Linear fit at an edge, corner or interface of materials, for the elements of one material.
     struct Extrapolation {
         Real volume;         // quarter of the volume of the tetrahedra of this material around the node [m^3]
-        Real size;           // largest distance of a donor [m]
+        Real size;           // largest distance of a donor from the node [m]
         bool is_determined;  // false if the donors do not suffice for a fit
     };
     std::vector<Extrapolation> extrapolations;
-    Ragged<Index> donors;  // by extrapolation: rows of `smooth`
+    Ragged<Index> donors;  // by extrapolation: rows of `smooth` whose values the fit uses
     // Places of the elements of the material around the node of each extrapolation, as in `strained` and `volumetric`.
     // They are listed only if the fit is not determined.
     Ragged<Index> strained_around, volumetric_around;

@@ -2,9 +2,9 @@
 // the impulses against the previous direction, a bound on the change of a sweep, and a watchdog that returns to plain
 // sweeps if there is no progress.
 //
-// T is Real, or Real8 for eight regions in SIMD lanes; each lane has the bits of a region solved alone. The constants
-// were tuned by hand on generated problems: sheets, stacks, and jams, which are sheets with normals tilted by up to 70
-// degrees.
+// T is Real, or Real8 for eight regions in SIMD lanes; the result of each lane is bitwise equal to that of a region
+// solved alone. The constants were tuned by hand on generated problems: sheets, stacks, and jams, which are sheets with
+// normals tilted by up to 70 degrees.
 #pragma once
 
 #include <algorithm>

@@ -79,7 +79,7 @@ struct RegionMemory {
     // For each cluster and for each body: last region that touched the cluster or body.
     Column<Index> region_of_cluster, region_of_rigid;
     Column<RigidPart> rigid_part;  // by contact; empty if there are no rigid bodies
-    Column<JointLaw> joint_law;    // by joint row; entry 0 belongs to the row number contact_rows
+    Column<JointLaw> joint_law;    // by joint row; joint rows follow the contact rows, so entry 0 is row contact_rows
     // For regions with joints: index of the first row of the region. The contacts of the region come first, then the
     // joints.
     Column<std::size_t> joint_base;
