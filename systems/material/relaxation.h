@@ -66,7 +66,7 @@ template <class T>
     return multiply(F, S) + P.of_other * P.other;
 }
 
-/// Sum of the strains of the springs of all Maxwell elements, twice. `volume`: volume strain of the spring of the bulk
+/// Doubled sum of the strains of the springs of all Maxwell elements. `volume`: volume strain of the spring of the bulk
 /// viscosity.
 template <class T>
 struct ViscousStretch {
@@ -74,7 +74,7 @@ struct ViscousStretch {
     T volume;
 };
 
-/// Strains of the springs of the Maxwell elements, twice. The strain of a spring is the total strain minus the strain
+/// Doubled strains of the springs of the Maxwell elements. The strain of a spring is the total strain minus the strain
 /// of its dashpot.
 template <class T>
 struct Springs {

@@ -35,8 +35,8 @@ void forget_impulses(WorldState& world, std::size_t body) {
     }
 }
 
-/// Makes the strains of the springs of a body zero, and sets its frames. `turn`: rotation of the body since its
-/// elements were built.
+/// Sets the strains of the springs of a body to zero, and the corotational frames of its elements to `turn`, the
+/// rotation of the body since its elements were built.
 void relax_elements(Model& model, std::size_t body, const Mat3& turn) {
     ElementBlockTable& elements = model.elements;
     const Range blocks = model.bodies.blocks[body];

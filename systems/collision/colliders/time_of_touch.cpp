@@ -129,9 +129,9 @@ Touch nearest_on_edge(const ColliderGeometry& geometry, Index part, const Nodes&
     return nearest;
 }
 
-/// Nearest points of a face and the disc inside a rim. The inner part of a face is first touched by the point of the
-/// rim that reaches furthest towards the face, from either side of it. If the projection of this point is beside the
-/// face, an edge of the face is nearest, unless the rim has passed through the face.
+/// Nearest points of a face and the disc inside a rim. The interior of a face is first touched by the rim point that
+/// reaches furthest towards the face; the rim may be on either side of the face. If the projection of this point is
+/// beside the face, an edge of the face is nearest, unless the rim has passed through the face.
 Touch nearest_on_rim(const ColliderGeometry& geometry, Index k, const Nodes& corner) {
     const FaceContact front = face_contact(geometry, k, corner),
                       back = face_contact(geometry, k, {corner[0], corner[2], corner[1]});
