@@ -111,9 +111,9 @@ struct PairTable {
     Column<Real> block_nearest;
     SelfSearch self;
 
-    /// Visits the columns with one row per pair. The set of overlapping pairs is state, because a broad search can only
-    /// recover the pairs that do not overlap. The candidate lists have the role `memory`; this function does not visit
-    /// them.
+    /// Visits the columns with one row per pair. The overlapping pairs are part of the state of the world; all other
+    /// pairs are not, because a broad search finds them again. The candidate lists have the role `memory`; this
+    /// function does not visit them.
     void for_each_row_column(auto&& visit) {
         visit("key", key, ColumnRole::state);
         visit("kind", kind, ColumnRole::state);

@@ -187,8 +187,8 @@ public:
         return greatest;
     }
 
-    /// Length of time after `time` during which no node can pass the tangent plane at the nearest point of the
-    /// collider, as a fraction of the step.
+    /// Duration after `time` in which no node can pass the tangent plane at the nearest point of the collider, as a
+    /// fraction of the step.
     Real time_before_plane(const Touch& touch, const Nodes& nodes, Real time) const {
         const Vec3 normal = rotation(time) * touch.normal;
         Real least = infinity;

@@ -61,7 +61,7 @@ struct Body {
     Real h;
     Real reach;         // upper bound on the motion of a node in this step, in the frame of the body [m]
     Real travel_bound;  // upper bound on the travel (distance moved) of the body at the end of this step [m]
-    // Travel of the body at the time from which a new travel budget (distance without a check) counts, see
+    // Travel of the body from which a new travel budget (distance without a check) is counted, see
     // measure_displacement.h [m]
     Real travel_base;
 

@@ -21,7 +21,7 @@ struct SurfaceTriangle {
 /// Returns nullopt for a triangle without area. `rest`: rest positions of all nodes [m].
 std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node, std::span<const Vec3> rest);
 
-/// Surface triangles around a node at rest, summed up.
+/// Sums over the surface triangles around a node, at rest.
 struct SurfaceAround {
     Vec3 area = Vec3::Zero();    // outward area vector of the node: a third of that of its triangles [m^2]
     Vec3 normal = Vec3::Zero();  // unit vector along `area`

@@ -132,8 +132,8 @@ private:
         }
     };
 
-    /// Adds to three zero rows the entries of the node with number `place` along the body. Each row begins at its
-    /// diagonal.
+    /// Adds the entries of one node to three rows that are zero so far. `place`: number of the node along the body.
+    /// Each row begins at its diagonal.
     void add(std::size_t place, Real* rows, std::size_t stride) const {
         for (const ElementCorner& corner : corners_[place]) {
             const BlockNodes nodes = elements_.nodes_of(corner.block);
