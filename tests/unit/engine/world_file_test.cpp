@@ -156,6 +156,18 @@ TEST_CASE("a saved world whose header is not that of a saved world is refused, a
     CHECK_THAT(refusal("\"note\"", "\"npte\""), Contains("expected ,\"note\":\""));
 }
 
+TEST_CASE("a saved world with an array that no column has is refused", "[unit]") {
+    const Bytes bytes = World().to_bytes();
+    const SavedFile file("file", bytes);
+    std::vector<ArraySource> arrays;
+    for (const auto& [name, array] : file.arrays())
+        arrays.push_back({name, array.number, array.rows, array.width, array.bytes.data(), array.row_bytes()});
+    CHECK(World::from_bytes(saved_bytes(arrays, file.texts())).state_hash() == World().state_hash());
+    arrays.push_back({"nodes/colour", NumberType::uint8, 0, 3, nullptr, 3});
+    CHECK_THROWS_WITH(World::from_bytes(saved_bytes(arrays, file.texts())),
+                      Contains("nodes: colour: found an array, expected no array of this name"));
+}
+
 TEST_CASE("a world in memory has the bytes of its file, and is read like a file", "[unit]") {
     const World world = full_world();
     const FileOfWorld saved(world);
@@ -233,7 +245,7 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
         renew_checksum(bytes);
         return saved.refusal(bytes);
     };
-    constexpr unsigned huge = 7, none = 7, infinite = 8, minus_one = 8;
+    constexpr unsigned denormal = 6, huge = 7, none = 7, infinite = 8, minus_one = 8;
     CHECK_THAT(refusal("nodes/position", 4, none), Contains("nodes: position: found nan at row 1, expected finite"));
     CHECK_THAT(refusal("nodes/velocity", 0, infinite), Contains("nodes: velocity: found inf at row 0"));
     CHECK_THAT(refusal("elements/material", 3, huge), Contains("elements: material: found 2147483647 at row 3"));
@@ -245,6 +257,8 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
     CHECK_THAT(refusal("pairs/candidates/first", 0, huge), Contains("pairs/candidates: first: found"));
     CHECK_THAT(refusal("last_step/contacts/stencil/node", 0, huge),
                Contains("last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("warm_start/step", 0, denormal),
+               Contains("warm_start: step: found 0.000000, expected a time > 0"));
     CHECK_THAT(refusal("records/body_built", 0, none), Contains("records: body_built"));
     CHECK_THAT(refusal("settings/method", 0, 5), Contains("settings: method: found 255"));
     CHECK_THAT(refusal("settings/tolerance", 0, 1), Contains("tolerance: found -1"));
