@@ -190,8 +190,9 @@ TEST_CASE("every control has the effect of its function of World", "[unit]") {
 TEST_CASE("a force on a body accelerates its centre of mass and does not rotate it", "[unit]") {
     World world({.gravity = {0, 0, 0}});
     const auto rubber = world.add_material({.young_modulus = 1e6});
-    const BodyHandle box =
-        world.add_body(mesh::box({0.3, 0.1, 0.2}, {3, 1, 2}), {.material = rubber, .dynamics = BodyDynamics::rigid});
+    Mesh uneven = mesh::box({0.3, 0.1, 0.2}, {3, 1, 2});  // the mean of its nodes is not its centre of mass
+    for (Vec3& node : uneven.nodes) node.x() += 2 * node.x() * node.x();
+    const BodyHandle box = world.add_body(uneven, {.material = rubber, .dynamics = BodyDynamics::rigid});
     const std::vector<Real> force{0, 0, 2, 0, 0, 2, 0, 0, 0};
     const RolloutResult result = rollout(
         world, 1, calls(3, {{BodyForceControl{box}, force}}, {{"box", VelocityProbe{box}}, {"pose", PoseProbe{box}}}));
