@@ -82,8 +82,9 @@ class CheckpointTest(ProgramCase):
 
     def test_a_run_with_a_probe_of_a_joint_goes_on_with_the_same_rows(self):
         lever = dict(SCENE["bodies"][0], name="lever", dynamics="rigid", position=[0, 0, 1])
+        hinge = {"kind": "hinge", "first": "lever", "point": [0, 0, 1.2], "axis": [0, 1, 0]}
         scene = self.write("lever.json", dict(
-            SCENE, bodies=[lever], joints=[{"kind": "hinge", "first": "lever", "point": [0, 0, 1.2], "axis": [0, 1, 0]}],
+            SCENE, bodies=[lever], joints=[hinge],
             probes=[{"name": "hinge", "quantity": "joint", "joint": "joint_0"}]))
         whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
         self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
