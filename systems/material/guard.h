@@ -28,11 +28,11 @@ struct Guard {
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
     /// dP/dF in the form of Tangent [Pa], with p = -k (J0 - J), J = det F < J0, the stretches s of F and the stretches
-    /// c of cof F (k: axis other than i and j):
+    /// c of cof F (m: axis other than i and j):
     ///     normal_ii = k c_i^2
-    ///     normal_ij = k c_i c_j + p s_k
-    ///     flip_k    = -p s_k
-    ///     twist_k   = p s_k
+    ///     normal_ij = k c_i c_j + p s_m
+    ///     flip_m    = -p s_m
+    ///     twist_m   = p s_m
     /// Negative eigenvalues are then set to zero.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 

@@ -36,8 +36,8 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
-    // Uses an upper bound on the eigenvalues of W_ii instead of W_ii. The step is exact if W_ii is a scalar times the
-    // identity, otherwise it is damped.
+    // The exact step would use the diagonal block W_ii. This step uses an upper bound on the eigenvalues of W_ii
+    // instead: it is exact if W_ii is a scalar times the identity, otherwise it is damped.
     return project(i, impulse - u / of.steepest);
 }
 
