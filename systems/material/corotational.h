@@ -21,9 +21,10 @@ struct Corotational {
     /// (docs/methods/elasticity.md 2.2) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with the
-    /// rotation R nearest to F, S = R^T F, and the singular values s of F, the smallest with the sign of det F
-    /// (docs/methods/stable_step.md 4.2) [Pa]. Infinite if R is not unique.
+    /// Largest eigenvalue of dP/dF [Pa] (docs/methods/stable_step.md 4.2), with the rotation R nearest to F, S = R^T F,
+    /// and the singular values s of F, the smallest with the sign of det F:
+    ///     max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j))
+    /// It is infinite if R is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
     /// dP/dF in the form of Tangent [Pa], with the rotation R nearest to F, S = R^T F, and the stretches s:

@@ -46,7 +46,7 @@ private:
 ///
 /// A contact assumes that its point moves on a straight path within a step. While a tilted cylinder rotates about its
 /// axis by less than a radian, the straight paths of these points come no nearer to the side than the nearest point.
-/// Paths of points at other angles would, and would cause false contacts.
+/// Points at other angles could come nearer on such a path, and would cause false contacts.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {
