@@ -79,8 +79,8 @@ bool any_overlap(const Mesh& mesh) {
 
 /// Reverses the orientation of inverted tetrahedra, unless they would then overlap other tetrahedra. Some programs list
 /// the nodes of all or some tetrahedra in the opposite order. In another kind of faulty file, a node lies in a wrong
-/// place: tetrahedra at this node are inverted, too, but share each face with a tetrahedron on its other side. Such
-/// tetrahedra are left as they are.
+/// place: tetrahedra at this node are inverted, too, but share each face with a tetrahedron on its other side. These
+/// are left as they are.
 void turn_inverted(const std::string& path, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
