@@ -17,8 +17,8 @@ enum class MaterialModel { linear, corotational, stable_neo_hookean, guard };
 /// the edge. edge_node_smoothed: elements at edges for the shear stress, elements at nodes for the volumetric stress.
 /// smoothed: edge_smoothed up to a Poisson ratio of 0.25, edge_node_smoothed above (docs/methods/elasticity.md 7).
 enum class ElementKind { linear, smoothed, edge_smoothed, edge_node_smoothed };
-/// Friction laws. cone: Coulomb's friction cone. pyramid: the four-sided approximation of the cone used in the paper
-/// (docs/methods/friction.md 1.3).
+/// Friction laws. cone: Coulomb's friction cone. pyramid: the approximation of the cone with four sides of Lazarevych
+/// et al. (2010) (docs/methods/friction.md 1.3).
 enum class Friction { cone, pyramid };
 enum class ContactRegions { separate, global };
 enum class SolverMethod { automatic, ags, pgs, pcg_pgs, newton, pcg_fr, pcg_pr };

@@ -17,7 +17,7 @@ struct StepEvaluation {
     std::uint64_t piece = 0;   // number of the next piece of the check
     Index broken = no_index;   // first element whose frequency bound is not finite
     Real highest = 0;          // greatest bound of the squared frequency omega^2 of an element so far [1/s^2]
-    Index element = no_index;  // element with this greatest bound; valid if `highest` is above zero
+    Index element = no_index;  // element with the bound `highest`; valid if `highest` is above zero
     // Value of `highest` at the start of the current group of blocks, which are checked in parallel [1/s^2].
     Real known = 0;
     // For a body with frame masses (frame_masses.h): `deformation` is the sum of V F over its elements with volume V

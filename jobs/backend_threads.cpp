@@ -157,8 +157,8 @@ private:
         --sleepers_;
     }
 
-    /// Wakes sleeping workers because of `useful` new stages or blocks. Call it after unlocking the mutex, so that a
-    /// woken thread does not have to wait for the mutex.
+    /// Wakes sleeping workers after `useful` new stages or blocks have been announced: one worker for one, otherwise
+    /// all. Call it after unlocking the mutex, so that a woken thread does not have to wait for the mutex.
     void wake(Index useful) {
         if (sleepers_ == 0) return;
         if (useful == 1) {

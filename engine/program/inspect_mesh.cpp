@@ -69,9 +69,9 @@ void print_bound(const StepBound& bound, const char* indent) {
                   << short_number(100 * w.share) << " % of the tetrahedra): a step of " << with_unit(w.step, "s")
                   << ", " << compared(w.step / bound.step) << "\n";
     if (bound.alike_share > 0)
-        std::cout << indent << "even the best of the worst " << short_number(100 * bound.alike_share)
-                  << " % of the tetrahedra allows a step only " << short_number(bound.alike_ratio)
-                  << " times as long: their removal was not tried\n";
+        std::cout << indent << "removal of the worst " << short_number(100 * bound.alike_share)
+                  << " % of the tetrahedra was not tried: their longest step is only "
+                  << short_number(bound.alike_ratio) << " times their shortest\n";
 }
 
 namespace {

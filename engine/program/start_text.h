@@ -27,8 +27,8 @@ inline Json overlaps_json(const WorldReport& report) {
 inline constexpr Real visible_share = 0.05;
 
 inline std::string into_shell_text(Real depth) {
-    return "surfaces start up to " + with_unit(depth, "m") +
-           " too deep in each other's contact distance: move the bodies apart, or reduce contact_distance";
+    return "at the start, surfaces are up to " + with_unit(depth, "m") +
+           " closer than their contact distance: move the bodies apart, or reduce contact_distance";
 }
 
 /// Rotation of a collider per step above which a warning is given [rad]. Contacts assume that the surface moves

@@ -46,9 +46,9 @@ struct StepBound {
     // small.
     std::vector<CostlyTetrahedron> worst;
     std::vector<StepWithout> without;
-    // In a large mesh, `without` is not computed for a fraction of tetrahedra whose steps are too similar. In this case
-    // alike_share is the fraction, and alike_ratio the ratio of the longest to the shortest step among these
-    // tetrahedra. If nothing was skipped, both are 0.
+    // In a large mesh, removal of the worst tetrahedra is not tried if their steps are too similar. alike_share is then
+    // the fraction whose removal was not tried, and alike_ratio the ratio of the longest to the shortest step among
+    // them. Both are 0 if nothing was skipped.
     Real alike_share = 0;
     Real alike_ratio = 0;
 };

@@ -93,9 +93,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
                  {.meaning = "whether the body can touch itself; default: false"})
             .key("dynamics", &BodyEntry::dynamics,
                  {.meaning =
-                      "model of the motion. \"automatic\" (default): implicit if the body is stiff, without "
-                      "self-contact, pins and a set loss_factor, and this more than halves the predicted cost, "
-                      "otherwise explicit; "
+                      "model of the motion. \"automatic\" (default): implicit if the body is stiff, has no "
+                      "self-contact, no pins and no set loss_factor, and if implicit integration more than halves the "
+                      "predicted cost; otherwise explicit; "
                       "\"explicit\": any deformation, short steps; \"implicit\": small deformation, any step size, for "
                       "stiff bodies; \"rigid\": no deformation, with the mass and inertia of the mesh"})
             .key("collision_group", &BodyEntry::collision_group, group_doc)

@@ -148,7 +148,7 @@ const Rule<MotionEntry>& rule_of<MotionEntry>() {
             .key("keys", &MotionEntry::keys,
                  {.meaning =
                       "poses in the order of ascending time. The poses of a collider replace its own pose and the "
-                      "point of a plane; without any rotation in the keys the collider keeps its own"})
+                      "point of a plane. If no key has a rotation, the collider keeps its own rotation"})
             .at_most_one({"velocity", "keys"})
             .at_most_one({"angular_velocity", "keys"})
             .check([](const Place& place, const MotionEntry& motion) {

@@ -38,7 +38,7 @@ struct PairData {
 /// Contact point between two features. An analytic collider or a rigid cylinder is a single feature. The feature of a
 /// sphere or capsule is its core (centre or axis), but against a cylinder it is its surface.
 struct ContactPlace {
-    Vec3 point;                            // unit normal, directed from the second feature to the first
+    Vec3 point;                            // contact point on the second feature [m]
     Vec3 normal;                           // unit normal from the second to the first feature
     Real distance;                         // signed distance of the features [m]
     Real contact_distance;                 // distance that the contact maintains between the features [m]

@@ -43,8 +43,9 @@ public:
     /// for later blocks are unused, because no region begins after its contacts.
     Index* of(std::size_t block) { return place_.data() + block * blocks_; }
 
-    /// Converts the counts to positions in a list of all contacts, sorted by the block in which the region of a contact
-    /// begins, then by contact. Returns the first position for each block, and the end of the list.
+    /// Replaces the counts in the table by positions in a list of all contacts. The list is sorted by the block in
+    /// which a contact's region begins; within a block, contacts keep their order. Returns the list position at which
+    /// each block begins, then the length of the list.
     std::array<Index, most_blocks + 1> cut() {
         std::array<Index, most_blocks + 1> begin;
         Index sum = 0;

@@ -20,8 +20,9 @@ Real Corotational::stiffness_bound(const MaterialConstants& material, const Mat3
     Vec3 s = Stretches(F).stretch;
     std::ranges::sort(s, std::greater<Real>());
     const Real twist = la * (s.sum() - 3) - 2 * mu;
-    // dP/dF has the eigenvalue 2 mu for every change of F orthogonal to R, and 2 mu + 3 la for a change of F along R.
-    // Changes of F that rotate R have the additional term twist * 2/(s_i + s_j), with the stretches s.
+    // R is the rotation nearest to F, s are the stretches. dP/dF has the eigenvalue 2 mu for every change of F
+    // orthogonal to R, and 2 mu + 3 la for a change of F along R. For changes of F that rotate R, twist * 2/(s_i + s_j)
+    // is added to the eigenvalue.
     Real bound = 2 * mu + std::max(Real{0}, 3 * la);
     if (twist > 0) bound = std::max(bound, 2 * mu + twist * 2 / std::max(s[1] + s[2], Real{0}));
     return bound;

@@ -21,14 +21,17 @@ struct Corotational {
     /// (docs/methods/elasticity.md 2.2) [Pa].
     static Mat3 stress(const MaterialConstants& material, const Mat3& F);
 
-    /// Largest eigenvalue of dP/dF: max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j)), with the
-    /// rotation R nearest to F, S = R^T F, and the singular values s of F, the smallest with the sign of det F
-    /// (docs/methods/stable_step.md 4.2) [Pa]. Infinite if R is not unique.
+    /// Largest eigenvalue of dP/dF [Pa] (docs/methods/stable_step.md 4.2), with the rotation R nearest to F, S = R^T F,
+    /// and the singular values s of F, the smallest with the sign of det F:
+    ///     max(2 mu + 3 lambda, 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j))
+    /// It is infinite if R is not unique.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa], with the rotation R nearest to F, S = R^T F, and the stretches s: `normal` is
-    /// 2 mu I + lambda 1 1^T and `flip` is 2 mu. `twist` is 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j); the second
-    /// term arises because R rotates with F.
+    /// dP/dF in the form of Tangent [Pa], with the rotation R nearest to F, S = R^T F, and the stretches s:
+    ///     normal  = 2 mu I + lambda 1 1^T
+    ///     flip_k  = 2 mu
+    ///     twist_k = 2 mu + (lambda (tr S - 3) - 2 mu) 2/(s_i + s_j), where i and j are the axes other than k.
+    /// The second term of `twist` arises because R rotates with F.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane, for the given rotation R nearest to F [J/m^3].
@@ -66,12 +69,13 @@ struct Corotational {
 
 private:
     /// Returns kappa for the upper bound of dP/dF (docs/methods/stable_step.md 4.2). With the rotation R nearest to F,
-    /// S = R^T F and G = tr(S) I - S, kappa (X - R X^T R) is an upper bound of (la (tr S - 3) - 2 mu) G^-1 for changes
-    /// X of F that rotate R.
+    /// S = R^T F, G = tr(S) I - S and c = lambda (tr S - 3) - 2 mu, kappa (X - R X^T R) is an upper bound of the effect
+    /// c G^-1 of the rotation of R, for changes X of F that rotate R.
     ///
-    /// The eigenvalues of G are sums s_i + s_j of stretches. They lie between mean - 2 spread and mean + 2 spread, and
-    /// are bounded below by 1e-3, where R is about to jump. Under compression kappa is negative, but at least -mu: the
-    /// stiffness stays non-negative, because a negative eigenvalue deflects the motion and does not limit the step.
+    /// The eigenvalues of G are the sums s_i + s_j of two stretches. They lie between mean - 2 spread and mean + 2
+    /// spread. Sums below 1e-3 are replaced by 1e-3, because R is about to jump there. Under compression kappa is
+    /// negative, but at least -mu: the stiffness stays non-negative, because a negative eigenvalue deflects the motion
+    /// and does not limit the step.
     template <class T>
     static T frame_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, const LaneMat3<T>& R) {
         constexpr Real least = 1e-3;

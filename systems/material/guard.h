@@ -27,9 +27,13 @@ struct Guard {
     /// |F| (docs/methods/stable_step.md 4.3) [Pa].
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]. With p = -k (J0 - J), the stretches s of F and the stretches c of cof F:
-    /// `normal` is k c c^T, plus p s_k in the entries of the two axes i, j other than k. `flip` is -p s_k and `twist`
-    /// is p s_k.
+    /// dP/dF in the form of Tangent [Pa], with p = -k (J0 - J), J = det F < J0, the stretches s of F and the stretches
+    /// c of cof F (m: axis other than i and j):
+    ///     normal_ii = k c_i^2
+    ///     normal_ij = k c_i c_j + p s_m
+    ///     flip_m    = -p s_m
+    ///     twist_m   = p s_m
+    /// Negative eigenvalues are then set to zero.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane [J/m^3].

@@ -16,7 +16,7 @@ Mat3 Linear::stress(const MaterialConstants& material, const Mat3& F) {
 }
 
 Real Linear::stiffness_bound(const MaterialConstants& material, const Mat3&) {
-    // The Lame constant lambda is negative for auxetic materials.
+    // For auxetic materials lambda is negative, and 2 mu is the largest eigenvalue.
     return 2 * material.shear_modulus + std::max(Real{0}, 3 * material.lame_lambda);
 }
 

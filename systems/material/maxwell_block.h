@@ -121,10 +121,12 @@ struct SixFloats {
 
 /// Constants of a step of the Maxwell elements of a body, which all elements share. Moduli are relative to `modulus`.
 struct MaxwellStep {
-    std::array<float, maxwell_count> kept;  // fraction 1 / (1 + h r) of the spring strain that remains after the step
-    std::array<float, maxwell_count> relaxes;  // h r: flow of the dashpot in the step over the remaining spring strain
-    float shear, trace, bulk;                  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
-    Real modulus;                              // reference modulus: sum of the Lame constants of the material [Pa]
+    // fraction 1 / (1 + h r) of the spring strain that remains after a step h at the rate r
+    std::array<float, maxwell_count> kept;
+    // h r: strain change of the dashpot in the step, divided by the remaining spring strain
+    std::array<float, maxwell_count> relaxes;
+    float shear, trace, bulk;  // moduli mu, lambda / 2 and bulk / 2 of a spring (ViscousModuli)
+    Real modulus;              // reference modulus: sum of the Lame constants of the material [Pa]
 
     MaxwellStep(const MaterialConstants& material, const RelaxationRates& rates, Real share, Real h)
         : modulus(material.shear_modulus + std::abs(material.lame_lambda)) {
@@ -141,9 +143,11 @@ struct MaxwellStep {
 
 /// Relaxes the springs of a block by backward Euler. `strain`: twice Green's strain in this step. `relaxes_volume`:
 /// step length times the rate of the bulk viscosity. `last`: springs in the last step; `next` receives those of this
-/// step. Returns the second Piola-Kirchhoff stress of all springs over step.modulus. Sets `dissipated` to the
-/// energy density that the dashpots dissipated since the last step, over a quarter of step.modulus: the mean of
-/// the spring stresses in the last and this step, times the flow of the dashpots.
+/// step. Returns the second Piola-Kirchhoff stress of all springs, divided by step.modulus.
+///
+/// The dashpots dissipate, per volume, the mean of the spring stresses in the last and this step, times the strain
+/// change of the dashpots. `dissipated` receives this energy density since the last step, divided by a quarter of
+/// step.modulus.
 [[gnu::always_inline]] inline LaneSymmetric<Float8> relax(const MaxwellStep& step, const LaneSymmetric<Float8>& strain,
                                                           const Float8& relaxes_volume, const SpringStrain& last,
                                                           SpringStrain& next, Float8& dissipated) {

@@ -34,7 +34,8 @@ Mat3 StableNeoHookean::stress(const MaterialConstants& material, const Mat3& F) 
 
 Real StableNeoHookean::stiffness_bound(const MaterialConstants& material, const Mat3& F) {
     const auto [mu, la] = model_moduli(material);
-    // The largest root e of e^3 - |F|^2 e - 2 J = 0, with J = det F, is at most 2/sqrt(3) |F|.
+    // The largest eigenvalue of d(cof F)/dF is the largest root e of e^3 - |F|^2 e - 2 J = 0, with J = det F. It is at
+    // most 2/sqrt(3) |F|.
     return 1.125 * mu + la * cofactor_of(F).squaredNorm() +
            2 / std::sqrt(Real{3}) * std::abs(la * (F.determinant() - 1) - 0.75 * mu) * F.norm();
 }

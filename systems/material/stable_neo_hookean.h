@@ -38,9 +38,13 @@ struct StableNeoHookean {
     /// 2 mu Ic / (Ic + 1)^2 over Ic = |F|^2, reached at Ic = 3.
     static Real stiffness_bound(const MaterialConstants& material, const Mat3& F);
 
-    /// dP/dF in the form of Tangent [Pa]. With Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu,
-    /// the stretches s of F and the stretches c of cof F: `normal` is a I + 2 mu/(Ic + 1)^2 s s^T + la c c^T, plus p
-    /// s_k in the entries of the two axes i, j other than k. `flip` is a - p s_k and `twist` is a + p s_k.
+    /// dP/dF in the form of Tangent [Pa], with Ic = |F|^2, J = det F, a = mu (1 - 1/(Ic + 1)), p = la (J - 1) - 3/4 mu,
+    /// the stretches s of F and the stretches c of cof F (k: axis other than i and j):
+    ///     normal_ii = a + 2 mu/(Ic + 1)^2 s_i^2 + la c_i^2
+    ///     normal_ij = 2 mu/(Ic + 1)^2 s_i s_j + la c_i c_j + p s_k
+    ///     flip_k    = a - p s_k
+    ///     twist_k   = a + p s_k
+    /// Negative eigenvalues are then set to zero.
     static Tangent tangent(const MaterialConstants& material, const Mat3& F);
 
     /// Elastic energy per rest volume in each lane [J/m^3].
@@ -88,13 +92,13 @@ struct StableNeoHookean {
         return 1.125 * mu + (la / 3) * (square * square) + (slope < 0.0 ? -slope : slope) * (square * (1.0 / 3) + 1.0);
     }
 
-    /// Adds an upper bound of dP/dF to H. With Ic = |F|^2 and J = det F, dP/dF maps a change X of F to mu (1 - 1 / (Ic
-    /// + 1)) X + 2 mu / (Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F), where d(cof F) is
-    /// the change of cof F.
+    /// Adds an upper bound of dP/dF to H. With Ic = |F|^2 and J = det F, dP/dF maps a change X of F to
+    ///     mu (1 - 1/(Ic + 1)) X + 2 mu/(Ic + 1)^2 (F : X) F + la (cof F : X) cof F + (la (J - 1) - 3/4 mu) d(cof F),
+    /// where d(cof F) is the change of cof F.
     ///
-    /// The bound uses the first coefficient, but at least its value in the rest shape. The coefficient decreases under
-    /// compression and is zero at F = 0. A step length from so small a stiffness would be too long as soon as the
-    /// element expands again.
+    /// The coefficient of X decreases under compression and is zero at F = 0. A step length from so small a stiffness
+    /// would be too long as soon as the element expands again. So the bound uses at least the value of this coefficient
+    /// in the rest shape, 3/4 mu.
     template <class T, class Terms>
     static void add_stiffness(const MaterialConstants& material, const LaneMat3<T>& F, Terms& H) {
         const auto [mu, la] = model_moduli(material);

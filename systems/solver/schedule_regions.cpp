@@ -11,9 +11,9 @@
 namespace skerry {
 namespace {
 
-// Cost model T = c0 + c1 K S of docs/methods/regions.md 4.1, with K contacts and S sweeps. It was measured on chains of
-// 2 to 12 contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). The ratios decide the order of
-// regions; the absolute values decide only the size of tasks [microseconds]
+// Constants of the cost model of docs/methods/regions.md 4.1 [microseconds]. They were measured on chains of 2 to 12
+// contacts and sheets of 18 to 1922, on one core of a shared machine (AVX-512). Their ratios decide the order of
+// regions; their absolute values decide only the size of tasks.
 constexpr Real single_cost = 0.06;
 constexpr Real region_cost = 0.1, contact_cost = 0.06;  // costs of loading, measuring the warm start and writing back
 constexpr Real contact_sweep_cost = 0.03, lane_contact_sweep_cost = 0.008;

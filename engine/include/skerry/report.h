@@ -233,8 +233,9 @@ struct StartMove {
 /// there are clusters) and by World::report.
 struct SelfCrossing {
     BodyHandle body{};
-    std::string name;                    // name of the body when the crossing was found
-    bool self_contact = false;           // true if the body had self-contact when the crossing was last found
+    std::string name;  // name of the body when the crossing was found
+    // true if the body's setting self_contact was on when the crossing was last found
+    bool self_contact = false;
     Real first_time = 0, last_time = 0;  // times of the first and of the last check that found a crossing [s]
     // Number of places where an edge passes through a triangle, at the last check that found the surface crossing and
     // at most in all checks; the first is 0 if a later check found none. Places whose features are at most one mean

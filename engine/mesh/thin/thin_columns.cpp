@@ -65,7 +65,8 @@ NearBoundary near_boundary(const Mesh& mesh, std::span<const std::array<Index, 3
             near.beyond[static_cast<std::size_t>(faces[f].tetrahedron)][faces[f].corner] = face;
         } else if (std::ranges::all_of(faces[f].node,
                                        [&](Index n) { return place[static_cast<std::size_t>(n)] == outer; })) {
-            // The other faces without a neighbour have no node on the boundary: the neighbour is not near.
+            // A face without a neighbour in this list is on the boundary only if all its nodes are. Otherwise its
+            // neighbour exists, but is not near the boundary.
             near.on_boundary[row][corner] = true;
             near.boundary.push_back(face);
         }

@@ -89,7 +89,7 @@ Share array_share(const Variables& variables) {
     if (*id < least || step < 1 || (*id - least) % step != 0 || (*id - least) / step >= *count)
         refuse_share("SLURM_ARRAY_TASK_ID",
                      std::to_string(*id) + " of " + std::to_string(*count) + " jobs that are numbered from " +
-                         std::to_string(least) + " with a distance of " + std::to_string(step),
+                         std::to_string(least) + " with an increment of " + std::to_string(step),
                      "a job number of an array without gaps, such as --array=0-63", by_hand);
     return {(*id - least) / step, *count, "SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT", {}};
 }

@@ -68,7 +68,7 @@ void undo_deformation(Model& model, std::size_t body) {
     }
     const std::span<const Vec3> position = rows_of(model.nodes.position, nodes);
     set_deformed_shape(model, body, std::vector<Vec3>(position.begin(), position.end()));
-    clear();  // displacements of the size of rounding errors
+    clear();  // removes displacements of the size of rounding errors
 }
 
 void reset_body(WorldState& world, std::size_t body, const RigidPose& pose) {

@@ -263,7 +263,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         const Real start = clock.time;
         const std::uint64_t let_through = world.cache.crossings.let_through;
         const StepOutcome outcome = try_step(world, plan, attempt);
-        stiffened += world.scratch.findings.stiffened;  // attempts that are not committed count, too
+        stiffened += world.scratch.findings.stiffened;  // energy also counts if the attempt is not committed
         note_outcome(outcome, world.record.counters, report);
         if (outcome == StepOutcome::refused) {
             blame(world, report);

@@ -19,14 +19,14 @@ struct Balance {
     // implicit element. The held nodes then take up momentum that is not measured, through damping or through the
     // inertia of the element.
     bool momentum_known = true;
-    std::uint64_t steps = 0;  // since the opening
-    // at the opening
-    Real energy = 0;     // kinetic energy of moving nodes, plus elastic and potential energy, at the opening [J]
-    Real potential = 0;  // [J]
-    Vec3 momentum = Vec3::Zero();  // momentum of moving nodes at the opening [kg m/s]
-    Vec3 impulse = Vec3::Zero();   // external impulse since the opening of the balance [N s]
-    Real work = 0;                 // external work minus dissipation since the opening of the balance [J]
-    // sums of |work| and |impulse| over all steps and causes since the opening [J, N s]
+    std::uint64_t steps = 0;  // number of steps since the balance was opened
+    // values when the balance was opened
+    Real energy = 0;               // kinetic energy of moving nodes, plus elastic and potential energy [J]
+    Real potential = 0;            // [J]
+    Vec3 momentum = Vec3::Zero();  // momentum of moving nodes [kg m/s]
+    Vec3 impulse = Vec3::Zero();   // external impulse since the balance was opened [N s]
+    Real work = 0;                 // external work minus dissipation since the balance was opened [J]
+    // sums of |work| and |impulse| over all steps and causes since the balance was opened [J, N s]
     Real energy_flow = 0, momentum_flow = 0;
     // The largest values in the run:
     Real energy_error = 0, energy_scale = 0;      // energy_scale: largest energy that could be exchanged [J]

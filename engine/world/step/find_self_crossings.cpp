@@ -11,10 +11,10 @@ namespace skerry {
 
 namespace {
 
-// Stands for the number of crossings of a body that is not checked.
+// Value that stands for an unknown number of crossings: the body is not checked, so its number has not changed.
 constexpr Index unchanged = -1;
 
-/// True if the body may have begun to cross itself since the last check, or may have ceased to.
+/// True if the body may have begun or ceased to cross itself since the last check.
 bool may_have_changed(const Model& model, std::size_t b) {
     return model.bodies.kind[b] == BodyKind::deformable && !model.is_rigid(b) && !model.bodies.asleep[b] &&
            model.bodies.unstrained[b] == 0;

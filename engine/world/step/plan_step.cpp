@@ -9,8 +9,8 @@
 namespace skerry {
 
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
-    // Joints keep their directions of the start of a step during the step. The resulting errors of energy and of the
-    // joint's position grow with the angle of rotation [rad].
+    // Largest rotation of a body with a joint in a step [rad]. Joints keep their directions of the start of a step
+    // during the step. The resulting errors of energy and of the joint's position grow with the angle of rotation.
     constexpr Real largest_turn = 0.1;
     const RigidBodyTable& rigid = model.rigid_bodies;
     Real step = shorter_than;

@@ -94,9 +94,9 @@ public:
     /// of the attempt, skip such a body.
     std::span<const std::uint8_t> rested(const BodyTable& bodies);
 
-    /// These two functions store and restore the state at the start of a call of advance, if the integrator is
-    /// leapfrog. Only leapfrog moves positions before the first step of a call. With symplectic Euler the functions do
-    /// nothing.
+    /// begin_call and roll_back_call store and restore the state at the start of a call of advance, if the integrator
+    /// is leapfrog. Only leapfrog moves positions before the first step of a call. With symplectic Euler the functions
+    /// do nothing.
     void begin_call(const Model& model, const Clock& clock);
     void roll_back_call(Model& model, Clock& clock) const;
 
@@ -106,10 +106,10 @@ private:
     Column<Vec3> driven_velocity_;          // velocities of the nodes in attachments.node [m/s]
     Real time_ = 0;                         // time at the start of the call [s]
     Column<Vec3> position_, velocity_;      // positions and velocities of all nodes [m, m/s]
-    Column<Vec3> center_;                   // rigid bodies [m]
-    Column<Vec3> moments_;                  // rigid bodies [kg m^2]
-    Column<Mat3> rotation_, axes_;          // rigid bodies
-    Column<Vec3> displacement_;             // implicit bodies [m]
+    Column<Vec3> center_;                   // centres of rigid bodies [m]
+    Column<Vec3> moments_;                  // principal moments of inertia of rigid bodies [kg m^2]
+    Column<Mat3> rotation_, axes_;          // rotations and principal axes of rigid bodies
+    Column<Vec3> displacement_;             // displacements of nodes of implicit bodies [m]
     Column<ElementLane> modulus_;           // elements.implicit_modulus [Pa]
     Column<Real> inverse_;                  // clusters.inverse [1/kg]
 };

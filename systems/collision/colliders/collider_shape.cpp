@@ -181,7 +181,8 @@ FaceContact face_contact(const ColliderGeometry& geometry, Index k, const LocalF
     const Real height = contact.normal.dot(contact.point.at - face[0]);
     contact.above = length > 0 && contact.closest.region == TriangleRegion::face;
     contact.distance = height - contact.point.radius;
-    // The rim point that depends on the face moves around the rim while the face rotates.
+    // The rim point that depends on the face moves around the rim while the face rotates. A bound for this point must
+    // therefore hold for the complete collider.
     contact.nearest = collider_point_follows(geometry.shape, k)
                           ? hull_distance(geometry, face)
                           : std::sqrt(contact.closest.distance_squared) - contact.point.radius;

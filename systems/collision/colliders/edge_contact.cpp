@@ -93,9 +93,10 @@ private:
     const Real length_;
 };
 
-/// Finds the parameter along an edge at which the derivative of the distance passes a given value. The search first
-/// tests kinks and the result of the closed form, then uses the Illinois variant of regula falsi. Every fourth
-/// iteration bisects the interval, which also finds kinks and stretches with constant derivative.
+/// Finds the parameter s along an edge at which the derivative of the distance passes the value `slope`. The search
+/// first tests the kinks and the position predicted by Along::place_of. Then it narrows the interval by regula falsi
+/// (Illinois variant). Every fourth iteration bisects, so that the search also converges at kinks and where the
+/// derivative is constant.
 class PlaceOfSlope {
 public:
     /// `below` and `above`: derivatives at the lower and upper end of the interval `on`. `itself_is_below`: true if a
@@ -200,9 +201,9 @@ private:
             add(1, last);
         }
     }
-    /// These two functions add a second contact point, at least shortest_stretch before or after the point `other`, if
-    /// the derivative there is not too steep. One evaluation shows this, because the derivative increases along the
-    /// edge.
+    /// add_before and add_behind add a second contact point, at least shortest_stretch before or behind the point
+    /// `other`. They add none if the distance is too steep at all these places. One evaluation shows this, because the
+    /// derivative increases along the edge.
     void add_before(Real other) {
         const Real last = other - shortest_stretch;
         if (last <= interval_.low || (last < interval_.high && along_.slope(last) < -steep_slope)) return;

@@ -222,8 +222,9 @@ private:
     const Vec3 turn_;   // rotation vector of the collider in the step [rad]
 };
 
-/// True if the complete collider part or collider point that is tested lies behind the tangent plane at the touched
-/// point.
+/// True if the whole tested collider part (for a face: collider point) lies behind the tangent plane at the touched
+/// point, that is, on the side opposite to the feature. The feature then cannot touch before one of its nodes passes
+/// this plane. False for the hollow wall of a bucket, and for a face if one of its edges is nearest.
 bool lies_behind(const ColliderGeometry& geometry, const TouchingFeature& feature, const Touch& touch) {
     if (feature.kind == TouchingFeature::Kind::face) return touch.in_face;
     return geometry.shape != ColliderShape::bucket || feature.of_shape == 0;

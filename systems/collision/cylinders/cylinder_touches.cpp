@@ -36,9 +36,9 @@ constexpr Real level_slope = 1e-9;
 constexpr int samples_around = 16;
 constexpr Real turn_tolerance = 1e-12, same_place = 1e-6;  // [rad]
 
-// Numbers of the contact points on a shape. of_rim and of_side are the counts of numbers per rim and per side. The
-// other constants are the first numbers of each kind of contact point: on rims of the other shape, on sides, at
-// corners, on edges, and between curved sides.
+// Numbers of the contact points on a shape. Each rim has of_rim numbers, each side has of_side numbers. The other
+// constants are the first numbers of each kind of contact point: on rims of the other shape, on sides, at corners, on
+// edges, and between curved sides.
 constexpr Index of_rim = 8, of_other_rims = 16, of_sides = 40, of_side = 16, of_corners = 136, of_edges = 144,
                 of_round_sides = 240;
 

@@ -40,10 +40,13 @@ private:
 /// Points on the rims of a cylinder that can touch a flat side of another shape. `normal`: outward unit normal of the
 /// side in the frame of the cylinder.
 ///
-/// Each rim has the point that reaches furthest towards the side. If an end of the cylinder nearly faces the side, each
-/// rim also has points that support the cylinder on the side. None of these points approaches the side when the
-/// cylinder rotates about its axis by less than a radian per step. Points fixed to a tilted cylinder would approach the
-/// side.
+/// Each rim has its point nearest to the side. If an end nearly faces the side, each rim also has the points at 90, 180
+/// and 270 degrees from that point. If an end faces the side (up to standing_tilt), each rim has eight points at fixed
+/// angles of the cylinder instead of these three.
+///
+/// A contact assumes that its point moves on a straight path within a step. While a tilted cylinder rotates about its
+/// axis by less than a radian, the straight paths of these points come no nearer to the side than the nearest point.
+/// Points at other angles could come nearer on such a path, and would cause false contacts.
 struct RimPoints {
     static constexpr Index most_of_rim = 9;
     struct Point {

@@ -63,8 +63,8 @@ struct PairScale {
     Real face_depth;        // largest depth behind a face at which a point is still pushed out
     // Largest depth behind an edge or vertex at which a point is still pushed out, also for two edges.
     Real edge_depth;
-    // Features whose distance is below this value are tested in each step, on either side of a surface. For points of a
-    // collider see face_zone.
+    // Features whose distance is below this value, in front of or behind a surface, are tested in each step. For points
+    // of a collider see face_zone.
     Real zone;
     // Sum of the radii of the round bodies in the pair; the features of a round body are its core (centre or axis).
     Real radii = 0;
@@ -76,8 +76,8 @@ inline constexpr Real face_depth_fraction = 0.25;  // largest depth behind a fac
 // Largest depth behind an edge or vertex. At least the contact distance is used.
 inline constexpr Real edge_depth_fraction = 0.02;
 
-/// Distance between a point of a collider and a face, on either side of the face, below which the two are tested in
-/// each step [m].
+/// Distance between a point of a collider and a face below which the two are tested in each step, in front of or behind
+/// the face [m].
 inline Real face_zone(const PairScale& scale) {
     return std::max(scale.contact_distance, scale.face_depth);
 }
@@ -99,9 +99,8 @@ inline bool is_held_apart(const CollisionSettings& settings, PairState state, co
     return settings.continuous && state == PairState::apart && scale.contact_distance > 0;
 }
 
-/// Characteristic distances of a pair whose state is known. If neither partner can have passed through the other,
-/// features on either side become contacts at the contact distance. The zone then need not include depths behind a
-/// surface.
+/// Characteristic distances of a pair whose state is known. If the surfaces cannot have passed through each other, no
+/// point lies deep behind a face. `zone` then shrinks from face_depth (or the contact distance) to edge_depth.
 inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairState state, PairScale scale) {
     if (is_held_apart(settings, state, scale)) scale.zone = scale.edge_depth;
     return scale;

@@ -75,7 +75,8 @@ public:
             return;
         }
         convex_ = fall > min_bend * other_width - closing;
-        // The angle between the two faces is the same if it is measured from the second face.
+        // fall / other_width is nearly the angle between the two faces, so the slack is the same for either order of
+        // the faces.
         slack_ = other_width > 0 ? std::max(Real(0), 2 * min_bend - fall / other_width) * width * other_width /
                                        (width + other_width) / 2
                                  : 0;

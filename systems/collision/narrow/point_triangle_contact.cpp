@@ -122,7 +122,7 @@ PointTriangleContact point_triangle_contact(const SurfaceTables& surface, std::s
     const Vec3 face_normal = q.unit_normal(triangle);
     const Real height = q.offset.dot(face_normal);  // height of the point above the plane of the face
     const Real aside_squared = std::max(Real(0), distance * distance - height * height);
-    contact.sleep = distance - scale.edge_depth;  // this limit is at least the contact distance
+    contact.sleep = distance - scale.edge_depth;  // edge_depth is at least the contact distance
     if (height < 0 && surfaces == Surfaces::may_overlap) {
         // The point can become a contact behind the face, at a depth of at most face_depth.
         const Real below = std::max(Real(0), -height - scale.face_depth);

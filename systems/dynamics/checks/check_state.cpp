@@ -188,7 +188,7 @@ Fastest fastest_tetrahedron(const CheckInputs& state, std::size_t block) {
 /// Greatest |F'|^2, with the rate F' of F, over the squared leeway (factor on max_strain_step) among the elements of a
 /// block [1/s^2]. It is 0 for inversion barriers, and if no node of the block is marked in `beside_fast`.
 Real check_elements(const CheckInputs& state, std::size_t block, std::span<const std::uint8_t> beside_fast) {
-    // F of an inversion barrier is F of one tetrahedron, not a mean over several
+    // the limit applies to means of F over tetrahedra, but F of an inversion barrier is F of one tetrahedron
     if (!state.element_part.empty() && state.element_part[block] == ElementPart::guard) return 0;
     const auto first = static_cast<std::size_t>(state.element_first[block]);
     const Index count = state.element_count[block];

@@ -10,7 +10,8 @@ namespace skerry {
 namespace {
 
 /// Function of the node velocities v whose minimum is the solution of the step: inertia v.M v / 2 - v.impulse +
-/// U(carried + within v). M are the node masses. U is the elastic energy, for a free body plus the energy of the spin.
+/// U(carried + within v). M are the node masses; `impulse` and `carried` are members of LargeStep. U is the elastic
+/// energy, for a free body plus the energy of the spin.
 class Objective {
 public:
     Objective(Real inertia, Real within, const StiffBody& stiff, LargeStep& step)

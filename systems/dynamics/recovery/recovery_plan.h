@@ -47,7 +47,7 @@ struct RecoveryPlan {
 
     struct Face {
         SurfaceAround around;
-        Index place;  // any element around the node
+        Index place;  // place of any element around the node
         // Volume of the node divided by the volume of the inner nodes of the tetrahedra around it; 0 if there are none.
         Real inner_share;
     };

@@ -23,7 +23,8 @@ std::optional<SurfaceTriangle> surface_triangle(const std::array<Index, 3>& node
 
 /// Sums over the surface triangles around a node, at rest.
 struct SurfaceAround {
-    Vec3 area = Vec3::Zero();    // outward area vector of the node: a third of that of its triangles [m^2]
+    // outward area vector of the node: a third of the sum of the area vectors of its triangles [m^2]
+    Vec3 area = Vec3::Zero();
     Vec3 normal = Vec3::Zero();  // unit vector along `area`
     bool smooth = false;         // false if the surface has an edge or corner at the node
     // Terms of a least-squares fit for a smooth surface: `inverse` and `across`. Among all F with a given product b = F

@@ -139,9 +139,9 @@ void add_viscous_stiffness(const ViscousPart& viscous, std::size_t part, const L
     H.add_dyad(moduli.lambda * strain_share + moduli.bulk * volume_share, F);
 }
 
-/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. A becomes D A
-/// D with D = (1 + b s s^T)^-1/2 = 1 - c s s^T, where s is R L as a vector of nine entries. The mass of Y was |Y|^2
-/// before, and R:X = (R L):Y.
+/// Adds the mass b (R:X)^2 of an element, where R is a rotation and X = Y L^T the displacement gradient. The mass of Y
+/// was |Y|^2 before. With s = R L as a vector of nine entries, R:X = s.Y. So A becomes D A D, where
+///     D = (1 + b s s^T)^-1/2 = 1 - c s s^T     with a scalar c.
 template <class T>
 void count_in(const LaneMat3<T>& R, const T& b, const LaneMat3<T>& L, Matrix9<T>& A) {
     const LaneMat3<T> RL = multiply(R, L);

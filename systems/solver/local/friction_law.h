@@ -1,6 +1,6 @@
 // Friction laws as projections of a contact's impulse (docs/methods/friction.md 2, docs/methods/contact.md 5.6). Type V
 // is a world vector of size 3, or of size 4 with a last entry of zero. `normal` is a unit vector, `mu` holds the
-// coefficients of friction. *The paper* is Lazarevych, Szekely, Harders (docs/methods/contact.md 5).
+// coefficients of friction. Lazarevych et al. (2010): see docs/methods/contact.md 5.
 #pragma once
 
 #include <algorithm>
@@ -65,14 +65,15 @@ inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
 }
 
 /// Euclidean projection of z onto the cone |z_t| <= mu z_n, for the error measures: P_K of docs/methods/friction.md
-/// 2.5. Flattened, because gcc calls functions of Eigen for single operations otherwise, and vectors go through memory.
+/// 2.5. gnu::flatten is needed because gcc would otherwise call functions of Eigen for single operations, and vectors
+/// would go through memory.
 template <class V>
 [[gnu::flatten]] inline V project_onto_cone(const V& z, const V& normal, Real mu) {
     const Real along = normal.dot(z);
     const V tangential = z - along * normal;
     const Real length = tangential.norm();
-    // The test of the polar cone comes first. If mu is zero, a negative normal impulse without tangential part passes
-    // both tests.
+    // The test of the polar cone comes first, so that a negative normal impulse without tangential part is projected to
+    // zero. If mu is zero, such an impulse passes the test of the cone, too.
     if (mu * length <= -along) return V::Zero();
     if (length <= mu * along) return z;
     const Real nearest = (along + mu * length) / (1 + mu * mu);

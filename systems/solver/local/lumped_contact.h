@@ -51,7 +51,7 @@ inline Real coupling_of(const LumpedContact& a, const LumpedContact& b) {
 }
 
 /// Gauss-Seidel step of one contact (docs/methods/friction.md 2.2). `apply` changes the node velocities by an impulse.
-/// Returns D |change of the impulse|^2 [J]
+/// Returns D |change of the impulse|^2 with the mobility D (LumpedContact::diagonal) [J]
 template <class Apply>
 inline Real solve_contact(const LumpedContact& contact, Friction friction, Real relaxation, Vec4* velocity,
                           Vec4& impulse, const Apply& apply) {

@@ -38,8 +38,8 @@ inline Real push_bias(Real normal_velocity, Real gap, Real slop, const SolverSet
     return std::max(Real(0), normal_velocity + std::max(gap, Real(0)) / h);
 }
 
-/// Bias of a contact whose gap also shrinks by rotation [m/s]. `loss`: the negative speed of this shrinking, which the
-/// contact velocity does not include. The push compensates the part of the loss that the gap cannot absorb.
+/// Bias of a contact whose gap shrinks by rotation in addition to its contact velocity [m/s]. `loss`: the negative
+/// speed of this additional shrinking. The push compensates the part of the loss that the gap cannot absorb.
 inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slop, Real loss, Real h) {
     if (gap < -slop) return bias + loss;
     const Real left = normal_velocity + std::max(gap, Real(0)) / h + loss;
@@ -47,7 +47,7 @@ inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slo
 }
 
 /// Gauss-Seidel step of one contact on the pseudo velocities. `apply` changes the pseudo velocities by an impulse.
-/// Returns D (change of the impulse)^2 [J]
+/// Returns D (change of the impulse)^2 with the mobility D (LumpedContact::diagonal) [J]
 template <class Apply>
 inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity, Real& impulse, const Apply& apply) {
     Real along = bias;

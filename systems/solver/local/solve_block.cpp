@@ -121,7 +121,8 @@ LocalBlock prepare_block(const Mat3& matrix) {
         block.eigenvalue[0] = a;
         block.eigenvalue[1] = c;
     }
-    // If the block is rank-deficient, rounding errors make an eigenvalue of zero slightly positive or negative.
+    // Rounding errors can make an eigenvalue of zero slightly positive or negative. Eigenvalues are therefore raised to
+    // a bound.
     constexpr Real rank_rounding = 1e-14;  // smallest eigenvalue as a fraction of the trace
     const Real smallest = rank_rounding * (block.normal + matrix(1, 1) + matrix(2, 2));
     for (Real& eigenvalue : block.eigenvalue) eigenvalue = std::max(eigenvalue, smallest);

@@ -27,8 +27,9 @@ CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, Real mu) {
     return {along * normal + mu * along * h, pressing + turning + mu * h * normal.transpose()};
 }
 
-/// Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), with impulse r, contact velocity u and scalar
-/// mobility D. They use the whole workspace of the operator except the best iterate (slot 0).
+/// Newton steps on the natural map F_i(r) = r_i - P(r_i - u_i / D_i), where P(z) is the impulse of Coulomb's law for a
+/// contact that the impulse z would stop. r: impulse, u: contact velocity, D: scalar mobility. The class may overwrite
+/// all workspace vectors of the operator except slot 0, which holds the best iterate.
 class NewtonSteps {
 public:
     NewtonSteps(AnyOperator& op, NewtonMemory& memory)
@@ -74,8 +75,8 @@ private:
         return answer_coulomb(z.head<3>(), contact.normal.head<3>(), contact.mu);
     }
 
-    /// Computes the Newton step: opening contacts get zero impulse, and the others solve J d = -F. Returns false if the
-    /// factorisation broke down.
+    /// Computes the Newton step d: opening contacts get zero impulse, and the others solve J d = -F with the Jacobian J
+    /// of the natural map F. Returns false if the factorisation broke down.
     bool find_change() {
         op_.residual(pull_);
         memory_.active.clear();
@@ -100,8 +101,9 @@ private:
         return memory_.change.allFinite();
     }
 
-    /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) and the right-hand side -F. The right-hand side includes
-    /// the impulse change of the opening contacts.
+    /// Fills the rows of the Jacobian J = I - P' (I - D^-1 W) of the natural map F, and the right-hand side -F. P' is
+    /// the derivative of P, D the scalar mobilities, W the Delassus operator. The right-hand side includes the impulse
+    /// change of the opening contacts.
     void fill_equations() {
         // If sticking contacts support each other, their impulses are not unique, and the matrix is singular. A small
         // multiple of the identity selects one solution. It changes the steps but not the solution.
@@ -128,7 +130,8 @@ private:
         memory_.rest = factors.solve(memory_.rest);
     }
 
-    /// Returns the merit function, which is the sum of D |F|^2 over the contacts. Writes -u to `pull_` [J]
+    /// Returns the merit function: the sum of D |F|^2 over the contacts, with the natural map F and the mobility D [J].
+    /// Writes -u to `pull_`.
     Real merit() {
         op_.residual(pull_);
         Real sum = 0;

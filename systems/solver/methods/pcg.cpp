@@ -22,7 +22,8 @@ Real largest_entry(std::span<const Vec4> vectors) {
     return largest;
 }
 
-/// Sets the residual r and the search direction d before the first iteration: r = d = b - A lambda.
+/// Sets the residual r and the search direction d before the first iteration: r = d = b - A lambda, in the notation of
+/// Lazarevych et al. (2010).
 void start_conjugate_gradients(AnyOperator& op) {
     const std::span<Vec4> residual = op.workspace(1);
     op.residual(residual);
@@ -82,7 +83,8 @@ SolveResult solve_pcg(AnyOperator& op, const SolveLimits& limits, ConjugateBeta 
 }
 
 SolveResult solve_pcg_pgs(AnyOperator& op, const SolveLimits& limits, ConjugateBeta formula) {
-    // The first phase has larger tolerances than the second: eps_cg > eps_gs, delta_cg > delta_gs.
+    // The tolerances of the first phase are larger than those of the second, as in Lazarevych et al. (2010): eps_cg >
+    // eps_gs, delta_cg > delta_gs.
     constexpr Real looser = 10;
     ErrorTest<AnyOperator> test(op, limits);
     const ConjugateLimits phase{std::min(row_count(op), limits.max_iterations / 2), looser * limits.tolerance};

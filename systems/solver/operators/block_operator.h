@@ -51,8 +51,8 @@ struct BlockMemory {
     void prepare(const BlockSystem& system, std::span<const Index> order);
 };
 
-/// Natural map F_i of a contact for rho = 1: residual of the impulse with respect to its velocity u, for the cone of
-/// FCLIB or the pyramid of Lazarevych et al. (2010).
+/// Natural map F_i of a contact with the factor 1 instead of 1/D_i (docs/methods/errors.md 3): residual of the impulse
+/// with respect to its velocity u, for the cone of FCLIB or the pyramid of Lazarevych et al. (2010).
 Vec3 natural_map(const Vec3& impulse, const Vec3& u, Real mu, Friction friction);
 
 /// Operator of one region: the contacts at positions [begin, end) of the memory. Blocks must not couple them to

@@ -266,9 +266,11 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
 
 }  // namespace
 
-/// Evaluates the motion `present`. Sets the impulses to P( start - u / (softness D) ), with the contact velocity u and
-/// Coulomb's law P. Sets the velocities of the region and `answered` to the motion that these impulses produce. With d
-/// = answered - present, sets the right-hand side to K d and returns the merit d . K d [J].
+/// Evaluates the motion `present`. Sets the impulses to P(start - u / (softness D)), where u is the contact velocity, D
+/// the mobility, and P(z) the impulse of Coulomb's law for a contact that the impulse z would stop. `softness` is the
+/// compliance of contacts as a fraction of D. Sets the velocities of the region and `answered` to the motion that these
+/// impulses produce. With d = answered - present and the inertia matrix K, sets the right-hand side to K d and returns
+/// the merit d . K d [J].
 ///
 /// Unless `wanted` is `value`, also builds the matrix. If `wanted` is `turns`, also marks contacts whose sliding
 /// direction is opposite to that in the last matrix; stop_turned then changes their equations.
@@ -308,8 +310,8 @@ void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> s
     }
 }
 
-/// Updates the velocities of the region and `answered` from the impulses. With d = answered - present it sets the
-/// right-hand side to K d and returns d . K d [J]
+/// Updates the velocities of the region and `answered` from the impulses. With d = answered - present and the inertia
+/// matrix K, sets the right-hand side to K d and returns d . K d [J]
 Real BodyOperator::compare_motion(BodyEquations& equations, std::span<const Vec4> start) {
     if (equations.rigid_modes)
         push_rigid_modes(start);

@@ -14,8 +14,8 @@ Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
     return {frame[0].dot(vector), frame[1].dot(vector), frame[2].dot(vector), 0};
 }
 
-/// Impulse of Coulomb's law for one contact in world axes, where b = u - W_ii r is its velocity without its own
-/// impulse.
+/// Impulse r of Coulomb's law for one contact in world axes. b = u - W_ii r is the velocity without this impulse, where
+/// u is the contact velocity and W_ii the diagonal block of the contact.
 Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
     const Vec3 local = in_frame(part.frame, b).head<3>();
     Vec3 impulse = solve_block(part.block, local, mu.stick);
@@ -36,8 +36,8 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
     }
     if (of.term_count > 0 && friction_ == Friction::cone)
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
-    // Uses an upper bound on the eigenvalues of W_ii instead of W_ii. The step is exact if W_ii is a scalar times the
-    // identity, otherwise it is damped.
+    // The exact step would use the diagonal block W_ii. This step uses an upper bound on the eigenvalues of W_ii
+    // instead: it is exact if W_ii is a scalar times the identity, otherwise it is damped.
     return project(i, impulse - u / of.steepest);
 }
 

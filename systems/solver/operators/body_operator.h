@@ -74,8 +74,8 @@ public:
     [[gnu::always_inline]] Vec4 velocity_at(Index i, const Vec4* velocity) const {
         return add_rigid_velocities(part(i), velocity, add_node_velocities(contact(i), velocity, Vec4::Zero()));
     }
-    /// Applies an impulse to rigid bodies, clusters and nodes with their own mass. Deformations of implicit bodies do
-    /// not change.
+    /// Applies an impulse to rigid bodies, clusters and nodes with their own mass. Implicit bodies move rigidly: their
+    /// deformations do not change.
     [[gnu::always_inline]] void apply_undeformed(Index i, const Vec4& impulse, Vec4* velocity) const {
         walk_.apply_undeformed(contact(i), impulse, velocity);
         apply_to_rigid(part(i), impulse, velocity);
@@ -108,7 +108,7 @@ public:
 private:
     // Functions that the base class calls.
     bool moves(Index i) const { return contact(i).inverse_diagonal > 0; }
-    Real squared_residual(Index i) const;  // uses a third of the trace of W_ii as D
+    Real squared_residual(Index i) const;  // uses a third of the trace of the diagonal block W_ii as mobility D
     const Vec4& free_velocity(std::size_t n) const { return memory_.free_velocity[n]; }
     /// An impulse on an implicit body moves all touched nodes of the body. Impulses are therefore summed by node before
     /// the velocities are updated.
@@ -147,7 +147,8 @@ private:
     /// Impulse of contact i from its law while all other impulses are fixed. It is exact for the friction cone; for the
     /// pyramid the step is damped.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);
-    /// Solves contact i and applies the change of its impulse. Returns change . W_ii change [J]
+    /// Solves contact i and applies the change of its impulse. Returns change . W_ii change, where W_ii is the diagonal
+    /// block of contact i [J]
     Real step(Index i, Real relaxation);
     /// Calls `of` for all contacts in their order.
     void for_each_in_sweep(auto&& of);

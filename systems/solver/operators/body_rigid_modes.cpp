@@ -20,8 +20,8 @@ bool BodyOperator::is_unknown(const BodyEquations& equations, Index node) const 
     return !(equations.rigid_modes && walk_.moves_with_rigid(node));
 }
 
-/// With few contacts per body, sweeps alone are faster than with the coarse correction. Piles of cubes with 27 nodes
-/// have about 20 contacts per body; with the correction they would take a sixth longer.
+/// With few contacts per body, sweeps alone are faster than sweeps with the coarse correction. Piles of cubes with 27
+/// nodes have about 20 contacts per body; with the correction they would take a sixth longer.
 bool BodyOperator::corrects_rigid_modes() const {
     constexpr Index many = 48;  // contacts per body
     if (!runs_ || touches_clusters()) return false;
@@ -70,8 +70,8 @@ void BodyOperator::push_rigid_modes(std::span<const Vec4> start) {
 }
 
 SolveResult BodyOperator::correct_rigid_modes(Real error, Real tolerance, Index limit) {
-    // Compliance of the contacts as a fraction of the mobility D. It exceeds the compliance of the bodies; otherwise
-    // rounds gain nothing.
+    // Compliance of the contacts as a fraction of the mobility D. It must exceed the compliance of the bodies;
+    // otherwise rounds gain nothing.
     constexpr Real softness = 0.3;
     // A round ends when the square root of the merit function d . K d falls below this fraction of the error at the
     // start of the round.

@@ -22,7 +22,8 @@ struct SolveResult {
     bool converged = false;
 };
 
-/// Change of the impulses in one sweep. T is Real, or Real8 for eight regions in SIMD lanes.
+/// Change of the impulses in one sweep. W_ii is the diagonal block of contact i. T is Real, or Real8 for eight regions
+/// in SIMD lanes.
 template <class T>
 struct SweepChangeOf {
     T size{};  // sum of change . W_ii change over the contacts
@@ -38,8 +39,8 @@ struct SweepChangeOf {
 };
 using SweepChange = SweepChangeOf<Real>;
 
-/// Contact problems that accelerated sweeps can solve. Number is the type of an error, Real or Real8. W_ii is the
-/// diagonal block of contact i.
+/// Contact problem that accelerated sweeps (ags.h) can solve. Number is the numeric type of op.error(): Real, or Real8
+/// for eight regions in SIMD lanes.
 template <class Op>
 concept SweptOperator = requires(Op& op, Real relaxation, typename Op::Number number) {
     // One sweep with this relaxation factor: solves the contacts exactly, one after the other.

@@ -94,7 +94,9 @@ private:
     Column<Vec4> pending_;              // impulse sum by index in node_ [N s]
     Column<std::array<Near, 4>> near_;  // by contact
     Column<PaddedMat3> block_;          // blocks of W in world axes [1/kg]
-    Column<Index> entry_;  // by row of the region: index in node_; invalid if node_ holds another row there
+    // By row of the region: index in node_ that the row received last. It is outdated if node_ now holds another row at
+    // this index.
+    Column<Index> entry_;
     Column<Vec4> sum_;
     SpreadImpulses impulses_;
     Real moved_ = 0;

@@ -68,7 +68,7 @@ public:
                 if (own().moves(static_cast<Index>(i))) part += own().squared_residual(static_cast<Index>(i));
             return part;
         });
-        if (sum == 0) return 0;  // the solution is exact; a division could fail if the scale is zero, too
+        if (sum == 0) return 0;  // the solution is exact; without this line a scale of zero would give 0 / 0
         return std::sqrt(sum) / scale_;
     }
     /// True if the error is worth measuring. The change of a sweep approximates the natural map at the start of the

@@ -36,8 +36,8 @@ public:
     void apply_to_node(const LumpedContact& contact, std::size_t a, const Vec4& impulse, Vec4* velocity) const {
         clusters_.apply_to_node(contact, a, impulse, velocity);
     }
-    /// Applies an impulse to all nodes that are on no implicit body. Implicit bodies do not deform, as is required in
-    /// corrections of positions.
+    /// Applies an impulse to all nodes that are on no implicit body. It serves corrections in which
+    /// implicit bodies move rigidly: of positions, and with rigid-body modes.
     [[gnu::always_inline]] void apply_undeformed(const LumpedContact& contact, const Vec4& impulse,
                                                  Vec4* velocity) const {
         for (std::size_t a = 0; a < static_cast<std::size_t>(contact.node_count); ++a)

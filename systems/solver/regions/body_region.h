@@ -16,7 +16,8 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
 
     // Functions of the life cycle that replace those of LoadedRegion.
     bool moves_node(const RegionStage& stage, std::size_t n) const {
-        // Nodes of implicit bodies also move with their frames.
+        // False for the rows of rigid bodies, which belong to no node, and for nodes of implicit bodies, whose
+        // velocities write_contact computes from the motion of the frame and the deformation.
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }

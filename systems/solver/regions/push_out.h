@@ -54,7 +54,8 @@ public:
         const Asked asked = ask();
         if (!pressed && !asked.by_turns) return false;
         sweep(asked.size);
-        // The push has rotated bodies, so the gap that contacts lose by rotation is computed again.
+        // The push has rotated bodies, and rotation changes the gap of contacts. The loss of gap is therefore computed
+        // and pushed again, in this number of rounds.
         constexpr int turn_rounds = 2;
         for (int round = 0; round < turn_rounds && others_.any_turns(); ++round) sweep(ask().size);
         return true;
@@ -121,10 +122,11 @@ private:
     const Real slop_;
 };
 
-/// Finds frictionless pseudo velocities p. Contacts that penetrate by more than the slop get u_n + p_n >= min(recovery
-/// |gap| / h, recovery_speed), with the right-hand side also limited by push_speed. At other contacts p allows no
-/// approach that the velocity solve would not allow. The solution of the velocity solve must already be in `stage.out`.
-/// The result is in region.memory.scratch. Returns false if no contact is pushed.
+/// Finds frictionless pseudo velocities p, with the normal part p_n. Contacts that penetrate by more than the slop get
+/// u_n + p_n >= min(recovery |gap| / h, recovery_speed), where u_n is their normal velocity after the velocity solve;
+/// the right-hand side is also limited by push_speed. At other contacts p allows no approach that the velocity solve
+/// would not allow. The solution of the velocity solve must already be in `stage.out`. The result is in
+/// region.memory.scratch. Returns false if no contact is pushed.
 template <class Region, RegionOperator Op>
 [[gnu::always_inline]] inline bool solve_push(const RegionStage& stage, const Region& region, const Op& op) {
     const Real slop = push_slop(stage.inputs.gravity, stage.h);

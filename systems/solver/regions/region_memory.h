@@ -86,8 +86,8 @@ struct RegionMemory {
     // contact_rows: number of contact rows. rows: contact_rows plus the number of rows of regions with joints.
     std::size_t contact_rows = 0, rows = 0;
     Column<Vec4> free_velocity;  // by row of `velocity`; empty if there are no rigid bodies [m/s]
-    // For each row of NodeTable: position of the node in the list of its region; invalid if the list holds another node
-    // there.
+    // For each row of NodeTable: position that the node received last in the list of its region. It is outdated if the
+    // list now holds another node there.
     Column<Index> place;
     // by region
     Column<Real> cost;           // predicted [microseconds]

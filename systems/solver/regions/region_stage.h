@@ -60,8 +60,8 @@ Real dissipated_by(const RegionStage& stage, Index row);
 /// [J]. Contact forces are not included. The work is accurate to first order in h p. `own_masses`: true if the region
 /// has neither clusters nor bodies.
 ///
-/// The force on a node times h is the change of momentum of the node minus its contact impulses; for nodes of clusters
-/// this impulse is in the inputs.
+/// The force on a node times h is the change of momentum of the node minus its contact impulses. For a node of a
+/// cluster it is the entry of the node in RegionInputs::cluster_kick.
 Real push_work_of_nodes(const RegionStage& stage, const ContactMemory& memory, bool own_masses);
 
 }  // namespace skerry

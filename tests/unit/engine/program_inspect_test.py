@@ -107,7 +107,8 @@ class ProgramInspectTest(ProgramCase):
                      "s: choosing the step length", "s: timing the first steps"):
             self.assertIn(line, said.stderr)
         self.assertRegex(said.stdout,
-                         "even the best of the worst 1 % of the tetrahedra allows a step only 1[.0-9]* times")
+                         "removal of the worst 1 % of the tetrahedra was not tried: "
+                         "their longest step is only 1[.0-9]* times")
         stats = self.folder / "stats.json"
         said = self.skerry("run", scene, "--seconds", 1e-6, "--stats", stats)
         self.assertIn("skerry: set-up of 105,456 tetrahedra: adding the body", said.stderr)

@@ -58,7 +58,7 @@ class ProgramStartTest(ProgramCase):
         sunk = json.loads(json.dumps(SCENE))
         sunk["bodies"][0]["contact_distance"] = 10
         done = self.skerry("run", self.write("shell.json", sunk), "--seconds", 0.05)
-        self.assertIn("too deep in each other's contact distance", done.stdout)
+        self.assertIn("closer than their contact distance", done.stdout)
         self.assertNotIn("shorten the step", done.stdout)
         problems = json.loads(self.skerry("inspect", self.folder / "shell.json", "--json").stdout)["problems"]
         self.assertTrue(any("contact distance" in problem for problem in problems), problems)
