@@ -146,7 +146,7 @@ void require_weights(const PointProbe& point) {
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {
-    // Without a call since the last row that was long enough to measure the force, the mean force is unknown.
+    // The mean force is known only if some call since the last row was long enough to measure it.
     const bool known = force.seconds > 0 && force.measured;
     const Real none = std::numeric_limits<Real>::quiet_NaN();
     const Real per = known ? 1 / force.seconds : none;
