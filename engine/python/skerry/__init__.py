@@ -1,0 +1,5 @@
+"""Skerry: deformable bodies in frictional contact."""
+
+from ._errors import BusyError, SceneError
+
+__all__ = ["BusyError", "SceneError"]
