@@ -22,6 +22,7 @@ namespace nb = nanobind;
 
 // Each function adds one part to the module.
 void bind_errors(nb::module_& module);
+void bind_settings(nb::module_& module);
 void bind_world(nb::module_& module);
 
 /// Arrays that Python passes in: C-contiguous, of exactly this type.

@@ -21,5 +21,6 @@ NB_MODULE(_core, module) {
     using namespace skerry::python;
     module.doc() = "The C++ interface of Skerry. Import skerry instead.";
     bind_errors(module);
+    bind_settings(module);
     bind_world(module);
 }

@@ -4,73 +4,28 @@
 #include <type_traits>
 
 #include "components/options.h"
+#include "engine/python/setting_members.h"
 #include "skerry/error.h"
 
 namespace skerry::python {
 
 namespace {
 
-// The members of each struct, by the names that Python and scene files use. `visit(name, member)` is called for each.
-
-template <class Struct, class Visit>
-requires std::is_same_v<std::remove_const_t<Struct>, Settings>
-void for_each_setting(Struct& s, Visit&& visit) {
-    visit("gravity", s.gravity);
-    visit("step_size", s.step_size);
-    visit("theta", s.theta);
-    visit("implicit_step", s.implicit_step);
-    visit("integrator", s.integrator);
-    visit("clusters", s.clusters);
-    visit("backend", s.backend);
-    visit("threads", s.threads);
-    visit("contact_regions", s.contact_regions);
-    visit("method", s.method);
-    visit("friction", s.friction);
-    visit("tolerance", s.tolerance);
-    visit("max_iterations", s.max_iterations);
-    visit("recovery_speed", s.recovery_speed);
-    visit("start_overlaps", s.start_overlaps);
-    visit("sleep", s.sleep);
-    visit("sleep_time", s.sleep_time);
-    visit("continuous_collision", s.continuous_collision);
-}
-
-template <class Struct, class Visit>
-requires std::is_same_v<std::remove_const_t<Struct>, MaterialSettings>
-void for_each_setting(Struct& s, Visit&& visit) {
-    visit("young_modulus", s.young_modulus);
-    visit("poisson_ratio", s.poisson_ratio);
-    visit("density", s.density);
-    visit("friction", s.friction);
-    visit("static_friction", s.static_friction);
-    visit("dynamic_friction", s.dynamic_friction);
-    visit("restitution", s.restitution);
-    visit("damping", s.damping);
-    visit("loss_factor", s.loss_factor);
-    visit("bulk_viscosity", s.bulk_viscosity);
-    visit("model", s.model);
-}
-
-template <class Struct, class Visit>
-requires std::is_same_v<std::remove_const_t<Struct>, BodySettings>
-void for_each_setting(Struct& s, Visit&& visit) {
-    visit("position", s.position);
-    visit("rotation", s.rotation);
-    visit("velocity", s.velocity);
-    visit("angular_velocity", s.angular_velocity);
-    visit("contact_distance", s.contact_distance);
-    visit("self_contact", s.self_contact);
-    visit("dynamics", s.dynamics);
-    visit("collision_group", s.collision_group);
-    visit("collision_mask", s.collision_mask);
-    visit("element", s.element);
-    visit("name", s.name);
-}
-
 template <class T>
 struct OptionalOf : std::false_type {};
 template <class T>
 struct OptionalOf<std::optional<T>> : std::true_type {};
+template <class T>
+struct VectorOf : std::false_type {};
+template <class T>
+struct VectorOf<std::vector<T>> : std::true_type {};
+
+template <class Struct>
+void read_members(nb::handle from, Struct& to);
+template <class Struct>
+nb::dict dict_of(const Struct& settings);
+template <class Struct>
+nb::object instance_of(const Struct& settings);
 
 /// Reads one value; complains about the field `name` of an object of the class `object`.
 class Reader {
@@ -108,6 +63,23 @@ private:
                 expected += (expected.empty() ? "'" : ", '") + std::string(spelled) + "'";
             }
             complain(name, given, "one of " + expected);
+        } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
+            Vectors rows;
+            if (!nb::try_cast(given, rows)) complain(name, given, "an array of float64 of the shape (n, 3)");
+            value.assign(span_of(rows).begin(), span_of(rows).end());
+        } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
+            IndexRows<3> rows;
+            if (!nb::try_cast(given, rows)) complain(name, given, "an array of int32 of the shape (n, 3)");
+            value.assign(span_of(rows).begin(), span_of(rows).end());
+        } else if constexpr (VectorOf<T>::value) {
+            if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
+                complain(name, given, "a tuple of objects of the class " + text_of_class<typename T::value_type>());
+            value.clear();
+            for (const nb::handle item : given) convert(name, nb::borrow(item), value.emplace_back());
+        } else if constexpr (HasSettings<T>) {
+            if (nb::cast<std::string>(given.type().attr("__name__")) != class_name<T>)
+                complain(name, given, "an object of the class " + text_of_class<T>());
+            read_members(given, value);
         } else if constexpr (std::is_same_v<T, Vec3>) {
             std::array<Real, 3> numbers{};
             if (!nb::try_cast(given, numbers)) complain(name, given, expected_of(value));
@@ -115,6 +87,10 @@ private:
         } else {
             if (!nb::try_cast(given, value)) complain(name, given, expected_of(value));
         }
+    }
+    template <class T>
+    static std::string text_of_class() {
+        return std::string("skerry.") + class_name<T>;
     }
     static std::string expected_of(const Vec3&) { return "three numbers"; }
     static std::string expected_of(Real) { return "a number"; }
@@ -136,6 +112,11 @@ private:
     nb::handle from_;
 };
 
+template <class Struct>
+void read_members(nb::handle from, Struct& to) {
+    for_each_setting(to, Reader(from));
+}
+
 class Writer {
 public:
     explicit Writer(nb::dict& to) : to_(to) {}
@@ -152,6 +133,16 @@ public:
                 if (known == value) to_[name] = nb::cast(std::string(spelled));
         } else if constexpr (std::is_same_v<T, Vec3>) {
             to_[name] = nb::make_tuple(value.x(), value.y(), value.z());
+        } else if constexpr (std::is_same_v<T, std::vector<Vec3>>) {
+            to_[name] = array_of(std::span<const Vec3>(value));
+        } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
+            to_[name] = array_of<Index>(std::span<const std::array<Index, 3>>(value), {3});
+        } else if constexpr (VectorOf<T>::value) {
+            nb::list items;
+            for (const auto& item : value) items.append(instance_of(item));
+            to_[name] = nb::tuple(items);
+        } else if constexpr (HasSettings<T>) {
+            to_[name] = instance_of(value);
         } else {
             to_[name] = nb::cast(value);
         }
@@ -167,17 +158,78 @@ nb::dict dict_of(const Struct& settings) {
     for_each_setting(settings, Writer(values));
     return values;
 }
+template <class Struct>
+nb::object instance_of(const Struct& settings) {
+    return nb::module_::import_("skerry._settings").attr(class_name<Struct>)(**dict_of(settings));
+}
+
+/// Default values of each struct, by the name of its Python class.
+template <class... Struct>
+nb::dict defaults_of() {
+    nb::dict defaults;
+    ((defaults[class_name<Struct>] = dict_of(Struct{})), ...);
+    return defaults;
+}
 
 }  // namespace
 
 void read(nb::handle from, Settings& to) {
-    for_each_setting(to, Reader(from));
+    read_members(from, to);
 }
 void read(nb::handle from, MaterialSettings& to) {
-    for_each_setting(to, Reader(from));
+    read_members(from, to);
 }
 void read(nb::handle from, BodySettings& to) {
-    for_each_setting(to, Reader(from));
+    read_members(from, to);
+}
+void read(nb::handle from, ColliderSettings& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, SurfaceSettings& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, Pose& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, Motion& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, JointSettings& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, JointMotor& to) {
+    read_members(from, to);
+}
+void read(nb::handle from, ProblemSettings& to) {
+    read_members(from, to);
+}
+
+Shape read_shape(nb::handle from) {
+    const std::string name = nb::cast<std::string>(from.type().attr("__name__"));
+    std::optional<Shape> shape;
+    std::string known;
+    const auto try_shape = [&]<class Candidate>(Candidate candidate) {
+        known += (known.empty() ? "" : ", ") + std::string(class_name<Candidate>);
+        if (name != class_name<Candidate>) return;
+        read_members(from, candidate);
+        shape = std::move(candidate);
+    };
+    try_shape(Plane{});
+    try_shape(Sphere{});
+    try_shape(Box{});
+    try_shape(Capsule{});
+    try_shape(Cylinder{});
+    try_shape(Bucket{});
+    try_shape(SurfaceMesh{});
+    if (!shape)
+        Complaint{.file = {},
+                  .object = "collider",
+                  .field = "shape",
+                  .found = "an object of the class " + name,
+                  .expected = "one of " + known,
+                  .hint = {}}
+            .raise();
+    return *std::move(shape);
 }
 
 nb::dict values_of(const Settings& settings) {
@@ -185,6 +237,18 @@ nb::dict values_of(const Settings& settings) {
 }
 nb::dict values_of(const MaterialSettings& settings) {
     return dict_of(settings);
+}
+
+nb::object object_of(const Shape& shape) {
+    return std::visit([](const auto& known) { return instance_of(known); }, shape);
+}
+nb::object object_of(const Pose& pose) {
+    return instance_of(pose);
+}
+
+void bind_settings(nb::module_& module) {
+    module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, MotorKey,
+                                        JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
 }
 
 }  // namespace skerry::python
