@@ -7,4 +7,4 @@ world = sk.World(grvity=(0, 0, -9.81))  # expect: call-arg
 ball = world.add_body(sk.Mesh.ball(0.1, 4), 3.0)  # expect: arg-type
 world.advance("1/60")  # expect: arg-type
 height: float = ball.positions  # expect: assignment
-ball.position  # expect: attr-defined
+place = ball.position  # expect: attr-defined

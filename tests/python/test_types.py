@@ -5,19 +5,11 @@ import re
 import sys
 
 import pytest
-import skerry
 
 api = pytest.importorskip("mypy.api")
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGE = pathlib.Path(skerry.__file__).parent
-OPTIONS = ["--strict", "--no-error-summary", "--python-executable", sys.executable, "--cache-dir", "build/mypy_cache"]
-
-
-@pytest.fixture(autouse=True)
-def _in_the_root(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
-    monkeypatch.setenv("MYPYPATH", str(PACKAGE.parent))
+OPTIONS = ["--strict", "--no-error-summary", "--python-executable", sys.executable]
 
 
 def test_the_package_passes_strict_checks() -> None:
