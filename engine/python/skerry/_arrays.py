@@ -41,7 +41,9 @@ def real_array(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArr
     try:
         array = np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}") from error
+        raise TypeError(
+            f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}"
+        ) from error
     array = _without_rows(array, value, shape)
     require_shape(array, name, shape)
     return array
@@ -52,7 +54,9 @@ def index_array(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDAr
     try:
         given = np.asarray(value)
     except ValueError as error:
-        raise TypeError(f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}") from error
+        raise TypeError(
+            f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}"
+        ) from error
     given = _without_rows(given, value, shape)
     if given.size > 0 and given.dtype.kind not in "iu":
         raise TypeError(f"{name}: found numbers of the type {given.dtype}, expected whole numbers")
