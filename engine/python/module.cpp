@@ -23,4 +23,5 @@ NB_MODULE(_core, module) {
     bind_errors(module);
     bind_settings(module);
     bind_world(module);
+    bind_rollout(module);
 }
