@@ -1,6 +1,7 @@
 // The world: deformable bodies, colliders and attachments, and the functions that advance it in time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -56,6 +57,9 @@ public:
     /// Reads a world that save() wrote. If a part of the file is not as expected, throws SceneError that names the
     /// file, the data set, and the found and the expected value.
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
+    /// Returns the bytes that save() writes, and makes a world from such bytes.
+    std::vector<std::byte> to_bytes() const;
+    static World from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings = {});
 
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
     // Handles to all other objects stay valid. The cost of a change depends on the size of the changed object only.

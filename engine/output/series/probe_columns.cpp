@@ -111,7 +111,10 @@ auto called_for(const RecordedProbe& probe, auto&& function) {
     try {
         return function();
     } catch (const SceneError& error) {
-        throw SceneError("probe \"" + probe.name + "\": " + error.what());
+        const std::string name = "probe \"" + probe.name + "\"";
+        Complaint parts = error.complaint();
+        if (parts.object.empty()) parts.object = name;
+        throw SceneError(name + ": " + error.what(), parts);
     }
 }
 
