@@ -1,6 +1,7 @@
 """Skerry: deformable bodies in frictional contact."""
 
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._rollout import Rollout, rollout
 from ._settings import (
     Box,
     Bucket,
@@ -63,6 +64,7 @@ __all__ = [
     "Objects",
     "Plane",
     "Pose",
+    "Rollout",
     "SceneError",
     "SelfCrossing",
     "Settings",
@@ -77,4 +79,5 @@ __all__ = [
     "SurfaceMesh",
     "World",
     "WorldReport",
+    "rollout",
 ]

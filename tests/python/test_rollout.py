@@ -1,0 +1,255 @@
+"""Rollouts: the same bits as a loop over copies, controls and records, errors, Ctrl-C, and threads."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import skerry as sk
+
+WORLDS, STEPS, DT = 5, 10, 5e-3
+
+
+class Bench:
+    """A ball on a plane beside a finger, a held bar, and a lever on a hinge with a motor."""
+
+    def __init__(self) -> None:
+        self.world = sk.World()
+        rubber = sk.Material(young_modulus=5e4, density=500, friction=0.8, damping=20)
+        self.floor = self.world.add_collider(sk.Plane(), name="floor")
+        self.ball = self.world.add_body(sk.Mesh.ball(0.05, 4), rubber, position=(0, 0, 0.052), name="ball")
+        self.finger = self.world.add_collider(
+            sk.Box(size=(0.02, 0.04, 0.04)), position=(0.065, 0, 0.05), name="finger"
+        )
+        self.bar = self.world.add_body(
+            sk.Mesh.box((0.2, 0.05, 0.05), (8, 2, 2)), rubber, position=(0, 0.5, 0.5), name="bar"
+        )
+        self.clamp = self.bar.attach(self.bar.select(where=lambda x: x[:, 0] < -0.099))
+        self.lever = self.world.add_body(
+            sk.Mesh.box((0.1, 0.02, 0.02), (2, 1, 1)), rubber, position=(0, -0.5, 0.5), dynamics="rigid", name="lever"
+        )
+        self.hinge = self.world.add_joint(
+            "hinge", self.lever, point=(-0.05, -0.5, 0.5), axis=(0, 1, 0), motor=sk.Motor(speed=0, strength=5)
+        )
+
+
+def poses() -> NDArray[np.float64]:
+    """Poses of the finger, which pushes the ball farther in each world and interval."""
+    values = np.zeros((WORLDS, STEPS, 6))
+    push = np.linspace(0, 0.02, STEPS) * np.linspace(0.5, 1, WORLDS)[:, None]
+    values[:, :, :3] = (0.065, 0, 0.05)
+    values[:, :, 0] -= push
+    values[:, :, 5] = 0.2 * push
+    return values
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_a_rollout_has_the_bits_of_a_loop_over_copies(threads: int) -> None:
+    bench = Bench()
+    bench.world.advance(0.05)
+    path = poses()
+    loads = np.zeros((WORLDS, STEPS, bench.bar.node_count, 3))
+    loads[:, :, -1, 2] = np.linspace(-0.1, 0.1, WORLDS)[:, None]
+    gravity = np.array([[0, 0, -9.81 + 0.1 * step] for step in range(STEPS)])
+    out = sk.rollout(
+        bench.world,
+        {bench.finger: path, (bench.bar, "loads"): loads, (bench.world, "gravity"): gravity},
+        dt=DT,
+        record={"ball": "ball", "bar": (bench.bar, "center_of_mass"), "energy": (bench.world, "energy")},
+        threads=threads,
+        keep_worlds=True,
+    )
+    for number in range(WORLDS):
+        world = bench.world.copy()
+        ball, bar, finger = world.bodies["ball"], world.bodies["bar"], world.colliders["finger"]
+        for step in range(STEPS):
+            pose = path[number, step]
+            finger.move_to(sk.Pose(position=pose[:3], rotation=pose[3:]), DT)
+            bar.set_loads(loads[number, step])
+            world.set_gravity(gravity[step])
+            world.advance(DT)
+            assert np.array_equal(out["ball"][number, step], ball.positions)
+            assert np.array_equal(out["bar"][number, step], bar.center_of_mass)
+            assert out["energy"][number, step, 1] == world.energy.elastic
+            assert out.time[number, step] == world.time
+        assert out.worlds[number].state_hash == world.state_hash
+    assert np.ptp(out["ball"][:, -1], axis=0).max() > 1e-3  # the worlds differ
+
+
+def test_the_given_world_does_not_change() -> None:
+    bench = Bench()
+    before = bench.world.state_hash
+    sk.rollout(bench.world, {"finger": poses()}, dt=DT)
+    assert bench.world.state_hash == before
+
+
+def test_records_have_the_shapes_of_their_quantities() -> None:
+    bench = Bench()
+    record = {
+        "positions": (bench.ball, "positions"),
+        "center": (bench.ball, "center_of_mass"),
+        "pose": (bench.ball, "pose"),
+        "twist": (bench.ball, "velocity"),
+        "pressure": (bench.ball, "force"),
+        "stress": (bench.ball, "von_mises"),
+        "ratio": (bench.ball, "volume_ratio"),
+        "finger": bench.finger,
+        "clamp": bench.clamp,
+        "angle": bench.hinge,
+        "moment": (bench.hinge, "moment"),
+        "energy": (bench.world, "energy"),
+    }
+    out = sk.rollout(bench.world, dt=DT, steps=3, record=record)
+    shapes = {name: values.shape for name, values in out.items()}
+    vector, twist, number = (1, 3, 3), (1, 3, 6), (1, 3)
+    assert shapes == {
+        "positions": (1, 3, bench.ball.node_count, 3),
+        "center": vector,
+        "pose": twist,
+        "twist": twist,
+        "pressure": vector,
+        "stress": number,
+        "ratio": number,
+        "finger": vector,
+        "clamp": vector,
+        "angle": number,
+        "moment": vector,
+        "energy": (1, 3, 4),
+    }
+    assert out.time.shape == (1, 3)
+    assert np.allclose(out["pose"][0, :, 5], 0)  # the ball does not turn
+    assert np.allclose(out["ratio"], 1, atol=0.1)
+    assert repr(out).startswith("<skerry.Rollout of 1 worlds, 3 intervals: 'positions' (1, 3, ")
+
+
+def test_the_held_end_carries_the_weight_of_the_bar() -> None:
+    bench = Bench()
+    out = sk.rollout(bench.world, dt=0.5, steps=3, record={"clamp": bench.clamp})
+    weight = bench.bar.mass * 9.81
+    assert out["clamp"][0, -1] == pytest.approx((0, 0, weight), abs=0.02 * weight)  # it still swings a little
+
+
+def test_a_motor_follows_the_speeds_of_a_control() -> None:
+    bench = Bench()
+    speeds = np.linspace(0.5, 2, STEPS)
+    out = sk.rollout(
+        bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"angle": (bench.hinge, "coordinate")}
+    )
+    assert np.diff(out["angle"][0]) == pytest.approx(speeds[1:] * DT, rel=1e-6)
+
+
+def test_worlds_of_a_list_differ_and_keep_their_order() -> None:
+    bench = Bench()
+    worlds = [bench.world.copy() for _ in range(3)]
+    for number, world in enumerate(worlds):
+        world.bodies["ball"].set_velocity((0, 0, float(number)))
+    out = sk.rollout(worlds, dt=DT, steps=2, record={"z": (bench.ball, "center_of_mass")})
+    assert np.all(np.diff(out["z"][:, -1, 2]) > 0.5 * DT)
+
+
+def test_a_continued_rollout_has_the_bits_of_a_longer_one() -> None:
+    bench = Bench()
+    path, record = poses(), {"ball": bench.ball}
+    whole = sk.rollout(bench.world, {"finger": path}, dt=DT, record=record)
+    half = STEPS // 2
+    first = sk.rollout(bench.world, {"finger": path[:, :half]}, dt=DT, record=record, keep_worlds=True)
+    second = sk.rollout(first.worlds, {"finger": path[:, half:]}, dt=DT, record=record)
+    assert np.array_equal(np.concatenate([first["ball"], second["ball"]], axis=1), whole["ball"])
+
+
+def test_a_world_that_stops_warns_and_has_nan() -> None:
+    bench = Bench()
+    velocity = np.zeros((2, 3, 6))
+    velocity[1, 1, 0] = 1e200  # no step of world 1 can be completed with this speed
+    with pytest.warns(sk.Doubt, match="1 of 2 worlds stopped; world 1 completed 1 of 3 intervals"):
+        out = sk.rollout(bench.world, {(bench.finger, "velocity"): velocity}, dt=DT, record={"ball": bench.ball})
+    assert out.completed.tolist() == [3, 1]
+    assert out.messages[0] == "" and out.messages[1] != ""
+    assert np.isfinite(out["ball"][0]).all() and np.isfinite(out["ball"][1, 0]).all()
+    assert np.isnan(out["ball"][1, 1:]).all()
+
+
+def test_arrays_of_the_wrong_shape_are_refused_with_both_shapes() -> None:
+    bench = Bench()
+    with pytest.raises(TypeError, match=r"found an array of the shape \(4, 5\), expected \(B, T, 6\) or \(T, 6\)"):
+        sk.rollout(bench.world, {"finger": np.zeros((4, 5))}, dt=DT)
+    with pytest.raises(TypeError, match=r"shape \(4, 2, 3\) with the number of intervals 2, expected 3"):
+        sk.rollout(
+            bench.world, {"finger": np.zeros((4, 3, 6)), (bench.ball, "force"): np.zeros((4, 2, 3))}, dt=DT
+        )
+    with pytest.raises(TypeError, match="with the number of worlds 4, expected 2"):
+        sk.rollout([bench.world, bench.world], {"finger": np.zeros((4, 3, 6))}, dt=DT)
+
+
+def test_wrong_names_quantities_and_settings_are_refused() -> None:
+    bench = Bench()
+    with pytest.raises(KeyError, match="'thumb'"):
+        sk.rollout(bench.world, {"thumb": np.zeros((3, 6))}, dt=DT)
+    with pytest.raises(sk.SceneError, match=r"found 'colour', expected one of 'positions', 'center_of_mass'"):
+        sk.rollout(bench.world, dt=DT, steps=1, record={"ball": (bench.ball, "colour")})
+    with pytest.raises(sk.SceneError, match="steps: found nothing"):
+        sk.rollout(bench.world, dt=DT)
+    with pytest.raises(sk.SceneError, match="dt"):
+        sk.rollout(bench.world, dt=0.0, steps=1)
+    with pytest.raises(sk.SceneError, match="finger"):  # a NaN in a control
+        sk.rollout(bench.world, {"finger": np.full((3, 6), np.nan)}, dt=DT)
+
+
+def test_another_thread_finds_the_world_busy() -> None:
+    bench = Bench()
+    started, errors = threading.Event(), []
+
+    def run() -> None:
+        started.set()
+        sk.rollout([bench.world] * 2, dt=0.05, steps=20)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    started.wait()
+    while thread.is_alive() and not errors:
+        try:
+            bench.world.time
+        except sk.BusyError as error:
+            errors.append(error)
+    thread.join()
+    assert errors
+    assert bench.world.time == 0
+
+
+def test_ctrl_c_ends_a_rollout_within_50_ms() -> None:
+    program = """
+        import time, skerry as sk
+        world = sk.World()
+        for i in range(4):
+            world.add_body(sk.Mesh.ball(0.1, 6), sk.Material(young_modulus=1e6), position=(0, 0, 0.2 + 0.3 * i))
+        world.add_collider(sk.Plane())
+        print("running", flush=True)
+        try:
+            sk.rollout([world] * 8, dt=1.0, steps=1000)
+        except KeyboardInterrupt:
+            print(time.monotonic(), flush=True)
+            world.advance(0.01)
+            print("whole", flush=True)
+    """
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(program)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "running\n"
+    time.sleep(0.3)
+    sent = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    out, errors = process.communicate(timeout=60)
+    assert errors == ""
+    stopped, whole = out.splitlines()
+    assert whole == "whole"
+    # The clock of both processes is the same. The limit is generous, since the machine may be busy.
+    assert float(stopped) - sent < 1.0
