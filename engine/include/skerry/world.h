@@ -29,11 +29,11 @@ namespace skerry {
 
 struct StepProblem;  // defined in problem.h
 
-/// Settings of a loaded world that do not change its results. For a missing value, the value of the saved world is
-/// used.
+/// Settings of a loaded world or of a clone that do not change its results. For a missing value, the value of the
+/// original world is used. If this build does not have the backend of the original world, `automatic` is used.
 struct LoadSettings {
-    std::optional<Backend> backend{};  // if this build does not have the backend, `automatic` is used
-    std::optional<int> threads{};
+    std::optional<Backend> backend{};
+    std::optional<int> threads{};  // >= 0; a world with one thread starts no other thread
 };
 
 /// A simulation. A world must not be used by several threads at once, not even for reading. Different worlds are
@@ -50,7 +50,7 @@ public:
     // world, bit by bit, on any number of threads. Handles of this world name the same objects in the copy, and the
     // report() of the copy covers the whole run. Not copied are the functions of watch_steps() and
     // watch_contact_problems(), recorded traces and the computing times of stages.
-    World clone() const;
+    World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
     /// completely or not at all. If writing fails, throws SceneError that names the cause; the world is unchanged.
     void save(const std::filesystem::path& file) const;

@@ -149,8 +149,7 @@ World world_of(const SavedFile& file, const LoadSettings& wanted, Reader& reader
     }
     const std::span<const Backend> here = available_backends();
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
-    settings.backend = wanted.backend.value_or(settings.backend);
-    settings.threads = wanted.threads.value_or(settings.threads);
+    use(wanted, settings);
     return tuned_world(settings, tuning);
 }
 
