@@ -22,5 +22,6 @@ NB_MODULE(_core, module) {
     module.doc() = "The C++ interface of Skerry. Import skerry instead.";
     bind_errors(module);
     bind_settings(module);
+    bind_mesh(module);
     bind_world(module);
 }
