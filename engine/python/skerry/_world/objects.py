@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from numpy.typing import ArrayLike
 
-from .._arrays import vector
+from .._arrays import real_array
 from .._errors import SceneError
 from .._settings import Pose, Surface
 
@@ -82,7 +82,9 @@ class PosedObject(WorldObject):
         set again, and turns about the origin of its pose. A body gets the velocities of a rigid motion about its centre
         of mass."""
         self._core.set_velocity(
-            self._handle, vector(velocity, "velocity"), vector(angular_velocity, "angular_velocity")
+            self._handle,
+            real_array(velocity, "velocity", (3,)),
+            real_array(angular_velocity, "angular_velocity", (3,)),
         )
 
     def remove(self) -> None:
@@ -210,14 +212,21 @@ class Objects(Mapping[str, Item], Generic[Item]):
 class _Values(ValuesView[Item]):
     """The values by number, since names may not be unique."""
 
+    def __init__(self, objects: Objects[Item]) -> None:
+        super().__init__(objects)
+        self._objects = objects
+
     def __iter__(self) -> Iterator[Item]:
-        objects: Objects[Item] = self._mapping  # type: ignore[assignment]
-        return iter([objects._make(handle) for handle in objects._all()])
+        return iter([self._objects._make(handle) for handle in self._objects._all()])
 
 
 class _Items(ItemsView[str, Item]):
     """The items by number, since names may not be unique."""
 
+    def __init__(self, objects: Objects[Item]) -> None:
+        super().__init__(objects)
+        self._objects = objects
+
     def __iter__(self) -> Iterator[tuple[str, Item]]:
-        objects: Objects[Item] = self._mapping  # type: ignore[assignment]
+        objects = self._objects
         return iter([(objects._core.name(handle), objects._make(handle)) for handle in objects._all()])

@@ -15,7 +15,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._arrays import RotationLike, read_only, rotation, vector
+from .._arrays import RotationLike, read_only, real_array, rotation, vector
 from .._errors import Doubt, SceneError, StepError
 from .._settings import (
     Capsule,
@@ -367,7 +367,7 @@ class World:
 
     def set_gravity(self, gravity: ArrayLike) -> None:
         """Sets the acceleration of all bodies, shape (3,) [m/s^2]."""
-        self._core.set_gravity(vector(gravity, "gravity"))
+        self._core.set_gravity(real_array(gravity, "gravity", (3,)))
 
     def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
         """Switches the collision of two bodies, or of a body and a collider, on or off. For a body with itself it sets
