@@ -1,6 +1,7 @@
 """Skerry: deformable bodies in frictional contact."""
 
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._mesh import Mesh, MeshReport, read_surface
 from ._rollout import Rollout, rollout
 from ._settings import (
     Box,
@@ -57,6 +58,8 @@ __all__ = [
     "JointState",
     "Material",
     "MaterialHandle",
+    "Mesh",
+    "MeshReport",
     "Motion",
     "MotionKey",
     "Motor",
@@ -79,5 +82,6 @@ __all__ = [
     "SurfaceMesh",
     "World",
     "WorldReport",
+    "read_surface",
     "rollout",
 ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import index_array, real_array, require_shape
+from .._arrays import VectorLike, index_array, real_array, require_shape
 from .._settings import Dynamics, ElementKind, Motion, Pose
 from .objects import MovedObject, TouchingObject
 from .reports import DynamicsEstimate
@@ -157,8 +157,8 @@ class Body(TouchingObject):
     def select(
         self,
         *,
-        box: tuple[ArrayLike, ArrayLike] | None = None,
-        sphere: tuple[ArrayLike, float] | None = None,
+        box: tuple[VectorLike, VectorLike] | None = None,
+        sphere: tuple[VectorLike, float] | None = None,
         below: float | None = None,
         above: float | None = None,
         surface: bool = False,
@@ -195,7 +195,7 @@ class Body(TouchingObject):
 
     # Control.
 
-    def attach(self, nodes: ArrayLike, *, motion: Motion | None = None, pivot: ArrayLike | None = None) -> Attachment:
+    def attach(self, nodes: ArrayLike, *, motion: Motion | None = None, pivot: VectorLike | None = None) -> Attachment:
         """Prescribes the motion of some nodes. From now on they stay in place or follow `motion`.
 
         nodes: numbers within the body (j,), or a truth value for each node (n,). motion: velocities, or keys at
