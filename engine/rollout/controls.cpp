@@ -19,6 +19,9 @@ std::size_t row_of(const World& world, auto handle) {
     return static_cast<std::size_t>(model_of(world).row(handle, "rollout"));
 }
 
+std::string name_of_object(const World&, std::monostate) {
+    return {};
+}
 std::string name_of_object(const World& world, BodyHandle body) {
     return "body '" + world.name(body) + "'";
 }
@@ -33,28 +36,22 @@ std::string name_of_object(const World& world, JointHandle joint) {
     return "joint " + std::to_string(row_of(world, joint));
 }
 
-/// Calls visit(handle) for the object of a control. Gravity has none.
-void visit_object(const RolloutControl& control, auto&& visit) {
-    std::visit(
-        [&](const auto& what) {
+/// The object of a control; gravity has none.
+using ControlledObject = std::variant<std::monostate, BodyHandle, ColliderHandle, AttachmentHandle, JointHandle>;
+
+ControlledObject object_of(const RolloutControl& control) {
+    return std::visit(
+        [](const auto& what) -> ControlledObject {
             if constexpr (requires { what.body; })
-                visit(what.body);
+                return what.body;
             else if constexpr (requires { what.joint; })
-                visit(what.joint);
+                return what.joint;
             else if constexpr (requires { what.object; })
-                std::visit(visit, what.object);
+                return std::visit([](auto handle) -> ControlledObject { return handle; }, what.object);
+            else
+                return std::monostate();
         },
         control.what);
-}
-
-bool same_object(const RolloutControl& a, const RolloutControl& b) {
-    bool same = std::holds_alternative<GravityControl>(a.what) && std::holds_alternative<GravityControl>(b.what);
-    visit_object(a, [&](auto first) {
-        visit_object(b, [&](auto second) {
-            if constexpr (std::is_same_v<decltype(first), decltype(second)>) same = first == second;
-        });
-    });
-    return same;
 }
 
 /// Name of each kind of control before the name of its object, and number of values per interval.
@@ -74,9 +71,8 @@ constexpr std::array<ControlKind, std::variant_size_v<decltype(RolloutControl::w
 
 /// Text such as "pose of collider 'finger'".
 std::string title_of(const World& world, const RolloutControl& control) {
-    std::string title = control_kinds[control.what.index()].title;
-    visit_object(control, [&](auto handle) { title += name_of_object(world, handle); });
-    return title;
+    return control_kinds[control.what.index()].title +
+           std::visit([&](auto handle) { return name_of_object(world, handle); }, object_of(control));
 }
 
 [[noreturn]] void refuse_control(const std::string& control, const std::string& field, const std::string& found,
@@ -136,13 +132,15 @@ private:
 }  // namespace
 
 std::size_t number_count(const World& world, const RolloutControl& control) {
-    visit_object(control, [&](auto handle) {
-        const std::size_t row = row_of(world, handle);
-        if constexpr (std::is_same_v<decltype(handle), JointHandle>)
-            if (model_of(world).joints.drive[row] == JointDrive::none)
-                refuse_control(name_of_object(world, handle), "motor", "no motor",
-                               "a hinge or slider with a motor (Joints::set_motor)");
-    });
+    const auto require_live = [&](auto handle) {
+        if constexpr (!std::is_same_v<decltype(handle), std::monostate>) (void)row_of(world, handle);
+    };
+    const ControlledObject object = object_of(control);
+    std::visit(require_live, object);
+    if (const auto* const joint = std::get_if<JointHandle>(&object))
+        if (model_of(world).joints.drive[row_of(world, *joint)] == JointDrive::none)
+            refuse_control(name_of_object(world, *joint), "motor", "no motor",
+                           "a hinge or slider with a motor (Joints::set_motor)");
     const std::size_t count = control_kinds[control.what.index()].count;
     const auto* const nodes = std::get_if<NodeForceControl>(&control.what);
     return nodes ? count * world.positions(nodes->body).size() : count;
@@ -167,7 +165,7 @@ void check_controls(std::span<const World* const> worlds, std::size_t world_coun
         }
         const std::string title = place + " (" + title_of(*worlds[0], control) + ")";
         for (std::size_t earlier = 0; earlier < c; ++earlier)
-            if (same_object(settings.controls[earlier], control))
+            if (object_of(settings.controls[earlier]) == object_of(control))
                 refuse_control(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
                                "one control for each object");
         const std::size_t of_one = settings.intervals * count, of_all = world_count * of_one;

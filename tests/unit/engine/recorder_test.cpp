@@ -101,6 +101,51 @@ TEST_CASE("rows of a recorder are what the world says at multiples of a time, im
     CHECK(landed > 0.1);
 }
 
+TEST_CASE("poses, velocities and nodes are recorded as the world has them", "[unit]") {
+    Swing swing;
+    World& world = swing.world;
+    world.set_velocity(swing.floor, {0, 0, 0.1}, {0, 0, 0.2});
+    const auto rigid = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = world.add_material({}),
+                                                                              .position = {2, 0, 1},
+                                                                              .rotation = {0.3, 0, 0},
+                                                                              .velocity = {1, 0, 0},
+                                                                              .angular_velocity = {0, 2, 0},
+                                                                              .dynamics = BodyDynamics::rigid});
+    Recorder recorder(world, {{"ball", PoseProbe{swing.ball}},
+                              {"floor", PoseProbe{swing.floor}},
+                              {"hold", PoseProbe{swing.hold}},
+                              {"rigid", VelocityProbe{rigid}},
+                              {"soft", VelocityProbe{swing.ball}},
+                              {"plane", VelocityProbe{swing.floor}},
+                              {"shape", NodesProbe{swing.bar}}});
+    world.set_velocity(swing.ball, {0, 0.5, 0}, {0.1, 0, 0});
+    recorder.sample(world);
+    CHECK(recorder.row(0)[column(recorder, "rigid.velocity_x [m/s]")] == Approx(1));
+    CHECK(recorder.row(0)[column(recorder, "rigid.angular_velocity_y [rad/s]")] == Approx(2));
+    CHECK(recorder.row(0)[column(recorder, "soft.velocity_y [m/s]")] == Approx(0.5));
+    CHECK(recorder.row(0)[column(recorder, "soft.angular_velocity_x [rad/s]")] == Approx(0.1));
+    REQUIRE(world.advance(0.01).ok());
+    recorder.sample(world);
+    const auto row = recorder.row(1);
+    const auto check_pose = [&](const std::string& probe, const MotionKey& pose) {
+        for (int k = 0; k < 3; ++k) {
+            const std::string axis(1, static_cast<char>('x' + k));
+            CHECK(row[column(recorder, probe + ".position_" + axis + " [m]")] == pose.position[k]);
+            CHECK(row[column(recorder, probe + ".rotation_" + axis + " [rad]")] == pose.rotation[k]);
+        }
+    };
+    check_pose("ball", world.pose(swing.ball));
+    check_pose("floor", world.pose(swing.floor));
+    check_pose("hold", world.pose(swing.hold));
+    CHECK(row[column(recorder, "floor.position_z [m]")] == Approx(1e-3));
+    CHECK(row[column(recorder, "plane.velocity_z [m/s]")] == Approx(0.1));
+    CHECK(row[column(recorder, "plane.angular_velocity_z [rad/s]")] == Approx(0.2));
+    const std::size_t first = column(recorder, "shape.position_x_0 [m]");
+    for (std::size_t n = 0; n < world.positions(swing.bar).size(); ++n)
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(row[first + 3 * n + k] == world.positions(swing.bar)[n][static_cast<Eigen::Index>(k)]);
+}
+
 TEST_CASE("series are written as CSV and HDF5 with all digits and units, and read back", "[unit]") {
     const TemporaryFolder folder;
     Swing swing;
