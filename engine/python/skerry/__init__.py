@@ -3,7 +3,6 @@
 from ._errors import BusyError, Doubt, SceneError, StepError
 from ._mesh import Mesh, MeshReport, read_surface
 from ._rollout import Rollout, rollout
-from ._mesh import Mesh, MeshReport
 from ._settings import (
     Box,
     Bucket,
