@@ -1,7 +1,7 @@
 """Skerry: deformable bodies in frictional contact."""
 
 from ._errors import BusyError, Doubt, SceneError, StepError
-from ._mesh import Mesh, MeshReport
+from ._mesh import Mesh, MeshReport, read_surface
 from ._settings import (
     Box,
     Bucket,
@@ -80,4 +80,5 @@ __all__ = [
     "SurfaceMesh",
     "World",
     "WorldReport",
+    "read_surface",
 ]

@@ -94,6 +94,7 @@ void bind_world(nb::module_& module) {
     bind_control(type);
     bind_joints(type);
     bind_views(type);
+    bind_results(type);
 }
 
 }  // namespace skerry::python
