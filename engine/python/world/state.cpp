@@ -54,8 +54,16 @@ void bind_world_state(WorldClass& type) {
         .def("settings", guarded([](World& world) { return values_of(world.settings()); }))
         .def("stable_step", guarded([](World& world) { return world.stable_step(); }))
         .def("energy", guarded([](World& world) { return values_of(world.energy()); }))
-        .def("report", guarded([](World& world) { return values_of(world.report()); }))
-        .def("state_hash", guarded([](World& world) { return world.state_hash(); }))
+        .def("report",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return values_of(without_gil([&] { return object.world.report(); }));
+             })
+        .def("state_hash",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return without_gil([&] { return object.world.state_hash(); });
+             })
         .def("bodies", guarded([](World& world) { return world.bodies(); }))
         .def("bodies_named",
              guarded([](World& world, const std::string& name) { return named(world, world.bodies(), name); }))

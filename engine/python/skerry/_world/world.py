@@ -249,8 +249,10 @@ class World(Building):
 
     def _warn(self, text: str, *cause: str) -> None:
         """Warns once for each cause."""
-        if text and cause not in self._doubts:
-            self._doubts.add(cause)
+        if cause in self._doubts:
+            return
+        self._doubts.add(cause)
+        if text:
             warnings.warn(text, Doubt, stacklevel=_frames_of_package())
 
     def __repr__(self) -> str:
