@@ -143,7 +143,8 @@ def test_a_motor_follows_the_speeds_of_a_control() -> None:
     out = sk.rollout(
         bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"angle": (bench.hinge, "coordinate")}
     )
-    assert np.diff(out["angle"][0]) == pytest.approx(speeds[1:] * DT, rel=1e-6)
+    # The solver may miss the speed by its tolerance.
+    assert np.diff(out["angle"][0]) == pytest.approx(speeds[1:] * DT, rel=sk.Settings().tolerance)
 
 
 def test_worlds_of_a_list_differ_and_keep_their_order() -> None:
@@ -167,12 +168,12 @@ def test_a_continued_rollout_has_the_bits_of_a_longer_one() -> None:
 
 def test_a_world_that_stops_warns_and_has_nan() -> None:
     bench = Bench()
-    velocity = np.zeros((2, 3, 6))
-    velocity[1, 1, 0] = 1e200  # no step of world 1 can be completed with this speed
+    force = np.zeros((2, 3, 3))
+    force[1, 1, 0] = 1e12  # tears the held bar of world 1 apart
     with pytest.warns(sk.Doubt, match="1 of 2 worlds stopped; world 1 completed 1 of 3 intervals"):
-        out = sk.rollout(bench.world, {(bench.finger, "velocity"): velocity}, dt=DT, record={"ball": bench.ball})
+        out = sk.rollout(bench.world, {(bench.bar, "force"): force}, dt=DT, record={"ball": bench.ball})
     assert out.completed.tolist() == [3, 1]
-    assert out.messages[0] == "" and out.messages[1] != ""
+    assert out.messages[0] == "" and "'bar'" in out.messages[1]
     assert np.isfinite(out["ball"][0]).all() and np.isfinite(out["ball"][1, 0]).all()
     assert np.isnan(out["ball"][1, 1:]).all()
 
