@@ -39,6 +39,9 @@ NB_MODULE(_core, module) {
     bind_errors(module);
     bind_settings(module);
     bind_mesh(module);
+    bind_problem(module);
     bind_world(module);
+    bind_recorder(module);
     bind_rollout(module);
+    bind_scene(module);
 }

@@ -28,13 +28,6 @@ std::variant<ColliderHandle, AttachmentHandle> movable(nb::handle object) {
     if (nb::isinstance<AttachmentHandle>(object)) return nb::cast<AttachmentHandle>(object);
     return nb::cast<ColliderHandle>(object);
 }
-/// A body, a collider or an attachment.
-std::variant<BodyHandle, ColliderHandle, AttachmentHandle> placed(nb::handle object) {
-    if (nb::isinstance<BodyHandle>(object)) return nb::cast<BodyHandle>(object);
-    if (nb::isinstance<AttachmentHandle>(object)) return nb::cast<AttachmentHandle>(object);
-    return nb::cast<ColliderHandle>(object);
-}
-
 /// A control of Python: kind, handle (None for gravity) and values in the order of RolloutControl::values.
 using Control = std::tuple<std::string, nb::object, Values>;
 
@@ -61,33 +54,8 @@ RolloutControl control_of(const Control& given) {
     return control;
 }
 
-/// A probe of Python: name, kind and object. The object is a handle, None for the energy of the world, or for a
-/// material point its body, nodes and weights.
-using Record = std::tuple<std::string, std::string, nb::object>;
-using Point = std::tuple<BodyHandle, std::array<Index, 4>, std::array<Real, 4>>;
-
-RecordedProbe probe_of(const Record& given) {
-    const auto& [name, kind, object] = given;
-    if (kind == "point") {
-        const auto [body, node, weight] = nb::cast<Point>(object);
-        return {name, PointProbe{.body = body, .node = node, .weight = weight, .origin = {}}};
-    }
-    if (kind == "body") return {name, BodyProbe{nb::cast<BodyHandle>(object), {}}};
-    if (kind == "nodes") return {name, NodesProbe{nb::cast<BodyHandle>(object)}};
-    if (kind == "stress") return {name, StressProbe{nb::cast<BodyHandle>(object), {}}};
-    if (kind == "volume") return {name, VolumeProbe{nb::cast<BodyHandle>(object)}};
-    if (kind == "pose") return {name, PoseProbe{placed(object)}};
-    if (kind == "velocity") return {name, VelocityProbe{placed(object)}};
-    if (kind == "joint") return {name, JointProbe{nb::cast<JointHandle>(object)}};
-    if (kind == "energy") return {name, EnergyProbe{}};
-    if (kind != "force") refuse_kind(kind);
-    if (nb::isinstance<BodyHandle>(object)) return {name, BodyForceProbe{nb::cast<BodyHandle>(object), {}}};
-    if (nb::isinstance<ColliderHandle>(object)) return {name, ColliderForceProbe{nb::cast<ColliderHandle>(object), {}}};
-    return {name, ReactionProbe{nb::cast<AttachmentHandle>(object)}};
-}
-
-/// The result as a dictionary. `count` is the number of worlds.
-nb::dict dict_of(RolloutResult&& result, std::size_t count, std::size_t intervals) {
+/// The members of a result by name.
+nb::dict dict_of(RolloutResult&& result) {
     nb::dict values;
     values["time"] = array_of<Real>(std::span<const Real>(result.time));
     nb::list series, status, worlds;
@@ -102,12 +70,11 @@ nb::dict dict_of(RolloutResult&& result, std::size_t count, std::size_t interval
     values["series"] = series;
     values["status"] = status;
     values["worlds"] = worlds;
-    values["shape"] = nb::make_tuple(count, intervals);
     return values;
 }
 
 nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector<Control>& controls,
-                     const std::vector<Record>& records, Real dt, std::size_t intervals, int threads,
+                     std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads,
                      bool keep_worlds) {
     std::deque<Use> used;  // a deque never moves its elements
     std::vector<const World*> worlds;
@@ -117,14 +84,14 @@ nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector
     }
     RolloutSettings settings{.intervals = intervals, .dt = dt, .threads = threads, .keep_worlds = keep_worlds};
     std::ranges::transform(controls, std::back_inserter(settings.controls), control_of);
-    std::ranges::transform(records, std::back_inserter(settings.record), probe_of);
+    settings.record = std::move(record);
     settings.go_on = [](const RolloutProgress&) {
         nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         return true;
     };
     if (threads != 1) Use::note_threads();
-    return dict_of(without_gil([&] { return rollout(worlds, settings); }), worlds.size(), intervals);
+    return dict_of(without_gil([&] { return rollout(worlds, settings); }));
 }
 
 }  // namespace

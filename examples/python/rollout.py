@@ -16,11 +16,10 @@ poses = np.zeros((len(speeds), steps, 6))  # position and rotation vector at the
 poses[:, :, :3] = (-0.065, 0, 0.055)
 poses[:, :, 0] += speeds[:, None] * dt * np.arange(1, steps + 1)
 
-out = sk.rollout(world, {finger: poses}, dt=dt, record={"center": (ball, "center_of_mass"), "force": finger})
-moved = out["center"][:, -1, 0]  # how far the ball has come in each world [m]
-for speed, distance, force in zip(speeds, moved, np.nanmax(-out["force"][:, :, 0], axis=1)):
+out = sk.rollout(world, {finger: poses}, dt=dt, record={"ball": sk.BodyProbe(ball), "finger": sk.ForceProbe(finger)})
+moved = out["ball.position"][:, -1, 0]  # how far the ball has come in each world [m]
+for speed, distance, force in zip(speeds, moved, -out["finger.force"][:, :, 0].min(axis=1)):
     print(f"finger at {speed:.3f} m/s: the ball moved by {100 * distance:5.2f} cm, largest mean force {force:.2f} N")
 
 assert not any(out.messages)
-assert np.all(np.diff(moved) > 0)  # a faster finger moves the ball farther
-assert np.all(moved > speeds * steps * dt - 0.03)  # the ball is not behind the finger
+assert np.all(moved > speeds * steps * dt - 0.01)  # the ball is before the finger

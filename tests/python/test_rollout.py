@@ -63,7 +63,7 @@ def test_a_rollout_has_the_bits_of_a_loop_over_copies(threads: int) -> None:
         bench.world,
         {bench.finger: path, (bench.bar, "loads"): loads, (bench.world, "gravity"): gravity},
         dt=DT,
-        record={"ball": "ball", "bar": (bench.bar, "center_of_mass"), "energy": (bench.world, "energy")},
+        record={"ball": sk.NodesProbe(bench.ball), "bar": sk.BodyProbe(bench.bar), "world": sk.EnergyProbe()},
         threads=threads,
         keep_worlds=True,
     )
@@ -76,12 +76,12 @@ def test_a_rollout_has_the_bits_of_a_loop_over_copies(threads: int) -> None:
             bar.set_loads(loads[number, step])
             world.set_gravity(gravity[step])
             world.advance(DT)
-            assert np.array_equal(out["ball"][number, step], ball.positions)
-            assert np.array_equal(out["bar"][number, step], bar.center_of_mass)
-            assert out["energy"][number, step, 1] == world.energy.elastic
+            assert np.array_equal(out["ball.positions"][number, step], ball.positions)
+            assert np.array_equal(out["bar.position"][number, step], bar.center_of_mass)
+            assert out["world.elastic"][number, step] == world.energy.elastic
             assert out.time[number, step] == world.time
         assert out.worlds[number].state_hash == world.state_hash
-    assert np.ptp(out["ball"][:, -1], axis=0).max() > 1e-3  # the worlds differ
+    assert np.ptp(out["ball.positions"][:, -1], axis=0).max() > 1e-3  # the worlds differ
 
 
 def test_the_given_world_does_not_change() -> None:
@@ -94,57 +94,62 @@ def test_the_given_world_does_not_change() -> None:
 def test_records_have_the_shapes_of_their_quantities() -> None:
     bench = Bench()
     record = {
-        "positions": (bench.ball, "positions"),
-        "center": (bench.ball, "center_of_mass"),
-        "pose": (bench.ball, "pose"),
-        "twist": (bench.ball, "velocity"),
-        "pressure": (bench.ball, "force"),
-        "stress": (bench.ball, "von_mises"),
-        "ratio": (bench.ball, "volume_ratio"),
-        "finger": bench.finger,
-        "clamp": bench.clamp,
-        "angle": bench.hinge,
-        "moment": (bench.hinge, "moment"),
-        "energy": (bench.world, "energy"),
+        "nodes": sk.NodesProbe(bench.ball),
+        "centre": sk.BodyProbe(bench.ball),
+        "tip": bench.bar.probe((0.1, 1 / 2, 1 / 2)),
+        "pose": sk.PoseProbe(bench.finger),
+        "twist": sk.VelocityProbe(bench.ball),
+        "floor": sk.ForceProbe(bench.floor, by=bench.ball),
+        "stress": sk.StressProbe(bench.ball),
+        "ratio": sk.VolumeProbe(bench.ball),
+        "clamp": sk.ReactionProbe(bench.clamp),
+        "hinge": sk.JointProbe(bench.hinge),
+        "energy": sk.EnergyProbe(),
     }
     out = sk.rollout(bench.world, dt=DT, steps=3, record=record)
-    shapes = {name: values.shape for name, values in out.items()}
-    vector, twist, number = (1, 3, 3), (1, 3, 6), (1, 3)
-    assert shapes == {
-        "positions": (1, 3, bench.ball.node_count, 3),
-        "center": vector,
-        "pose": twist,
-        "twist": twist,
-        "pressure": vector,
-        "stress": number,
-        "ratio": number,
-        "finger": vector,
-        "clamp": vector,
-        "angle": number,
-        "moment": vector,
-        "energy": (1, 3, 4),
-    }
+    vectors = {name for name, values in out.items() if values.shape == (1, 3, 3)}
+    numbers = {name for name, values in out.items() if values.shape == (1, 3)}
+    assert vectors >= {"centre.position", "centre.velocity", "tip.displacement", "pose.rotation", "floor.force"}
+    assert vectors >= {"twist.velocity", "twist.angular_velocity", "clamp.force", "hinge.moment"}
+    assert numbers >= {"floor.contacts", "stress.largest_von_mises", "ratio.smallest_volume_ratio", "hinge.angle"}
+    assert numbers >= {"energy.kinetic", "energy.elastic", "energy.potential", "energy.dissipated"}
+    assert set(out) - vectors - numbers == {"nodes.positions"}
+    assert out["nodes.positions"].shape == (1, 3, bench.ball.node_count, 3)
     assert out.time.shape == (1, 3)
-    assert np.allclose(out["pose"][0, :, 5], 0)  # the ball does not turn
-    assert np.allclose(out["ratio"], 1, atol=0.1)
-    assert repr(out).startswith("<skerry.Rollout of 1 worlds, 3 intervals: 'positions' (1, 3, ")
+    assert out["pose.position"][0, -1].tolist() == [0.065, 0, 0.05]
+    assert np.allclose(out["ratio.smallest_volume_ratio"], 1, atol=0.1)
+    assert repr(out).startswith("<skerry.Rollout of 1 worlds, 3 intervals: 'nodes.positions' (1, 3, ")
+
+
+def test_a_rollout_has_the_numbers_of_a_recorder() -> None:
+    bench = Bench()
+    record = {"tip": bench.bar.probe((0.1, 0.5, 0.5)), "clamp": sk.ReactionProbe(bench.clamp)}
+    out = sk.rollout(bench.world, dt=DT, steps=4, record=record)
+    recorder = bench.world.recorder(record)
+    for _ in range(4):
+        bench.world.advance(DT)
+        recorder.sample()
+    table = recorder.table()
+    for axis, column in enumerate(("x", "y", "z")):
+        assert np.array_equal(out["tip.position"][0, :, axis], table[f"tip.position_{column}"])
+        assert np.array_equal(out["clamp.force"][0, :, axis], table[f"clamp.force_{column}"])
 
 
 def test_the_held_end_carries_the_weight_of_the_bar() -> None:
     bench = Bench()
-    out = sk.rollout(bench.world, dt=0.5, steps=3, record={"clamp": bench.clamp})
+    out = sk.rollout(bench.world, dt=0.5, steps=3, record={"clamp": sk.ReactionProbe(bench.clamp)})
     weight = bench.bar.mass * 9.81
-    assert out["clamp"][0, -1] == pytest.approx((0, 0, weight), abs=0.02 * weight)  # it still swings a little
+    assert out["clamp.force"][0, -1] == pytest.approx((0, 0, weight), abs=0.02 * weight)  # it still swings a little
 
 
 def test_a_motor_follows_the_speeds_of_a_control() -> None:
     bench = Bench()
     speeds = np.linspace(0.5, 2, STEPS)
     out = sk.rollout(
-        bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"angle": (bench.hinge, "coordinate")}
+        bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"hinge": sk.JointProbe(bench.hinge)}
     )
     # The solver may miss the speed by its tolerance.
-    assert np.diff(out["angle"][0]) == pytest.approx(speeds[1:] * DT, rel=sk.Settings().tolerance)
+    assert np.diff(out["hinge.angle"][0]) == pytest.approx(speeds[1:] * DT, rel=sk.Settings().tolerance)
 
 
 def test_worlds_of_a_list_differ_and_keep_their_order() -> None:
@@ -152,18 +157,18 @@ def test_worlds_of_a_list_differ_and_keep_their_order() -> None:
     worlds = [bench.world.copy() for _ in range(3)]
     for number, world in enumerate(worlds):
         world.bodies["ball"].set_velocity((0, 0, float(number)))
-    out = sk.rollout(worlds, dt=DT, steps=2, record={"z": (bench.ball, "center_of_mass")})
-    assert np.all(np.diff(out["z"][:, -1, 2]) > 0.5 * DT)
+    out = sk.rollout(worlds, dt=DT, steps=2, record={"ball": sk.BodyProbe(bench.ball)})
+    assert np.all(np.diff(out["ball.position"][:, -1, 2]) > 0.5 * DT)
 
 
 def test_a_continued_rollout_has_the_bits_of_a_longer_one() -> None:
     bench = Bench()
-    path, record = poses(), {"ball": bench.ball}
+    path, record = poses(), {"ball": sk.NodesProbe(bench.ball)}
     whole = sk.rollout(bench.world, {"finger": path}, dt=DT, record=record)
     half = STEPS // 2
     first = sk.rollout(bench.world, {"finger": path[:, :half]}, dt=DT, record=record, keep_worlds=True)
     second = sk.rollout(first.worlds, {"finger": path[:, half:]}, dt=DT, record=record)
-    assert np.array_equal(np.concatenate([first["ball"], second["ball"]], axis=1), whole["ball"])
+    assert np.array_equal(np.concatenate([first["ball.positions"], second["ball.positions"]], axis=1), whole["ball.positions"])
 
 
 def test_a_world_that_stops_warns_and_has_nan() -> None:
@@ -171,11 +176,11 @@ def test_a_world_that_stops_warns_and_has_nan() -> None:
     force = np.zeros((2, 3, 3))
     force[1, 1, 0] = 1e12  # tears the held bar of world 1 apart
     with pytest.warns(sk.Doubt, match="1 of 2 worlds stopped; world 1 completed 1 of 3 intervals"):
-        out = sk.rollout(bench.world, {(bench.bar, "force"): force}, dt=DT, record={"ball": bench.ball})
+        out = sk.rollout(bench.world, {(bench.bar, "force"): force}, dt=DT, record={"ball": sk.BodyProbe(bench.ball)})
     assert out.completed.tolist() == [3, 1]
     assert out.messages[0] == "" and "'bar'" in out.messages[1]
-    assert np.isfinite(out["ball"][0]).all() and np.isfinite(out["ball"][1, 0]).all()
-    assert np.isnan(out["ball"][1, 1:]).all()
+    assert np.isfinite(out["ball.position"][0]).all() and np.isfinite(out["ball.position"][1, 0]).all()
+    assert np.isnan(out["ball.position"][1, 1:]).all()
 
 
 def test_arrays_of_the_wrong_shape_are_refused_with_both_shapes() -> None:
@@ -194,9 +199,11 @@ def test_wrong_names_quantities_and_settings_are_refused() -> None:
     bench = Bench()
     with pytest.raises(KeyError, match="'thumb'"):
         sk.rollout(bench.world, {"thumb": np.zeros((3, 6))}, dt=DT)
-    with pytest.raises(sk.SceneError, match=r"found 'colour', expected one of 'positions', 'center_of_mass'"):
-        sk.rollout(bench.world, dt=DT, steps=1, record={"ball": (bench.ball, "colour")})
-    with pytest.raises(sk.SceneError, match="steps: found nothing"):
+    with pytest.raises(sk.SceneError, match="quantity: found 'colour', expected one of 'force', 'loads'"):
+        sk.rollout(bench.world, {(bench.ball, "colour"): np.zeros((3, 3))}, dt=DT)
+    with pytest.raises(TypeError, match="probe 'ball': found <skerry.Body"):
+        sk.rollout(bench.world, dt=DT, steps=1, record={"ball": bench.ball})  # type: ignore[dict-item]
+    with pytest.raises(sk.SceneError, match="rollout: steps: found None"):
         sk.rollout(bench.world, dt=DT)
     with pytest.raises(sk.SceneError, match="dt"):
         sk.rollout(bench.world, dt=0.0, steps=1)

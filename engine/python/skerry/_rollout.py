@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import shape_text
-from ._errors import Doubt, SceneError
+from ._errors import Doubt, scene_error
+from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
 
 Reals: TypeAlias = NDArray[np.float64]
@@ -19,59 +20,20 @@ RolloutObject: TypeAlias = Body | Collider | Attachment | Joint | World | str
 """An object of the world, the name of a body or a collider, or the world itself."""
 
 
-class _Quantity(NamedTuple):
-    """A quantity that a rollout controls or records."""
-
-    kind: str
-    """Kind of the control or the probe in the extension module."""
-    columns: tuple[str, ...]
-    """Names of the columns. A control needs their number only. Empty: three columns for each node."""
-
-
-def _vector(name: str) -> tuple[str, ...]:
-    return tuple(f"{name}_{axis}" for axis in "xyz")
-
-
-_POSE = _Quantity("pose", (*_vector("position"), *_vector("rotation")))
-_VELOCITY = _Quantity("velocity", (*_vector("velocity"), *_vector("angular_velocity")))
-_FORCE = _Quantity("force", _vector("force"))
-_NODES = ()
-
-_CONTROLS: dict[type, dict[str, _Quantity]] = {
-    Collider: {"pose": _POSE, "velocity": _VELOCITY},
-    Attachment: {"pose": _POSE, "velocity": _VELOCITY},
-    Body: {"force": _FORCE, "loads": _Quantity("loads", _NODES)},
-    Joint: {"coordinate": _Quantity("coordinate", ("",)), "speed": _Quantity("speed", ("",))},
-    World: {"gravity": _Quantity("gravity", _vector("gravity"))},
+_CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
+    Collider: {"pose": (6,), "velocity": (6,)},
+    Attachment: {"pose": (6,), "velocity": (6,)},
+    Body: {"force": (3,), "loads": (-1, 3)},
+    Joint: {"coordinate": (), "speed": ()},
+    World: {"gravity": (3,)},
 }
-"""Quantities that a rollout can control, by the class of the object. The first one is the default."""
-
-_RECORDS: dict[type, dict[str, _Quantity]] = {
-    Body: {
-        "positions": _Quantity("nodes", _NODES),
-        "center_of_mass": _Quantity("body", _vector("position")),
-        "pose": _POSE,
-        "velocity": _VELOCITY,
-        "force": _FORCE,
-        "von_mises": _Quantity("stress", ("largest_von_mises",)),
-        "volume_ratio": _Quantity("volume", ("smallest_volume_ratio",)),
-    },
-    Collider: {"force": _FORCE, "pose": _POSE, "velocity": _VELOCITY},
-    Attachment: {"force": _FORCE, "pose": _POSE, "velocity": _VELOCITY},
-    Joint: {
-        "coordinate": _Quantity("joint", ("angle", "displacement")),
-        "speed": _Quantity("joint", ("speed",)),
-        "force": _Quantity("joint", _vector("force")),
-        "moment": _Quantity("joint", _vector("moment")),
-    },
-    World: {"energy": _Quantity("energy", ("kinetic", "elastic", "potential", "dissipated"))},
-}
-"""Quantities that a rollout can record, by the class of the object. The first one is the default."""
+"""Quantities that a rollout can control, by the class of the object, with the shape of one value; -1 stands for the
+number of nodes. The first quantity is the default."""
 
 
 class Rollout(dict[str, Reals]):
     """Recorded values by name: arrays whose first two axes are the world and the interval. Values of intervals that
-    were not completed are NaN."""
+    were not completed are NaN. rollout() makes it."""
 
     time: Reals
     """Time at the end of each interval, shape (B, T) [s]."""
@@ -96,15 +58,15 @@ def rollout(
     *,
     dt: float,
     steps: int | None = None,
-    record: Mapping[str, RolloutObject | tuple[RolloutObject, str]] | None = None,
+    record: Mapping[str, Probe] | None = None,
     threads: int = 0,
     keep_worlds: bool = False,
 ) -> Rollout:
     """Advances copies of a world through T intervals of dt [s], several copies at once. The given worlds do not change.
 
         poses = np.zeros((64, 100, 6))  # 64 worlds, 100 intervals
-        out = skerry.rollout(world, {finger: poses}, dt=0.01, record={"ball": ball, "force": (finger, "force")})
-        out["ball"]  # positions of the nodes (64, 100, n, 3)
+        out = skerry.rollout(world, {finger: poses}, dt=0.01, record={"tip": ball.probe((0, 0, 0.1))})
+        out["tip.position"]  # shape (64, 100, 3)
 
     worlds: one world, or a list of copies of one world, which may differ in materials, poses and so on.
 
@@ -115,11 +77,9 @@ def rollout(
 
     steps: number T of intervals; needed only without controls.
 
-    record: names of the results, and what they are at the end of each interval: an object, or an object and a
-    quantity. Of bodies: "positions" (default, (n, 3)), "center_of_mass" (3,), "pose" (6,), "velocity" (6,), "force"
-    (3,), "von_mises" (largest stress of a node [Pa]), "volume_ratio" (smallest of a tetrahedron). Of colliders and
-    attachments: "force" (default), "pose", "velocity". Of joints: "coordinate" (default), "speed", "force", "moment".
-    Of the world: "energy" (kinetic, elastic, potential, dissipated [J]). Forces are means over the interval [N].
+    record: probes by name, as for World.recorder(). Their values at the end of each interval have the names of
+    Recorder.table(), but components and nodes are axes: out["tip.position"] has the shape (B, T, 3) for a PointProbe,
+    out["ball.positions"] (B, T, n, 3) for a NodesProbe, out["energy.elastic"] (B, T). Forces are those of the interval.
 
     threads: number of threads; 0: all cores. keep_worlds: True: the result holds the worlds at the end.
 
@@ -130,16 +90,17 @@ def rollout(
     then. BusyError: another thread uses one of the worlds."""
     first = worlds if isinstance(worlds, World) else _first_of(worlds)
     given = {key: _Values(first, key, values) for key, values in (controls or {}).items()}
-    count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(worlds)) or 1
+    common = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(worlds))
+    count = 1 if common is None else common
     intervals = _common(given, "number of intervals", 1, steps)
     if intervals is None:
-        raise SceneError("rollout: steps: found nothing, expected the number of intervals, because no control has it")
+        raise scene_error("rollout", "steps", "None", "the number of intervals, because there are no controls")
     copies = [worlds] * count if isinstance(worlds, World) else list(worlds)
-    probes = {name: _Probe(first, name, of) for name, of in (record or {}).items()}
+    probes = record or {}
     values = _core.rollout(
         [world._core for world in copies],
-        [(control.quantity.kind, control.handle, control.array.ravel()) for control in given.values()],
-        [(name, probe.quantity.kind, probe.handle) for name, probe in probes.items()],
+        [(control.quantity, control.handle, control.array.ravel()) for control in given.values()],
+        recorded_probes(probes),
         float(dt),
         intervals,
         threads,
@@ -147,7 +108,7 @@ def rollout(
     )
     result = Rollout()
     for (name, probe), (columns, series) in zip(probes.items(), values["series"], strict=True):
-        result[name] = probe.select(columns, series.reshape((count, intervals, -1)))
+        result.update(_arrays_of(name, probe, columns, series.reshape((count, intervals, -1))))
     result.time = values["time"].reshape((count, intervals))
     completed, messages, distrust = zip(*values["status"], strict=True)
     result.completed = np.array(completed, dtype=np.int32)
@@ -159,7 +120,7 @@ def rollout(
 
 def _first_of(worlds: Sequence[World]) -> World:
     if not worlds:
-        raise SceneError("rollout: worlds: found an empty list, expected at least one world")
+        raise scene_error("rollout", "worlds", "an empty list", "at least one world")
     return worlds[0]
 
 
@@ -196,75 +157,51 @@ def _common(controls: Mapping[Any, _Values], what: str, place: int, given: int |
     return common
 
 
-class _Target:
-    """An object of the world and one of its quantities."""
-
-    def __init__(self, world: World, place: str, given: Any, known: dict[type, dict[str, _Quantity]]) -> None:
-        named, quantity = given if isinstance(given, tuple) else (given, None)
-        self.object = _object_named(world, place, named) if isinstance(named, str) else named
-        quantities = next((known[kind] for kind in known if isinstance(self.object, kind)), None)
-        if quantities is None:
-            classes = ", ".join(kind.__name__ for kind in known)
-            raise TypeError(f"{place}: found {named!r}, expected a name or one of {classes}")
-        if quantity is None:
-            quantity = next(iter(quantities))
-        if quantity not in quantities:
-            expected = ", ".join(f"'{name}'" for name in quantities)
-            raise SceneError(
-                f"{place}: quantity of {self.object!r}: found {quantity!r}, expected one of {expected}",
-                object=place,
-                field="quantity",
-                found=repr(quantity),
-                expected=f"one of {expected}",
-            )
-        self.name = f"{place} ({quantity})"
-        self.quantity = quantities[quantity]
-        self.handle = None if isinstance(self.object, World) else self.object._handle
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one value."""
-        columns = self.quantity.columns
-        if not columns:
-            return (self.object.node_count, 3)
-        return () if len(columns) == 1 else (len(columns),)
-
-
-class _Values(_Target):
+class _Values:
     """The values of a control."""
 
     def __init__(self, world: World, key: Any, values: ArrayLike) -> None:
-        super().__init__(world, f"controls[{_text_of(key)}]", key, _CONTROLS)
+        named, quantity = key if isinstance(key, tuple) else (key, None)
+        place = f"controls[{named!r}]"
+        target = _object_named(world, place, named) if isinstance(named, str) else named
+        shapes = next((_CONTROLS[kind] for kind in _CONTROLS if isinstance(target, kind)), None)
+        if shapes is None:
+            classes = ", ".join(kind.__name__ for kind in _CONTROLS)
+            raise TypeError(f"{place}: found {named!r}, expected a name or an object of one of {classes}")
+        self.quantity = next(iter(shapes)) if quantity is None else quantity
+        if self.quantity not in shapes:
+            expected = "one of " + ", ".join(f"'{known}'" for known in shapes)
+            raise scene_error(place, "quantity", repr(quantity), expected)
+        self.name = f"{place} ({self.quantity})"
+        self.handle = None if isinstance(target, World) else target._handle
+        shape = tuple(target.node_count if length < 0 else length for length in shapes[self.quantity])
         self.array = np.ascontiguousarray(values, dtype=np.float64)
-        extra = self.array.ndim - len(self.shape)
-        if extra not in (1, 2) or self.array.shape[extra:] != self.shape:
+        extra = self.array.ndim - len(shape)
+        if extra not in (1, 2) or self.array.shape[extra:] != shape:
             raise TypeError(
                 f"{self.name}: found an array of the shape {shape_text(self.array.shape)}, expected "
-                f"{shape_text(('B', 'T', *self.shape))} or {shape_text(('T', *self.shape))}"
+                f"{shape_text(('B', 'T', *shape))} or {shape_text(('T', *shape))}"
             )
         self.lengths = (self.array.shape[0] if extra == 2 else None, self.array.shape[extra - 1])
 
 
-class _Probe(_Target):
-    """A recorded quantity."""
-
-    def __init__(self, world: World, name: str, given: Any) -> None:
-        super().__init__(world, f"record['{name}']", given, _RECORDS)
-        if self.quantity is _RECORDS[Joint]["coordinate"]:
-            self.quantity = _Quantity("joint", ("angle",) if self.object.state.kind == "hinge" else ("displacement",))
-
-    def select(self, columns: list[str], series: Reals) -> Reals:
-        """The values of the quantity among all columns that the engine records for its probe."""
-        if self.quantity.columns:
-            series = series[:, :, [columns.index(column) for column in self.quantity.columns]]
-        return np.ascontiguousarray(series.reshape((*series.shape[:2], *self.shape)))
+def _arrays_of(name: str, probe: Probe, columns: list[str], series: Reals) -> dict[str, Reals]:
+    """The values of a probe by quantity. Columns whose names differ only in _x, _y and _z become one array."""
+    if isinstance(probe, NodesProbe):
+        return {f"{name}.positions": series.reshape((*series.shape[:2], -1, 3))}
+    arrays, place = {}, 0
+    while place < len(columns):
+        quantity = columns[place].removesuffix("_x")
+        if quantity == columns[place]:
+            arrays[f"{name}.{quantity}"] = series[:, :, place]
+            place += 1
+        else:
+            arrays[f"{name}.{quantity}"] = series[:, :, place : place + 3]
+            place += 3
+    return arrays
 
 
 def _object_named(world: World, place: str, name: str) -> Body | Collider:
     if name in world.colliders and name in world.bodies:
-        raise SceneError(f"{place}: found a body and a collider of the name '{name}', expected the object itself")
+        raise scene_error(place, "", f"a body and a collider of the name '{name}'", "the object itself")
     return world.colliders[name] if name in world.colliders else world.bodies[name]
-
-
-def _text_of(key: object) -> str:
-    return repr(key[0] if isinstance(key, tuple) else key)
