@@ -87,6 +87,7 @@ void bind_world(nb::module_& module) {
     bind_joints(type);
     bind_views(type);
     bind_results(type);
+    bind_problem_watch(type);
 }
 
 }  // namespace skerry::python
