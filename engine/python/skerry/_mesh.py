@@ -138,7 +138,7 @@ class Mesh:
         number for each, or one for all) with six tetrahedra each."""
         counts = np.asarray(cells if isinstance(cells, int) else list(cells))
         numbers = index_array(np.broadcast_to(counts, (3,)) if counts.ndim == 0 else counts, "cells", (3,))
-        return Mesh._of(_core.box(vector(size, "size"), numbers.tolist()))
+        return Mesh._of(_core.box(real_array(size, "size", (3,)), numbers.tolist()))
 
     @staticmethod
     def ball(radius: float, resolution: int) -> Mesh:
