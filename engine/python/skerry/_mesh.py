@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Vector, index_array, read_only, real_array, vector
+from ._arrays import Vector, index_array, read_only, real_array
 from ._errors import Doubt, import_package, scene_error
 from ._settings import SurfaceMesh
 
@@ -138,7 +138,7 @@ class Mesh:
         number for each, or one for all) with six tetrahedra each."""
         counts = np.asarray(cells if isinstance(cells, int) else list(cells))
         numbers = index_array(np.broadcast_to(counts, (3,)) if counts.ndim == 0 else counts, "cells", (3,))
-        return Mesh._of(_core.box(vector(size, "size"), numbers.tolist()))
+        return Mesh._of(_core.box(real_array(size, "size", (3,)), numbers.tolist()))
 
     @staticmethod
     def ball(radius: float, resolution: int) -> Mesh:
@@ -283,7 +283,7 @@ class Mesh:
 
     def _array(self, name: str) -> Any:
         if name not in self._arrays:
-            array = getattr(self._core, name)
+            array = getattr(self._core, name)()
             self._arrays[name] = None if array is None else read_only(array)
         return self._arrays[name]
 
@@ -309,7 +309,7 @@ class Mesh:
 def read_surface(path: Path) -> SurfaceMesh:
     """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from Wavefront .obj or .stl. The
     surface of a tetrahedral mesh is its boundary."""
-    nodes, triangles, notes = _core.read_surface(os.fspath(path))
+    (nodes, triangles), notes = _core.read_surface(os.fspath(path))
     _warn(notes)
     return SurfaceMesh(nodes=nodes, triangles=triangles)
 

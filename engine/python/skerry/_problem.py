@@ -164,7 +164,7 @@ class Problem:
 
     def _array(self, name: str) -> Any:
         if name not in self._arrays:
-            self._arrays[name] = read_only(getattr(self._core, name))
+            self._arrays[name] = read_only(getattr(self._core, name)())
         return self._arrays[name]
 
     def __len__(self) -> int:

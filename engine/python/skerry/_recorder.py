@@ -13,10 +13,10 @@ from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import Vector, vector
+from ._arrays import Vector, VectorLike, real_array
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -180,7 +180,7 @@ def _recorded(name: str, probe: Probe) -> Any:
 def probe_of(world: World, recorded: Any) -> Probe:
     """The Python object of a probe of the extension module."""
     kind, values = recorded.values
-    given = {field: world._object(value) for field, value in values.items()}
+    given = {field: _object_of(world, value) for field, value in values.items()}
     for field in ("node", "weight", "nodes"):
         if field in given:
             given[field] = tuple(given[field])
@@ -188,9 +188,22 @@ def probe_of(world: World, recorded: Any) -> Probe:
     return probe
 
 
-def point_probe(body: Body, point: ArrayLike) -> PointProbe:
+def _object_of(world: World, value: Any) -> Any:
+    """The object of a handle; other values as they are."""
+    from ._world.objects import MovedObject
+
+    if isinstance(value, _core.BodyHandle):
+        return world._body(value)
+    if isinstance(value, _core.ColliderHandle):
+        return world._collider(value)
+    if isinstance(value, _core.JointHandle):
+        return world._joint(value)
+    return MovedObject(world, value, "attachment") if isinstance(value, _core.AttachmentHandle) else value
+
+
+def point_probe(body: Body, point: VectorLike) -> PointProbe:
     """Probe for the material point that is now at `point` (3,) [m]."""
-    _, values = _core.probe_point(body.world._core, body._handle, vector(point, "point"))
+    _, values = _core.probe_point(body.world._core, body._handle, real_array(point, "point", (3,)))
     return PointProbe(body, node=tuple(values["node"]), weight=tuple(values["weight"]))
 
 

@@ -13,7 +13,7 @@ from typing import Any, Generic, Literal, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import RotationLike, Vector, index_array, read_only, real_array, rotation, vector
+from ._arrays import RotationLike, Vector, VectorLike, index_array, read_only, real_array, rotation, vector
 
 Integrator: TypeAlias = Literal["symplectic_euler", "leapfrog"]
 Backend: TypeAlias = Literal["tbb", "openmp", "threads", "serial", "automatic"]
@@ -40,7 +40,7 @@ class Field(Generic[Given, Held]):
         raise NotImplementedError
 
 
-VectorField: TypeAlias = Field[ArrayLike, Vector]
+VectorField: TypeAlias = Field[VectorLike, Vector]
 RotationField: TypeAlias = Field[RotationLike, Vector]
 
 
