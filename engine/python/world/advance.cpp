@@ -68,8 +68,8 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
 
 }  // namespace
 
-void bind_advance(WorldClass& world) {
-    world.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
+void bind_advance(WorldClass& type) {
+    type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

@@ -76,8 +76,8 @@ LoadSettings load_settings(std::optional<int> threads) {
 
 }  // namespace
 
-void bind_building(WorldClass& world) {
-    world
+void bind_building(WorldClass& type) {
+    type
         .def("__init__",
              [](WorldObject* self, nb::handle given) {
                  Use::require_threads();

@@ -39,8 +39,8 @@ void reset_to(WorldObject& object, WorldObject& saved) {
 
 /// Binds the methods that move an object of the given kind.
 template <class HandleType>
-void bind_motion(WorldClass& world) {
-    world
+void bind_motion(WorldClass& type) {
+    type
         .def("set_velocity",
              guarded([](World& world, const HandleType& object, const Vec3& velocity, const Vec3& angular_velocity) {
                  world.set_velocity(object, velocity, angular_velocity);
@@ -49,15 +49,15 @@ void bind_motion(WorldClass& world) {
                  world.set_pose(object, settings_of<Pose>(pose));
              }));
     if constexpr (!std::is_same_v<HandleType, BodyHandle>)
-        world.def("move_to", guarded([](World& world, const HandleType& object, nb::handle pose, Real duration) {
+        type.def("move_to", guarded([](World& world, const HandleType& object, nb::handle pose, Real duration) {
                       world.move_to(object, settings_of<Pose>(pose), duration);
                   }));
 }
 
 /// Binds the methods that select how an object of the given kind touches others.
 template <class HandleType>
-void bind_contact(WorldClass& world) {
-    world
+void bind_contact(WorldClass& type) {
+    type
         .def("set_surface_properties", guarded([](World& world, const HandleType& object, nb::handle surface) {
                  world.set_surface_properties(object, settings_of<SurfaceSettings>(surface));
              }))
@@ -75,13 +75,13 @@ void bind_contact(WorldClass& world) {
 
 }  // namespace
 
-void bind_control(WorldClass& world) {
-    bind_motion<BodyHandle>(world);
-    bind_motion<ColliderHandle>(world);
-    bind_motion<AttachmentHandle>(world);
-    bind_contact<BodyHandle>(world);
-    bind_contact<ColliderHandle>(world);
-    world.def("set_gravity", guarded([](World& world, const Vec3& gravity) { world.set_gravity(gravity); }))
+void bind_control(WorldClass& type) {
+    bind_motion<BodyHandle>(type);
+    bind_motion<ColliderHandle>(type);
+    bind_motion<AttachmentHandle>(type);
+    bind_contact<BodyHandle>(type);
+    bind_contact<ColliderHandle>(type);
+    type.def("set_gravity", guarded([](World& world, const Vec3& gravity) { world.set_gravity(gravity); }))
         .def("set_positions", guarded([](World& world, const BodyHandle& body, const Vectors& positions) {
                  world.set_positions(body, span_of(positions));
              }))

@@ -9,12 +9,12 @@ namespace skerry::python {
 
 using WorldClass = nb::class_<WorldObject>;
 
-void bind_building(WorldClass& world);
-void bind_advance(WorldClass& world);
-void bind_state(WorldClass& world);
-void bind_control(WorldClass& world);
-void bind_joints(WorldClass& world);
-void bind_views(WorldClass& world);
+void bind_building(WorldClass& type);
+void bind_advance(WorldClass& type);
+void bind_state(WorldClass& type);
+void bind_control(WorldClass& type);
+void bind_joints(WorldClass& type);
+void bind_views(WorldClass& type);
 
 /// The members of a report by name.
 nb::dict values_of(const StepReport& report);

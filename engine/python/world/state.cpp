@@ -49,8 +49,8 @@ std::vector<HandleType> named(const World& world, const std::vector<HandleType>&
     return found;
 }
 
-void bind_world_state(WorldClass& world) {
-    world.def("time", guarded([](World& world) { return world.time(); }))
+void bind_world_state(WorldClass& type) {
+    type.def("time", guarded([](World& world) { return world.time(); }))
         .def("settings", guarded([](World& world) { return values_of(world.settings()); }))
         .def("stable_step", guarded([](World& world) { return world.stable_step(); }))
         .def("energy", guarded([](World& world) { return values_of(world.energy()); }))
@@ -76,11 +76,11 @@ void bind_world_state(WorldClass& world) {
              guarded([](World& world, const ColliderHandle& collider) { return object_of(world.shape(collider)); }));
 }
 
-void bind_body_state(WorldClass& world) {
-    world
-        .def("positions", guarded([](World& world, const BodyHandle& body) { return array_of(world.positions(body)); }))
+void bind_body_state(WorldClass& type) {
+    type
+        .def("positions", guarded([](World& world, const BodyHandle& body) { return python::array_of(world.positions(body)); }))
         .def("velocities",
-             guarded([](World& world, const BodyHandle& body) { return array_of(world.velocities(body)); }))
+             guarded([](World& world, const BodyHandle& body) { return python::array_of(world.velocities(body)); }))
         .def("node_count", guarded([](World& world, const BodyHandle& body) { return world.positions(body).size(); }))
         .def("surface", guarded([](World& world, const BodyHandle& body) {
                  return python::array_of<Index>(world.surface(body), {3});
@@ -105,8 +105,8 @@ void bind_body_state(WorldClass& world) {
         .def("mean_edge", guarded([](World& world, const BodyHandle& body) { return world.mean_edge(body); }));
 }
 
-void bind_fields(WorldClass& world) {
-    world.def("stress", field_of<Mat3>(&World::stress))
+void bind_fields(WorldClass& type) {
+    type.def("stress", field_of<Mat3>(&World::stress))
         .def("strain", field_of<Mat3>(&World::strain))
         .def("node_stress", field_of<Mat3>(&World::node_stress))
         .def("node_stress_at", &stress_at)
@@ -119,10 +119,10 @@ void bind_fields(WorldClass& world) {
 
 }  // namespace
 
-void bind_state(WorldClass& world) {
-    bind_world_state(world);
-    bind_body_state(world);
-    bind_fields(world);
+void bind_state(WorldClass& type) {
+    bind_world_state(type);
+    bind_body_state(type);
+    bind_fields(type);
 }
 
 }  // namespace skerry::python

@@ -44,8 +44,8 @@ nb::tuple views(const nb::object& self, const BodyHandle& body) {
 
 }  // namespace
 
-void bind_views(WorldClass& world) {
-    world.def("views", &views);
+void bind_views(WorldClass& type) {
+    type.def("views", &views);
 }
 
 }  // namespace skerry::python

@@ -74,13 +74,21 @@ void bind_world(nb::module_& module) {
     bind_handle<JointHandle>(module, "JointHandle");
     module.def("note_fork", &Use::note_fork);
 
-    WorldClass world(module, "World");
-    bind_building(world);
-    bind_advance(world);
-    bind_state(world);
-    bind_control(world);
-    bind_joints(world);
-    bind_views(world);
+    nb::class_<Mesh>(module, "Mesh")
+        .def("__init__", [](Mesh* self, const Vectors& nodes, const IndexRows<4>& tetrahedra) {
+            const auto points = span_of(nodes);
+            const auto rows = span_of(tetrahedra);
+            new (self) Mesh{.nodes{points.begin(), points.end()}, .tetrahedra{rows.begin(), rows.end()}};
+        });
+    module.def("ball", &mesh::ball);
+
+    WorldClass type(module, "World");
+    bind_building(type);
+    bind_advance(type);
+    bind_state(type);
+    bind_control(type);
+    bind_joints(type);
+    bind_views(type);
 }
 
 }  // namespace skerry::python
