@@ -164,7 +164,7 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     try {
         const std::optional<ElementKind> kind = from_name<ElementKind>(element);
-        if (!kind) throw SceneError("--element: found " + element + ", expected the name of a kind of element");
+        if (!kind) Complaint{{}, "--element", {}, element, "the name of a kind of element", {}}.raise();
         options.element = *kind;
         options.losses = !no_losses;
         std::printf(

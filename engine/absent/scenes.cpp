@@ -7,6 +7,9 @@ namespace skerry {
 Scene load_scene(const std::filesystem::path&, const SceneOverrides&) {
     refuse_absent("load_scene", "SKERRY_SCENES");
 }
+Scene load_scene_text(const std::string&, const std::filesystem::path&, const SceneOverrides&) {
+    refuse_absent("load_scene_text", "SKERRY_SCENES");
+}
 std::string scene_schema() {
     refuse_absent("scene_schema", "SKERRY_SCENES");
 }

@@ -1,7 +1,6 @@
 #include "engine/hdf5/hdf5_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,28 +24,8 @@ hid_t open_file(const std::filesystem::path& path, const std::string& expected) 
 
 }  // namespace
 
-hid_t hdf5_type(NumberType type) {
-    switch (type) {
-        case NumberType::real:
-            return H5T_NATIVE_DOUBLE;
-        case NumberType::single:
-            return H5T_NATIVE_FLOAT;
-        case NumberType::int32:
-            return H5T_NATIVE_INT32;
-        case NumberType::uint8:
-            return H5T_NATIVE_UINT8;
-        case NumberType::uint16:
-            return H5T_NATIVE_UINT16;
-        case NumberType::uint32:
-            return H5T_NATIVE_UINT32;
-        case NumberType::uint64:
-            return H5T_NATIVE_UINT64;
-    }
-    return H5I_INVALID_HID;
-}
-
-Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected, std::string hint)
-    : name_(path.string()), hint_(std::move(hint)), file_(open_file(path, expected), H5Fclose) {}
+Hdf5File::Hdf5File(const std::filesystem::path& path, const std::string& expected)
+    : name_(path.string()), file_(open_file(path, expected), H5Fclose) {}
 
 bool Hdf5File::can_hold(hsize_t bytes) const {
     // Largest compression ratio that the deflate filter can reach. No other filter that is common in such files
@@ -65,7 +44,7 @@ void Hdf5File::complain(const std::string& path, const std::string& found, const
               .field = path.substr(slash + 1),
               .found = found,
               .expected = expected,
-              .hint = hint.empty() ? hint_ : hint}
+              .hint = hint}
         .raise();
 }
 
@@ -143,44 +122,12 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
     return values;
 }
 
-void Hdf5File::read_rows(const std::string& path, hid_t memory_type, std::size_t width,
-                         FunctionRef<void*(std::size_t)> place) const {
-    const std::size_t bytes = H5Tget_size(memory_type);
-    const std::string expected = (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") +
-                                 (H5Tget_class(memory_type) == H5T_FLOAT ? "reals" : "integers") + " of " +
-                                 std::to_string(bytes) + " bytes";
-    if (!has(path)) complain(path, "nothing", expected);
-    const Hdf5Handle data(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!data.ok()) complain(path, "an HDF5 object that is not a data set", expected);
-    const Hdf5Handle type(H5Dget_type(data.id()), H5Tclose);
-    const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
-    if (!type.ok() || !space.ok()) complain(path, "a data set whose type or shape cannot be read", expected);
-    if (H5Tequal(type.id(), memory_type) <= 0) complain(path, "values of another type, size or byte order", expected);
-    const int rank = width == 1 ? 1 : 2;
-    std::array<hsize_t, 2> size{0, 1};
-    if (const int found = H5Sget_simple_extent_ndims(space.id()); found != rank)
-        complain(path, "a data set with " + std::to_string(found) + " dimensions",
-                 std::to_string(rank) + (rank == 1 ? " dimension, " : " dimensions, ") + expected);
-    if (H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) != rank || size[1] != width)
-        complain(path, "rows of " + std::to_string(size[1]) + " values", expected);
-    if (size[0] > static_cast<hsize_t>(std::numeric_limits<Index>::max()))
-        complain(path, std::to_string(size[0]) + " rows", "at most 2147483647 rows");
-    const hsize_t count = size[0] * width;
-    if (!can_hold(count * bytes) || !all_stored(data, type, static_cast<hssize_t>(count)))
-        complain(path, "fewer bytes than " + std::to_string(size[0]) + " rows need", expected);
-    void* const values = place(static_cast<std::size_t>(size[0]));
-    if (count > 0 && H5Dread(data.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-        complain(path, "values that cannot be read", expected,
-                 "the data set is damaged, or the HDF5 library lacks the filter that compressed it");
-}
-
-void Hdf5File::expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items,
-                              const std::string& of) const {
+void Hdf5File::expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items) const {
     const auto most = static_cast<Index>(items);
     for (std::size_t i = 0; i < offset.size(); ++i) {
         const Index least = i == 0 ? 0 : offset[i - 1];
         if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
-        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i) + of;
+        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i);
         if (i == 0) complain(path, found, "0, the first offset");
         if (offset[i] > most) complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
         complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");

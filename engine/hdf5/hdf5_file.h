@@ -10,9 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "components/row_type.h"
 #include "components/types.h"
-#include "jobs/function_ref.h"
 #include "skerry/error.h"
 
 namespace skerry {
@@ -50,31 +48,20 @@ private:
     void* data_ = nullptr;
 };
 
-/// Returns the HDF5 type that represents the given number type in memory and in files.
-hid_t hdf5_type(NumberType type);
-
 /// An open HDF5 file. Paths are absolute, in the form "/group/field". All functions that read throw SceneError if an
 /// object is missing or has another type than expected, except text_or_nothing().
 class Hdf5File {
 public:
-    /// Opens the file for reading. `expected` describes the expected file in error messages. `hint` ends the error
-    /// messages that have no hint of their own.
-    Hdf5File(const std::filesystem::path& path, const std::string& expected, std::string hint = {});
+    /// Opens the file for reading. `expected` describes the expected file in error messages.
+    Hdf5File(const std::filesystem::path& path, const std::string& expected);
 
     bool has(const std::string& path) const;
     void expect_group(const std::string& path, const std::string& hint = {}) const;
-    /// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items. `of` ends
-    /// the found value in the message, for example " of body 2".
-    void expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items,
-                        const std::string& of = {}) const;
+    /// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items.
+    void expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items) const;
     Index integer(const std::string& path) const;
     std::vector<Index> integers(const std::string& path) const;
     std::vector<Real> reals(const std::string& path) const;  // all values must be finite
-    /// Reads rows of `width` numbers, bitwise unchanged. The data set must have exactly the type `memory_type`, and two
-    /// dimensions if `width` is more than one. `place` allocates memory for the given number of rows and returns the
-    /// address of this memory.
-    void read_rows(const std::string& path, hid_t memory_type, std::size_t width,
-                   FunctionRef<void*(std::size_t)> place) const;
     /// Reads an optional text. Returns an empty text if the file does not contain the text.
     std::string text_or_nothing(const std::string& path) const;
 
@@ -89,7 +76,7 @@ private:
     std::vector<T> numbers(const std::string& path, H5T_class_t kind, hid_t memory_type, const char* expected) const;
 
     QuietHdf5 quiet_;
-    std::string name_, hint_;
+    std::string name_;
     Hdf5Handle file_;
 };
 

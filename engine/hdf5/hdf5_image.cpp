@@ -1,7 +1,5 @@
 #include "engine/hdf5/hdf5_image.h"
 
-#include <array>
-
 namespace skerry {
 namespace {
 
@@ -56,11 +54,6 @@ void Hdf5Image::put(const std::string& path, std::span<const Index> values) {
 void Hdf5Image::put(const std::string& path, std::span<const Real> values) {
     const hsize_t size = values.size();
     put(path, H5T_NATIVE_DOUBLE, Hdf5Handle(H5Screate_simple(1, &size, nullptr), H5Sclose), values.data());
-}
-
-void Hdf5Image::put_rows(const std::string& path, hid_t type, std::size_t rows, std::size_t width, const void* values) {
-    const std::array<hsize_t, 2> size{rows, width};
-    put(path, type, Hdf5Handle(H5Screate_simple(width == 1 ? 1 : 2, size.data(), nullptr), H5Sclose), values);
 }
 
 void Hdf5Image::put_text(const std::string& path, const std::string& text) {

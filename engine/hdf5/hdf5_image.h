@@ -1,5 +1,5 @@
-// Creates an HDF5 file in memory. It uses the data types of FCLIB's own writer (one-dimensional arrays of numbers, and
-// fixed-length texts) and, in addition, rows of numbers.
+// Creates an HDF5 file in memory. It uses the data types of FCLIB's own writer: one-dimensional arrays of numbers, and
+// fixed-length texts.
 #pragma once
 
 #include <hdf5.h>
@@ -22,8 +22,6 @@ public:
     void put(const std::string& path, Index value) { put(path, std::span<const Index>(&value, 1)); }
     void put(const std::string& path, std::span<const Index> values);
     void put(const std::string& path, std::span<const Real> values);
-    /// Writes rows of `width` numbers each. The data set has two dimensions if `width` is more than one.
-    void put_rows(const std::string& path, hid_t type, std::size_t rows, std::size_t width, const void* values);
     void put_text(const std::string& path, const std::string& text);
     /// Adds a text attribute to the object at the path.
     void put_attribute(const std::string& path, const char* name, const std::string& text);

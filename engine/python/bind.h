@@ -23,6 +23,7 @@ namespace nb = nanobind;
 // Each function adds one part to the module.
 void bind_errors(nb::module_& module);
 void bind_settings(nb::module_& module);
+void bind_mesh(nb::module_& module);
 void bind_world(nb::module_& module);
 
 /// Arrays that Python passes in: C-contiguous, of exactly this type.
@@ -55,6 +56,16 @@ nb::ndarray<nb::numpy, Number> array_of(std::span<const Row> rows, std::initiali
 }
 inline nb::ndarray<nb::numpy, Real> array_of(std::span<const Vec3> rows) {
     return array_of<Real>(rows, {3});
+}
+inline nb::ndarray<nb::numpy, Real> array_of(const std::vector<Vec3>& rows) {
+    return array_of(std::span<const Vec3>(rows));
+}
+
+/// Calls a function without the GIL.
+template <class Function>
+auto without_gil(Function&& function) {
+    nb::gil_scoped_release released;
+    return function();
 }
 
 }  // namespace skerry::python

@@ -77,11 +77,4 @@ auto guarded(Function function) {
     return guarded_as(+function);
 }
 
-/// Calls a function without the GIL.
-template <class Function>
-auto without_gil(Function&& function) {
-    nb::gil_scoped_release released;
-    return function();
-}
-
 }  // namespace skerry::python

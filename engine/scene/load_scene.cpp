@@ -138,4 +138,9 @@ Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overri
     return build_scene(plan_scene(file, overrides));
 }
 
+Scene load_scene_text(const std::string& json, const std::filesystem::path& folder, const SceneOverrides& overrides) {
+    const SceneFile scene = read_scene_text(json, folder, overrides.assignments);
+    return build_scene(plan_scene(scene, scene_text_name, overrides));
+}
+
 }  // namespace skerry

@@ -59,8 +59,13 @@ public:
         else if (token.find("N") == token.size() - 1 || token.find("nan") != std::string::npos ||
                  token.find("I") == token.size() - 1)
             hint = "JSON has no NaN and no Infinity; write a finite number";
-        throw SceneError(file_.string() + ": " + line_and_column(position) +
-                         ": not valid JSON: " + printable(reason(what)) + (hint.empty() ? "" : " (" + hint + ")"));
+        Complaint{.file = file_.string(),
+                  .object = line_and_column(position),
+                  .field = {},
+                  .found = "text that is not valid JSON: " + printable(reason(what)),
+                  .expected = {},
+                  .hint = hint}
+            .raise();
     }
 
 private:

@@ -58,8 +58,14 @@ void Place::refuse(std::string found, std::string expected, std::string hint) co
     Complaint{file_.string(), object_, path_, std::move(found), std::move(expected), std::move(hint)}.raise();
 }
 
-void Place::refuse_inner(const std::string& message) const {
-    throw SceneError(Complaint{file_.string(), object_, path_, {}, {}, {}}.text() + message);
+void Place::refuse_inner(const SceneError& inner) const {
+    Complaint parts = inner.complaint();
+    if (parts.file.empty()) {
+        parts.file = file_.string();
+        if (!object_.empty()) parts.object = object_;
+        parts.field = path_ + (path_.empty() || parts.field.empty() ? "" : ": ") + parts.field;
+    }
+    throw SceneError(Complaint{file_.string(), object_, path_, {}, {}, {}}.text() + inner.what(), parts);
 }
 
 std::string in_quotes(std::string_view text) {

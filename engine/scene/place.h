@@ -21,7 +21,10 @@ using Json = nlohmann::ordered_json;
 class Place {
 public:
     Place() = default;
-    explicit Place(std::filesystem::path file) : file_(std::move(file)) {}
+    explicit Place(const std::filesystem::path& file) : Place(file, file.parent_path()) {}
+    /// Relative paths in the file start at `folder`.
+    Place(std::filesystem::path file, std::filesystem::path folder)
+        : file_(std::move(file)), folder_(std::move(folder)) {}
 
     Place key(std::string_view name) const;
     Place item(std::size_t index) const;
@@ -29,13 +32,14 @@ public:
     Place of(std::string object) const;
 
     const std::filesystem::path& file() const { return file_; }
+    const std::filesystem::path& folder() const { return folder_; }
     const std::string& path() const { return path_; }
     [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
-    /// Throws SceneError with the message of an inner function that does not know the file and the key.
-    [[noreturn]] void refuse_inner(const std::string& message) const;
+    /// Passes on the error of an inner function that does not know the file and the key, with this location in front.
+    [[noreturn]] void refuse_inner(const SceneError& inner) const;
 
 private:
-    std::filesystem::path file_;
+    std::filesystem::path file_, folder_;
     std::string path_;
     std::string object_;
 };
@@ -46,9 +50,9 @@ auto called_at(const Place& place, Function function) {
     try {
         return function();
     } catch (const SceneError& error) {
-        place.refuse_inner(error.what());
+        place.refuse_inner(error);
     } catch (const std::invalid_argument& error) {
-        place.refuse_inner(error.what());
+        place.refuse_inner(SceneError(error.what()));
     }
 }
 

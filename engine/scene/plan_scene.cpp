@@ -267,7 +267,10 @@ void apply(const SceneOverrides& overrides, Settings& settings) {
 }  // namespace
 
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides) {
-    const SceneFile scene = read_scene_file(file, overrides.assignments);
+    return plan_scene(read_scene_file(file, overrides.assignments), file, overrides);
+}
+
+ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides) {
     ScenePlan plan;
     plan.file = file;
     plan.name = scene.name;

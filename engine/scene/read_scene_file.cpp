@@ -6,45 +6,52 @@ namespace skerry {
 
 namespace {
 
-/// Reads a scene file and the files that it includes. `open` lists the files that are being read now, from the
-/// outermost to the innermost.
-void read_into(SceneFile& scene, const std::filesystem::path& file, std::span<const std::string> assignments,
-               std::vector<std::filesystem::path>& open) {
-    Json json = read_json(file);
-    for (const std::string& assignment : assignments) assign(assignment, file, json);
-    const Place place(file);
-
-    // The file is evaluated twice. The first time, only the included files are found and read. The second time, the
-    // content of this file is added to the content of the included files.
+/// Adds the content of a scene and of the files that it includes. `open` lists the files that are being read now, from
+/// the outermost to the innermost. The last of them has the content `json`.
+void read_into(SceneFile& scene, const Json& json, const Place& place, std::vector<std::filesystem::path>& open) {
+    // The content is evaluated twice. The first time, only the included files are found and read. The second time, the
+    // content is added to the content of the included files.
     SceneFile own;
     rule_of<SceneFile>().read(json, place, own);
-    open.push_back(std::filesystem::weakly_canonical(file));
     for (const FilePath& included : own.include.items) {
         const std::filesystem::path next = std::filesystem::weakly_canonical(included.path);
         if (std::find(open.begin(), open.end(), next) != open.end())
             place.key("include").refuse(
                 in_quotes(included.path.string()) + ", which includes this file directly or through other files",
                 "a scene file that does not include this file", "delete one of the two includes");
-        read_into(scene, included.path, {}, open);
+        open.push_back(next);
+        read_into(scene, read_json(included.path), Place(included.path), open);
+        open.pop_back();
     }
-    open.pop_back();
-    if (own.include.items.empty() && open.empty()) {
+    if (own.include.items.empty() && open.size() == 1) {
         scene = std::move(own);
         return;
     }
     rule_of<SceneFile>().read(json, place, scene);
 }
 
+/// `file` is the canonical path of the file; empty for a text that is in no file.
+SceneFile read_scene(Json json, const Place& place, const std::filesystem::path& file,
+                     std::span<const std::string> assignments) {
+    for (const std::string& assignment : assignments) assign(assignment, place.file(), json);
+    SceneFile scene;
+    std::vector<std::filesystem::path> open{file};
+    read_into(scene, json, place, open);
+    if (scene.name.empty()) scene.name = place.file().stem().string();
+    if (scene.bodies.empty()) place.key("bodies").refuse("no bodies", "at least one body", "add a body to \"bodies\"");
+    return scene;
+}
+
 }  // namespace
 
 SceneFile read_scene_file(const std::filesystem::path& file, std::span<const std::string> assignments) {
-    SceneFile scene;
-    std::vector<std::filesystem::path> open;
-    read_into(scene, file, assignments, open);
-    if (scene.name.empty()) scene.name = file.stem().string();
-    if (scene.bodies.empty())
-        Place(file).key("bodies").refuse("no bodies", "at least one body", "add a body to \"bodies\"");
-    return scene;
+    return read_scene(read_json(file), Place(file), std::filesystem::weakly_canonical(file), assignments);
+}
+
+SceneFile read_scene_text(const std::string& json, const std::filesystem::path& folder,
+                          std::span<const std::string> assignments) {
+    const Place place(scene_text_name, folder);
+    return read_scene(parse_json(json, place.file()), place, {}, assignments);
 }
 
 }  // namespace skerry

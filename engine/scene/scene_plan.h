@@ -82,6 +82,8 @@ struct ScenePlan {
 
 /// Reads a scene, its meshes and the files that it includes, and resolves all names. Throws SceneError.
 ScenePlan plan_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+/// Plans a scene that was read with the assignments of `overrides`. Messages name `file`.
+ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, const SceneOverrides& overrides);
 
 /// Returns the nodes of a mesh inside a box, which is given in the mesh's own frame. Throws SceneError if the box
 /// contains no node.

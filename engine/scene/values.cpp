@@ -210,7 +210,7 @@ void Value<std::string>::read(const Json& json, const Place& place, const KeyDoc
 void Value<FilePath>::read(const Json& json, const Place& place, const KeyDoc& doc, FilePath& out) {
     std::string text;
     Value<std::string>::read(json, place, doc, text);
-    out.path = place.file().parent_path() / text;  // an absolute path remains unchanged
+    out.path = place.folder() / text;  // an absolute path remains unchanged
     std::error_code error;
     if (!std::filesystem::exists(out.path, error))
         place.refuse("the path of a missing file, " + in_quotes(out.path.string()),

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "skerry/error.h"
 
 namespace skerry {
@@ -11,5 +13,12 @@ std::string Complaint::text() const {
     if (!hint.empty()) message += " (" + hint + ")";
     return message;
 }
+
+void Complaint::raise() const {
+    throw SceneError(*this);
+}
+
+SceneError::SceneError(const std::string& text, Complaint complaint)
+    : std::runtime_error(text), complaint_(std::make_shared<const Complaint>(std::move(complaint))) {}
 
 }  // namespace skerry

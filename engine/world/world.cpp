@@ -134,6 +134,12 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
+void use(const LoadSettings& wanted, Settings& settings) {
+    settings.backend = wanted.backend.value_or(settings.backend);
+    settings.threads = wanted.threads.value_or(settings.threads);
+    validate(settings);
+}
+
 World tuned_world(const Settings& settings, const Tuning& tuning) {
     validate(tuning);
     World world(settings);
@@ -143,13 +149,20 @@ World tuned_world(const Settings& settings, const Tuning& tuning) {
     return world;
 }
 
-World World::clone() const {
-    WorldState& from = *state_;
-    from.require_between_steps("clone");
-    from.settle();
-    World copy = tuned_world(from.model.settings, from.model.tuning);
-    WorldState& to = *copy.state_;
+World World::clone(const LoadSettings& settings) const {
+    state_->require_between_steps("clone");
+    state_->settle();
+    return copy_of_settled(*state_, settings);
+}
+
+World copy_of_settled(const WorldState& from, const LoadSettings& wanted) {
+    Settings settings = from.model.settings;
+    use(wanted, settings);
+    World copy = tuned_world(settings, from.model.tuning);
+    WorldState& to = WorldAccess::state_of(copy);
+    settings.backend = to.model.settings.backend;  // `automatic` was replaced by the backend in use
     to.model = from.model;
+    to.model.settings = settings;
     to.clock = from.clock;
     to.cache = from.cache;
     to.scratch.parameters = from.scratch.parameters;

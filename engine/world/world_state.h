@@ -72,6 +72,9 @@ struct WorldAccess {
     }
 };
 
+/// Copies a world without pending changes. Only reads `from`, so that several threads may copy one world at once.
+World copy_of_settled(const WorldState& from, const LoadSettings& wanted);
+
 /// Returns the name of the column or value at an address inside a WorldState, such as "nodes.velocity". The name is
 /// used in messages.
 std::string name_of_column(void* world, const void* place);

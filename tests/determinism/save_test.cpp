@@ -198,6 +198,21 @@ TEST_CASE("a clone goes on with the same bits, and neither changes the other", "
     check_same_contacts(copy.contacts(), world.contacts());
 }
 
+TEST_CASE("a clone with other threads and another backend goes on with the same bits", "[determinism]") {
+    World world = lively_scene({}, 2);
+    REQUIRE(world.advance(0.1).ok());
+    World copy = world.clone({.backend = Backend::serial, .threads = 1});
+    CHECK(WorldAccess::state_of(copy).executor->worker_count() == 1);
+    CHECK(copy.settings().backend == Backend::serial);
+    CHECK(copy.settings().threads == 1);
+    CHECK(world.clone().settings().threads == 2);
+    CHECK_THROWS_WITH(world.clone({.threads = -1}), Catch::Contains("threads") && Catch::Contains("-1"));
+    REQUIRE(copy.advance(0.05).ok());
+    REQUIRE(world.advance(0.05).ok());
+    CHECK(copy.state_hash() == world.state_hash());
+    check_same_report(copy.report(), world.report());
+}
+
 TEST_CASE("settings that users do not have are carried by clones and files", "[determinism]") {
     const Tuning tuning{.step_safety = 0.5,
                         .max_strain_step = 0.3,

@@ -1,25 +1,17 @@
 // Fuzz targets for saved worlds: raw bytes, and valid files with wrong values, which are then advanced by a step.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "engine/world/save/world_file.h"
 #include "engine/world/tuning.h"
 #include "engine/world/world_state.h"
 #include "readers.h"
 #include "skerry/world.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/world_file_damage.h"
 
 namespace skerry::test {
 
 namespace {
-
-const TemporaryFolder& folder() {
-    static const TemporaryFolder made;
-    return made;
-}
 
 /// A world with a row in every small table: two kinds of elements, contacts, a held node, a mesh collider, a script.
 World small_world(ElementKind element) {
@@ -49,25 +41,15 @@ World small_world(ElementKind element) {
 }
 
 struct Sample {
-    std::vector<char> bytes;
+    std::vector<std::byte> bytes;
     std::vector<ValuesInFile> sets;
 
-    explicit Sample(ElementKind element) {
-        const auto file = folder().path() / "sample.skerry";
-        small_world(element).save(file);
-        std::ifstream in(file, std::ios::binary);
-        bytes.assign(std::istreambuf_iterator<char>(in), {});
-        sets = values_in(file.string());
-    }
+    explicit Sample(ElementKind element) : bytes(small_world(element).to_bytes()), sets(values_in(bytes)) {}
 };
 
 const Sample& sample(ElementKind element) {
     static const Sample smoothed(ElementKind::smoothed), linear(ElementKind::linear);
     return element == ElementKind::linear ? linear : smoothed;
-}
-
-std::string write(std::span<const char> bytes) {
-    return folder().write("world.skerry", {bytes.data(), bytes.size()}).string();
 }
 
 /// Advances by one step, which may be refused.
@@ -85,9 +67,8 @@ void move(World& world) {
 }  // namespace
 
 void read_saved_bytes(FileBytes bytes) {
-    const std::string file = write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     try {
-        World::load(file);
+        World::from_bytes(std::as_bytes(bytes));
     } catch (const SceneError&) {
     }
 }
@@ -95,24 +76,24 @@ void read_saved_bytes(FileBytes bytes) {
 void read_saved_values_bytes(FileBytes bytes) {
     if (bytes.empty()) return;
     const Sample& start = sample(bytes[0] % 2 != 0 ? ElementKind::linear : ElementKind::smoothed);
-    std::vector<char> file = start.bytes;
+    std::vector<std::byte> file = start.bytes;
     constexpr std::size_t code_bytes = 5;
     for (FileBytes rest = bytes.subspan(1); rest.size() >= code_bytes; rest = rest.subspan(code_bytes)) {
         const std::size_t set = rest[0] + 256u * rest[1], place = rest[2] + 256u * rest[3];
         change_value(start.sets[set % start.sets.size()], place, rest[4], file);
     }
-    renew_head(file);
+    renew_checksum(file);
     try {
-        World world = load_world(write(file), {}, false).world;
+        World world = read_world("file", file, {}, false).world;
         move(world);
-        world.save(folder().path() / "again.skerry");
+        world.to_bytes();
     } catch (const SceneError&) {
     }
 }
 
 std::string sample_saved_world() {
-    const std::vector<char>& bytes = sample(ElementKind::smoothed).bytes;
-    return {bytes.begin(), bytes.end()};
+    const std::vector<std::byte>& bytes = sample(ElementKind::smoothed).bytes;
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace skerry::test

@@ -1,18 +1,12 @@
 // The exception for bad input.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 #pragma GCC visibility push(default)
 namespace skerry {
-
-/// Exception for bad input while a world is built or a file is read. The message names the file, the object, the field,
-/// the value found and the value expected.
-class SceneError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /// The parts of the message of a SceneError. text() joins them to
 /// "FILE: OBJECT: FIELD: found FOUND, expected EXPECTED (HINT)" and leaves out empty parts.
@@ -20,7 +14,23 @@ struct Complaint {
     std::string file, object, field, found, expected, hint;
 
     std::string text() const;
-    [[noreturn]] void raise() const { throw SceneError(text()); }
+    [[noreturn]] void raise() const;
+};
+
+/// Exception for bad input while a world is built or a file is read. The message names the file, the object, the field,
+/// the value found and the value expected.
+class SceneError : public std::runtime_error {
+public:
+    /// `complaint` contains the parts of the text that are known.
+    explicit SceneError(const std::string& text, Complaint complaint = {});
+    explicit SceneError(const Complaint& complaint) : SceneError(complaint.text(), complaint) {}
+
+    /// Returns the parts of the message. All are empty if the error was made from a text alone. The text of what() can
+    /// name more places than the parts do, for example a scene file and a mesh file that it uses.
+    const Complaint& complaint() const noexcept { return *complaint_; }
+
+private:
+    std::shared_ptr<const Complaint> complaint_;  // shared, so that copying the exception never throws
 };
 
 }  // namespace skerry

@@ -68,11 +68,25 @@ struct StressProbe {
 struct VolumeProbe {
     BodyHandle body{};
 };
+/// Records the pose of a body, a collider or an attachment: position and rotation vector (World::pose).
+struct PoseProbe {
+    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};
+};
+/// Records velocity and angular velocity. For a body they are the velocity of the centre of mass and the angular
+/// velocity of the rigid motion with the same angular momentum. For a collider or an attachment they are those of the
+/// last step, for the origin of its pose.
+struct VelocityProbe {
+    std::variant<BodyHandle, ColliderHandle, AttachmentHandle> object{};
+};
+/// Records the positions of all nodes of a body.
+struct NodesProbe {
+    BodyHandle body{};
+};
 
 struct RecordedProbe {
     std::string name;  // unique and not empty; not "." or "time"; without '/' and control characters
     std::variant<PointProbe, BodyProbe, BodyForceProbe, ColliderForceProbe, ReactionProbe, JointProbe, EnergyProbe,
-                 StressProbe, VolumeProbe>
+                 StressProbe, VolumeProbe, PoseProbe, VelocityProbe, NodesProbe>
         what;
 };
 

@@ -55,6 +55,10 @@ struct Scene {
 /// SceneError for any invalid input; for an unknown key the message names the nearest known key.
 Scene load_scene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
+/// Builds a scene from the text of a scene file. Relative paths start at `folder`. Errors name "scene" as the file.
+Scene load_scene_text(const std::string& json, const std::filesystem::path& folder,
+                      const SceneOverrides& overrides = {});
+
 /// Returns the JSON schema of scene files.
 std::string scene_schema();
 

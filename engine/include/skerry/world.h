@@ -1,6 +1,7 @@
 // The world: deformable bodies, colliders and attachments, and the functions that advance it in time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -28,11 +29,11 @@ namespace skerry {
 
 struct StepProblem;  // defined in problem.h
 
-/// Settings of a loaded world that do not change its results. For a missing value, the value of the saved world is
-/// used.
+/// Settings of a loaded world or of a clone that do not change its results. For a missing value, the value of the
+/// original world is used. If this build does not have the backend of the original world, `automatic` is used.
 struct LoadSettings {
-    std::optional<Backend> backend{};  // if this build does not have the backend, `automatic` is used
-    std::optional<int> threads{};
+    std::optional<Backend> backend{};
+    std::optional<int> threads{};  // >= 0; a world with one thread starts no other thread
 };
 
 /// A simulation. A world must not be used by several threads at once, not even for reading. Different worlds are
@@ -49,13 +50,16 @@ public:
     // world, bit by bit, on any number of threads. Handles of this world name the same objects in the copy, and the
     // report() of the copy covers the whole run. Not copied are the functions of watch_steps() and
     // watch_contact_problems(), recorded traces and the computing times of stages.
-    World clone() const;
+    World clone(const LoadSettings& settings = {}) const;
     /// Saves the world. The file is written under another name and then renamed, so an existing file is replaced
     /// completely or not at all. If writing fails, throws SceneError that names the cause; the world is unchanged.
     void save(const std::filesystem::path& file) const;
     /// Reads a world that save() wrote. If a part of the file is not as expected, throws SceneError that names the
     /// file, the data set, and the found and the expected value.
     static World load(const std::filesystem::path& file, const LoadSettings& settings = {});
+    /// Returns the bytes that save() writes, and makes a world from such bytes.
+    std::vector<std::byte> to_bytes() const;
+    static World from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings = {});
 
     // Building the world; allowed between calls of advance. In callbacks of advance these functions throw SceneError.
     // Handles to all other objects stay valid. The cost of a change depends on the size of the changed object only.

@@ -1,11 +1,14 @@
 #include "engine/output/series/probe_columns.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "engine/world/control/control.h"
+#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
 #include "systems/dynamics/checks/volume_ratios.h"
@@ -50,6 +53,28 @@ Motion3 motion_of(const World& world, const BodyProbe& probe) {
     return {world.center_of_mass(probe.body), momentum / world.mass(probe.body)};
 }
 
+/// Linear and angular velocity [m/s, rad/s].
+struct Twist {
+    Vec3 velocity, angular_velocity;
+};
+
+Twist twist_of(const World& world, BodyHandle body) {
+    const NodeMotion motion = motion_of_nodes(
+        WorldAccess::state_of(world).model,
+        static_cast<std::size_t>(WorldAccess::state_of(world).model.row(body, "sample")), world.center_of_mass(body));
+    return {motion.momentum / world.mass(body), motion.inertia.inverse() * motion.angular_momentum};
+}
+Twist twist_of(const World& world, ColliderHandle collider) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const RigidMotion& motion = model.colliders.motion[static_cast<std::size_t>(model.row(collider, "sample"))];
+    return {motion.velocity, motion.angular_velocity};
+}
+Twist twist_of(const World& world, AttachmentHandle attachment) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const RigidMotion& motion = model.attachments.motion[static_cast<std::size_t>(model.row(attachment, "sample"))];
+    return {motion.velocity, motion.angular_velocity};
+}
+
 ForceReport force_of(const Forces& forces, const BodyForceProbe& probe) {
     if (!probe.by) return forces.on(probe.body);
     return std::visit([&](auto by) { return forces.on(probe.body, by); }, *probe.by);
@@ -81,8 +106,28 @@ Real smallest_volume(const World& world, BodyHandle body) {
         .smallest;
 }
 
+/// Calls function(). If it throws a SceneError, adds the name of the probe in front of the message.
+auto called_for(const RecordedProbe& probe, auto&& function) {
+    try {
+        return function();
+    } catch (const SceneError& error) {
+        const std::string name = "probe \"" + probe.name + "\"";
+        Complaint parts = error.complaint();
+        if (parts.object.empty()) parts.object = name;
+        throw SceneError(name + ": " + error.what(), parts);
+    }
+}
+
 [[noreturn]] void refuse(const std::string& field, const std::string& found, const std::string& expected) {
     Complaint{.file = {}, .object = {}, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+void require_name(const std::string& name) {
+    const bool odd =
+        std::ranges::any_of(name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
+    if (name.empty() || name == "." || name == "time" || odd)
+        refuse("name", "\"" + name + "\"",
+               "a name other than \"time\" and \".\", without / and control characters (the name heads columns)");
 }
 
 void require_nodes(const World& world, BodyHandle body, std::span<const Index> nodes) {
@@ -138,6 +183,40 @@ void put_motion(const Motion3& motion, const Vec3& origin, std::vector<Real>& va
     put_vector(motion.velocity, values);
 }
 
+void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& values) {
+    std::visit(
+        Overloaded{
+            [&](const PointProbe& point) { put_motion(motion_of(world, point), probe.origin, values); },
+            [&](const BodyProbe& body) { put_motion(motion_of(world, body), probe.origin, values); },
+            [&](const BodyForceProbe&) { put_force(probe.force, true, values); },
+            [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
+            [&](const ReactionProbe&) { put_force(probe.force, false, values); },
+            [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
+            [&](const EnergyProbe&) {
+                const Energy energy = world.energy();
+                values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
+            },
+            [&](const StressProbe& stress) {
+                const std::array<Real, 3> extreme = extreme_stresses(world, stress);
+                values.insert(values.end(), extreme.begin(), extreme.end());
+            },
+            [&](const VolumeProbe& volume) { values.push_back(smallest_volume(world, volume.body)); },
+            [&](const PoseProbe& pose) {
+                const MotionKey now = std::visit([&](auto object) { return world.pose(object); }, pose.object);
+                put_vector(now.position, values);
+                put_vector(now.rotation, values);
+            },
+            [&](const VelocityProbe& velocity) {
+                const Twist now = std::visit([&](auto object) { return twist_of(world, object); }, velocity.object);
+                put_vector(now.velocity, values);
+                put_vector(now.angular_velocity, values);
+            },
+            [&](const NodesProbe& nodes) {
+                for (const Vec3& position : world.positions(nodes.body)) put_vector(position, values);
+            }},
+        probe.probe.what);
+}
+
 }  // namespace
 
 void ForceSum::add(const ForceReport& report) {
@@ -151,26 +230,65 @@ void ForceSum::add(const ForceReport& report) {
     contacts = report.contacts;
 }
 
-bool measures_force(const RecordedProbe& probe) {
-    return std::holds_alternative<BodyForceProbe>(probe.what) ||
-           std::holds_alternative<ColliderForceProbe>(probe.what) || std::holds_alternative<ReactionProbe>(probe.what);
-}
+namespace {
 
-TrackedProbe track(const World& world, RecordedProbe probe) {
-    TrackedProbe tracked{.probe = std::move(probe)};
+constexpr Overloaded measures_force{[](const BodyForceProbe&) { return true; },
+                                    [](const ColliderForceProbe&) { return true; },
+                                    [](const ReactionProbe&) { return true; }, [](const auto&) { return false; }};
+
+/// Throws SceneError if the world lacks an object or a node of the probe.
+void require_objects(const World& world, const RecordedProbe& probe) {
+    const Model& model = WorldAccess::state_of(world).model;
+    const auto require = [&](auto handle) { (void)model.row(handle, "probe"); };
     std::visit(Overloaded{[&](const PointProbe& point) {
                               require_nodes(world, point.body, point.node);
                               require_weights(point);
-                              tracked.origin = point.origin.value_or(motion_of(world, point).position);
-                          },
-                          [&](const BodyProbe& body) {
-                              tracked.origin = body.origin.value_or(motion_of(world, body).position);
                           },
                           [&](const StressProbe& stress) { require_nodes(world, stress.body, stress.nodes); },
-                          [&](const VolumeProbe& volume) { smallest_volume(world, volume.body); },
-                          [&](const JointProbe& joint) { state_of(world, joint); }, [](const EnergyProbe&) {},
-                          [&](const auto& force) { force_of(world.forces(), force); }},
-               tracked.probe.what);
+                          [&](const BodyForceProbe& force) {
+                              require(force.body);
+                              if (force.by) std::visit(require, *force.by);
+                          },
+                          [&](const ColliderForceProbe& force) {
+                              require(force.collider);
+                              if (force.by) require(*force.by);
+                          },
+                          [&](const ReactionProbe& force) { require(force.attachment); },
+                          [&](const JointProbe& joint) { require(joint.joint); }, [](const EnergyProbe&) {},
+                          [&](const BodyProbe& body) { require(body.body); },
+                          [&](const VolumeProbe& volume) { require(volume.body); },
+                          [&](const NodesProbe& nodes) { require(nodes.body); },
+                          [&](const auto& moving) { std::visit(require, moving.object); }},
+               probe.what);
+}
+
+}  // namespace
+
+void check_probes(const World& world, std::span<const RecordedProbe> probes) {
+    std::set<std::string> names;
+    for (const RecordedProbe& probe : probes)
+        called_for(probe, [&] {
+            require_name(probe.name);
+            if (!names.insert(probe.name).second)
+                refuse("name", "a name that an earlier probe has", "a different name for every probe");
+            require_objects(world, probe);
+        });
+}
+
+std::vector<TrackedProbe> track(World& world, std::vector<RecordedProbe> probes) {
+    const auto needs_forces = [](const RecordedProbe& probe) { return std::visit(measures_force, probe.what); };
+    if (std::ranges::any_of(probes, needs_forces) && !world.measures_forces()) world.measure_forces(true);
+    std::vector<TrackedProbe> tracked;
+    for (RecordedProbe& probe : probes) {
+        tracked.push_back({.probe = std::move(probe)});
+        TrackedProbe& last = tracked.back();
+        const auto set_origin = [&](const auto& moving) {
+            last.origin = moving.origin.value_or(motion_of(world, moving).position);
+        };
+        std::visit(Overloaded{[&](const PointProbe& point) { set_origin(point); },
+                              [&](const BodyProbe& body) { set_origin(body); }, [](const auto&) {}},
+                   last.probe.what);
+    }
     return tracked;
 }
 
@@ -217,12 +335,27 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
                               for (const char* which : {"largest_von_mises", "largest_principal", "smallest_principal"})
                                   one(which, "Pa");
                           },
-                          [&](const VolumeProbe&) { one("smallest_volume_ratio", "1"); }},
+                          [&](const VolumeProbe&) { one("smallest_volume_ratio", "1"); },
+                          [&](const PoseProbe&) {
+                              three("position", "m");
+                              three("rotation", "rad");
+                          },
+                          [&](const VelocityProbe&) {
+                              three("velocity", "m/s");
+                              three("angular_velocity", "rad/s");
+                          },
+                          [&](const NodesProbe& nodes) {
+                              for (std::size_t n = 0; n < world.positions(nodes.body).size(); ++n)
+                                  for (const char* axis : {"position_x_", "position_y_", "position_z_"})
+                                      columns.push_back({probe.name, axis + std::to_string(n), "m"});
+                          }},
                probe.what);
 }
 
 void add_forces(const World& world, TrackedProbe& probe) {
-    const auto add = [&](const auto& force) { probe.force.add(force_of(world.forces(), force)); };
+    const auto add = [&](const auto& force) {
+        called_for(probe.probe, [&] { probe.force.add(force_of(world.forces(), force)); });
+    };
     std::visit(Overloaded{[&](const BodyForceProbe& force) { add(force); },
                           [&](const ColliderForceProbe& force) { add(force); },
                           [&](const ReactionProbe& force) { add(force); }, [](const auto&) {}},
@@ -230,24 +363,7 @@ void add_forces(const World& world, TrackedProbe& probe) {
 }
 
 void put_row(const World& world, TrackedProbe& probe, std::vector<Real>& values) {
-    std::visit(
-        Overloaded{
-            [&](const PointProbe& point) { put_motion(motion_of(world, point), probe.origin, values); },
-            [&](const BodyProbe& body) { put_motion(motion_of(world, body), probe.origin, values); },
-            [&](const BodyForceProbe&) { put_force(probe.force, true, values); },
-            [&](const ColliderForceProbe&) { put_force(probe.force, true, values); },
-            [&](const ReactionProbe&) { put_force(probe.force, false, values); },
-            [&](const JointProbe& joint) { put_joint(state_of(world, joint), values); },
-            [&](const EnergyProbe&) {
-                const Energy energy = world.energy();
-                values.insert(values.end(), {energy.kinetic, energy.elastic, energy.potential, energy.dissipated});
-            },
-            [&](const StressProbe& stress) {
-                const std::array<Real, 3> extreme = extreme_stresses(world, stress);
-                values.insert(values.end(), extreme.begin(), extreme.end());
-            },
-            [&](const VolumeProbe& volume) { values.push_back(smallest_volume(world, volume.body)); }},
-        probe.probe.what);
+    called_for(probe.probe, [&] { put_values(world, probe, values); });
 }
 
 }  // namespace skerry

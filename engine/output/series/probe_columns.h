@@ -1,6 +1,7 @@
 // Columns that each kind of probe records, and the values of these columns.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "skerry/recorder.h"
@@ -25,9 +26,12 @@ struct TrackedProbe {
     ForceSum force{};
 };
 
-bool measures_force(const RecordedProbe& probe);
-/// Starts a probe. Throws SceneError if the world lacks an object or node that the probe names.
-TrackedProbe track(const World& world, RecordedProbe probe);
+// The following functions throw SceneError that names the probe if the world lacks an object or a node of the probe.
+
+/// Checks the names of all probes, and that the world has the objects and nodes that they name.
+void check_probes(const World& world, std::span<const RecordedProbe> probes);
+/// Starts checked probes. If one of them needs forces, the world measures them from now on.
+std::vector<TrackedProbe> track(World& world, std::vector<RecordedProbe> probes);
 void add_columns(const World& world, const RecordedProbe& probe, std::vector<SeriesColumn>& columns);
 /// Adds the forces of the last call of advance to a force probe. Does nothing for other probes.
 void add_forces(const World& world, TrackedProbe& probe);

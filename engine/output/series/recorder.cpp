@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <set>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -21,40 +20,6 @@ namespace skerry {
 namespace {
 
 constexpr Real slack = 1e-9;  // tolerance for rounding errors of summed times, as a fraction of the time between rows
-
-[[noreturn]] void refuse(const std::string& name, const char* field, const std::string& found,
-                         const std::string& expected) {
-    Complaint{.file = {},
-              .object = "probe \"" + name + "\"",
-              .field = field,
-              .found = found,
-              .expected = expected,
-              .hint = {}}
-        .raise();
-}
-
-/// Calls function(). If it throws a SceneError, adds the name of the probe in front of the message.
-template <class Function>
-auto called_for(const RecordedProbe& probe, Function function) {
-    try {
-        return function();
-    } catch (const SceneError& error) {
-        throw SceneError("probe \"" + probe.name + "\": " + error.what());
-    }
-}
-
-void check_names(const std::vector<RecordedProbe>& probes) {
-    std::set<std::string> names;
-    for (const RecordedProbe& probe : probes) {
-        const bool odd = std::ranges::any_of(
-            probe.name, [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' ' || c == 127; });
-        if (probe.name.empty() || probe.name == "." || probe.name == "time" || odd)
-            refuse(probe.name, "name", "\"" + probe.name + "\"",
-                   "a name other than \"time\" and \".\", without / and control characters (the name heads columns)");
-        if (!names.insert(probe.name).second)
-            refuse(probe.name, "name", "a name that an earlier probe has", "a different name for every probe");
-    }
-}
 
 /// Returns the text as a CSV field, in quotes if RFC 4180 requires them.
 std::string csv_field(const std::string& text) {
@@ -179,16 +144,13 @@ Recorder::Recorder(World& world, std::vector<RecordedProbe> probes, Real every) 
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();
-    check_names(probes);
-    if (std::ranges::any_of(probes, measures_force) && !world.measures_forces()) world.measure_forces(true);
+    check_probes(world, probes);
     impl_->every = every;
     impl_->last_time = world.time();
     if (every > 0) impl_->next = (std::floor(world.time() / every + slack) + 1) * every;
     impl_->columns.push_back({"", "time", "s"});
-    for (RecordedProbe& probe : probes) {
-        impl_->probes.push_back(called_for(probe, [&] { return track(world, probe); }));
-        add_columns(world, probe, impl_->columns);
-    }
+    for (const RecordedProbe& probe : probes) add_columns(world, probe, impl_->columns);
+    impl_->probes = track(world, std::move(probes));
 }
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
@@ -200,7 +162,7 @@ void Recorder::sample(const World& world) {
     // Without a step since the last call of sample(), the forces are already included in the sums.
     if (r.begun && !(time > r.last_time)) return;
     if (time > r.last_time)
-        for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { add_forces(world, probe); });
+        for (TrackedProbe& probe : r.probes) add_forces(world, probe);
     const bool initial = !r.begun && !(time > r.last_time);
     r.last_time = time;
     if (!initial && time < r.next - slack * r.every) return;
@@ -209,7 +171,7 @@ void Recorder::sample(const World& world) {
     const std::size_t before = r.values.size();
     try {
         r.values.push_back(time);
-        for (TrackedProbe& probe : r.probes) called_for(probe.probe, [&] { put_row(world, probe, r.values); });
+        for (TrackedProbe& probe : r.probes) put_row(world, probe, r.values);
     } catch (...) {
         r.values.resize(before);  // removes the values of a row that could not be completed
         throw;

@@ -51,7 +51,7 @@ void require_a_readable_case(const SweepPlan& plan) {
     file.place.key(file.random         ? "random"
                    : file.grid.empty() ? "list"
                                        : "grid")
-        .refuse_inner("no case gives a valid scene; the first error is in " + first);
+        .refuse_inner(SceneError("no case gives a valid scene; the first error is in " + first));
 }
 
 /// Tests the assignments of the sweep on the scene: throws SceneError if a place does not exist in the scene. For a

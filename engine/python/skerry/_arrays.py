@@ -12,13 +12,17 @@ Vector: TypeAlias = tuple[float, float, float]
 """A point or a vector as the dataclasses of the package hold it."""
 
 
+VectorLike: TypeAlias = Sequence[float] | NDArray[Any]
+"""Three numbers, as an argument."""
+
+
 class HasRotvec(Protocol):
     """A rotation object, such as scipy.spatial.transform.Rotation."""
 
     def as_rotvec(self) -> Any: ...
 
 
-RotationLike: TypeAlias = ArrayLike | HasRotvec
+RotationLike: TypeAlias = VectorLike | HasRotvec
 """A rotation: the axis times the angle, shape (3,) [rad], or an object with the method as_rotvec()."""
 
 

@@ -86,10 +86,25 @@ void bind_building(WorldClass& type) {
                  new (self) WorldObject(World(settings));
              })
         .def("clone",
+             [](WorldObject& object, std::optional<int> threads) {
+                 Use use(object);
+                 return object_with(without_gil([&] { return object.world.clone(load_settings(threads)); }));
+             },
+             nb::arg("threads").none())
+        .def("to_bytes",
              [](WorldObject& object) {
                  Use use(object);
-                 return object_with(without_gil([&] { return object.world.clone(); }));
+                 const auto bytes = without_gil([&] { return object.world.to_bytes(); });
+                 return nb::bytes(bytes.data(), bytes.size());
              })
+        .def_static("from_bytes",
+                    [](const nb::bytes& bytes, std::optional<int> threads) {
+                        Use::require_threads();
+                        const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()), bytes.size());
+                        return object_with(
+                            without_gil([&] { return World::from_bytes(data, load_settings(threads)); }));
+                    },
+                    nb::arg("bytes"), nb::arg("threads").none())
         .def("save",
              [](WorldObject& object, const std::string& file) {
                  Use use(object);

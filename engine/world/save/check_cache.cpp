@@ -10,7 +10,7 @@ namespace skerry {
 
 namespace {
 
-void expect_ascending(const Hdf5File& file, const std::string& path, const auto& keys) {
+void expect_ascending(const SavedFile& file, const std::string& path, const auto& keys) {
     const auto at = std::ranges::adjacent_find(keys, std::greater_equal<>());
     if (at != keys.end())
         file.complain(path,
@@ -19,54 +19,54 @@ void expect_ascending(const Hdf5File& file, const std::string& path, const auto&
 }
 
 /// Checks that a step length is positive. Denormal numbers are refused too, since steps treat them as zero.
-void expect_step(const Hdf5File& file, const std::string& path, Real step) {
+void expect_step(const SavedFile& file, const std::string& path, Real step) {
     if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
 }
 
 }  // namespace
 
-void check_clock(const Hdf5File& file, const Clock& clock, Real kick) {
+void check_clock(const SavedFile& file, const Clock& clock, Real kick) {
     constexpr Real long_time = std::numeric_limits<Real>::max();
-    expect_between(file, "/clock/time", std::array{clock.time}, 0.0, long_time);
-    expect_between(file, "/clock/step_before", std::array{clock.step_before}, 0.0, long_time);
-    expect_between(file, "/last_step/kick", std::array{kick}, 0.0, long_time);
+    expect_between(file, "clock/time", std::array{clock.time}, 0.0, long_time);
+    expect_between(file, "clock/step_before", std::array{clock.step_before}, 0.0, long_time);
+    expect_between(file, "last_step/kick", std::array{kick}, 0.0, long_time);
 }
 
-void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) {
+void check_cache(const SavedFile& file, const Model& model, ContactCache& cache) {
     const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
     WarmStartTable& warm = cache.warm_start;
-    expect_size(file, "/warm_start/impulse", warm.impulse.size(), warm.key.size());
-    expect_size(file, "/warm_start/normal", warm.normal.size(), warm.key.size());
-    if (!warm.point.empty()) expect_size(file, "/warm_start/point", warm.point.size(), warm.key.size());
+    expect_size(file, "warm_start/impulse", warm.impulse.size(), warm.key.size());
+    expect_size(file, "warm_start/normal", warm.normal.size(), warm.key.size());
+    if (!warm.point.empty()) expect_size(file, "warm_start/point", warm.point.size(), warm.key.size());
     if (warm.step.size() > 1)
-        file.complain("/warm_start/step", std::to_string(warm.step.size()) + " rows", "one row, or none");
+        file.complain("warm_start/step", std::to_string(warm.step.size()) + " rows", "one row, or none");
     if (!warm.key.empty() && warm.step.empty())
-        file.complain("/warm_start/step", "no row", "one row, the step size of the warm-start impulses (s)");
-    for (const Real step : warm.step) expect_step(file, "/warm_start/step", step);
-    expect_ascending(file, "/warm_start/key", warm.key);
+        file.complain("warm_start/step", "no row", "one row, the step size of the warm-start impulses (s)");
+    for (const Real step : warm.step) expect_step(file, "warm_start/step", step);
+    expect_ascending(file, "warm_start/key", warm.key);
 
     PairTable& pairs = cache.pairs;
     const std::size_t count = pairs.size();
     expect_one_size(file, "pairs", pairs, count);
-    expect_ascending(file, "/pairs/key", pairs.key);
-    expect_rows_of(file, "/pairs/first", pairs.first, bodies);
+    expect_ascending(file, "pairs/key", pairs.key);
+    expect_rows_of(file, "pairs/first", pairs.first, bodies);
     for (std::size_t p = 0; p < count; ++p) {
         if (model.bodies.kind[pairs.first[p]] != BodyKind::deformable)
-            file.complain("/pairs/first", at_row(pairs.first[p], p), "the index of a body that is not a mesh collider");
+            file.complain("pairs/first", at_row(pairs.first[p], p), "the index of a body that is not a mesh collider");
         const bool of_collider = pairs.kind[p] == PairKind::collider;
         const Index second = pairs.second[p];
-        expect_rows_of(file, "/pairs/second", {&second, 1}, of_collider ? colliders : bodies);
+        expect_rows_of(file, "pairs/second", {&second, 1}, of_collider ? colliders : bodies);
         if (of_collider && model.colliders.geometry[second].shape == ColliderShape::mesh)
-            file.complain("/pairs/second", at_row(second, p), "the index of a collider without a mesh");
+            file.complain("pairs/second", at_row(second, p), "the index of a collider without a mesh");
         if (pairs.kind[p] == PairKind::self && second != pairs.first[p])
-            file.complain("/pairs/second", at_row(second, p),
-                          "the same body as in /pairs/first, because the pair is a self-contact");
+            file.complain("pairs/second", at_row(second, p),
+                          "the same body as in pairs/first, because the pair is a self-contact");
     }
 
     const std::size_t origins = pairs.self.origin.size();
     const bool self_contact = std::ranges::find(pairs.kind, PairKind::self) != pairs.kind.end();
-    if (origins != 0 || self_contact) expect_size(file, "/pairs/self_origin", origins, model.nodes.position.size());
-    expect_size(file, "/pairs/self_origin_step", pairs.self.origin_step.size(), origins);
+    if (origins != 0 || self_contact) expect_size(file, "pairs/self_origin", origins, model.nodes.position.size());
+    expect_size(file, "pairs/self_origin_step", pairs.self.origin_step.size(), origins);
 
     // A column of the contact search has either one row per object or no rows. If it has no rows, the next step
     // searches all pairs.
@@ -74,12 +74,12 @@ void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache) 
     const auto expect_all_or_none = [&](const char* path, std::size_t found, std::size_t expected) {
         if (found != 0) expect_size(file, path, found, expected);
     };
-    expect_all_or_none("/search/body_valid_until", search.body_valid_until.size(), bodies);
-    expect_all_or_none("/search/collider_valid_until", search.collider_valid_until.size(), colliders);
-    expect_all_or_none("/search/collider_extent", search.memory.collider_extent.size(), colliders);
-    expect_all_or_none("/search/rebase", search.memory.rebase.size(), bodies);
+    expect_all_or_none("search/body_valid_until", search.body_valid_until.size(), bodies);
+    expect_all_or_none("search/collider_valid_until", search.collider_valid_until.size(), colliders);
+    expect_all_or_none("search/collider_extent", search.memory.collider_extent.size(), colliders);
+    expect_all_or_none("search/rebase", search.memory.rebase.size(), bodies);
     if (search.collider_valid_until.size() == colliders && search.body_valid_until.size() == bodies)
-        expect_size(file, "/search/collider_extent", search.memory.collider_extent.size(), colliders);
+        expect_size(file, "search/collider_extent", search.memory.collider_extent.size(), colliders);
 }
 
 bool inside(Index row, Range range) {
@@ -98,7 +98,7 @@ bool is_of_collider(const Candidate& candidate, const BodyTable& bodies, Index a
     return inside(candidate.first, bodies.vertices[a]) && second < parts;
 }
 
-void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs) {
+void check_candidates(const SavedFile& file, const Model& model, const PairTable& pairs) {
     const BodyTable& bodies = model.bodies;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Index a = pairs.first[p], b = pairs.second[p];
@@ -114,7 +114,7 @@ void check_candidates(const Hdf5File& file, const Model& model, const PairTable&
                 good = inside(candidate.first, bodies.vertices[a]) && inside(candidate.second, bodies.triangles[b]);
             }
             if (!good)
-                file.complain("/pairs/candidates/first",
+                file.complain("pairs/candidates/first",
                               "features " + std::to_string(candidate.first) + " and " +
                                   std::to_string(candidate.second) + " of pair " + std::to_string(p),
                               "features of the two surfaces of this pair");
@@ -124,7 +124,7 @@ void check_candidates(const Hdf5File& file, const Model& model, const PairTable&
 
 namespace {
 
-void check_rows(const Hdf5File& file, const Model& model, const std::string& group, ContactTable& contacts) {
+void check_rows(const SavedFile& file, const Model& model, const std::string& group, ContactTable& contacts) {
     const std::size_t count = contacts.size();
     const AnyTable table(contacts);
     for (const ColumnInfo& info : table.columns())
@@ -141,15 +141,15 @@ void check_rows(const Hdf5File& file, const Model& model, const std::string& gro
 
 }  // namespace
 
-void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts) {
-    check_rows(file, model, "/last_step/contacts/", contacts);
+void check_contacts(const SavedFile& file, const Model& model, ContactTable& contacts) {
+    check_rows(file, model, "last_step/contacts/", contacts);
 }
 
-void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting) {
-    check_rows(file, model, "/resting_contacts/", resting.contact);
-    expect_size(file, "/resting_contacts/step", resting.step.size(), resting.contact.size());
-    for (const Real step : resting.step) expect_step(file, "/resting_contacts/step", step);
-    expect_ascending(file, "/resting_contacts/key", resting.contact.key);
+void check_resting_contacts(const SavedFile& file, const Model& model, RestingContactTable& resting) {
+    check_rows(file, model, "resting_contacts/", resting.contact);
+    expect_size(file, "resting_contacts/step", resting.step.size(), resting.contact.size());
+    for (const Real step : resting.step) expect_step(file, "resting_contacts/step", step);
+    expect_ascending(file, "resting_contacts/key", resting.contact.key);
 }
 
 }  // namespace skerry

@@ -12,7 +12,7 @@ namespace skerry {
 
 namespace {
 
-void check_sizes(const Hdf5File& file, Model& model) {
+void check_sizes(const SavedFile& file, Model& model) {
     const std::size_t nodes = model.nodes.position.size();
     model.nodes.rest_position.resize(nodes);
     const auto all = [&](const char* name, AnyTable table, std::size_t rows) {
@@ -30,14 +30,14 @@ void check_sizes(const Hdf5File& file, Model& model) {
     model.for_each_joining([&](const char* name, auto& table, auto&) { all(name, table, table.slot.size()); });
     all("colliders", model.colliders, model.colliders.slot.size());
     all("attachments", model.attachments, model.attachments.slot.size());
-    expect_size(file, "/attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
+    expect_size(file, "attachments/anchor", model.attachments.anchor.size(), model.attachments.node.size());
 }
 
 /// Checks that each row has a handle, and that each handle in use has a row.
 template <class Handle>
-void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Handle>& map,
+void check_handles(const SavedFile& file, const std::string& name, HandleMap<Handle>& map,
                    const std::vector<std::uint32_t>& slot_of_row) {
-    const std::string path = "/handles/" + name;
+    const std::string path = "handles/" + name;
     std::span<const Index> row;
     std::size_t generations = 0;
     map.for_each_column([&](const char*, auto& values) {
@@ -54,16 +54,16 @@ void check_handles(const Hdf5File& file, const std::string& name, HandleMap<Hand
         ++named;
         if (slot_of_row[static_cast<std::size_t>(row[slot])] != slot)
             file.complain(path + "/row", "row " + std::to_string(row[slot]) + " in slot " + std::to_string(slot),
-                          "the row of /" + name + " with this slot");
+                          "the row of " + name + " with this slot");
     }
     std::size_t with_slot = 0;
     for (const std::uint32_t slot : slot_of_row) with_slot += slot != no_slot;
     if (named != with_slot)
         file.complain(path + "/row", std::to_string(named) + " rows with a handle",
-                      std::to_string(with_slot) + ", the number of rows of /" + name + " with a slot");
+                      std::to_string(with_slot) + ", the number of rows of " + name + " with a slot");
 }
 
-void check_handles(const Hdf5File& file, Model& model) {
+void check_handles(const SavedFile& file, Model& model) {
     const auto slots = [](const Column<std::uint32_t>& slot) { return std::vector(slot.begin(), slot.end()); };
     std::vector<std::uint32_t> of_bodies = slots(model.bodies.slot);
     for (std::size_t b = 0; b < of_bodies.size(); ++b)
@@ -76,25 +76,25 @@ void check_handles(const Hdf5File& file, Model& model) {
         [&](const char* name, auto& table, auto& map) { check_handles(file, name, map, slots(table.slot)); });
 }
 
-void check_bodies(const Hdf5File& file, const Model& model) {
+void check_bodies(const SavedFile& file, const Model& model) {
     const BodyTable& bodies = model.bodies;
-    expect_rows_of(file, "/bodies/material", bodies.material, model.materials.slot.size(), true);
-    expect_rows_of(file, "/bodies/collider", bodies.collider, model.colliders.slot.size(), true);
-    expect_partition(file, "/bodies/nodes", bodies.nodes, model.nodes.position.size());
-    expect_partition(file, "/bodies/node_blocks", bodies.node_blocks, model.node_blocks.begin.size());
-    expect_partition(file, "/bodies/blocks", bodies.blocks, model.elements.first.size());
-    expect_partition(file, "/bodies/element_nodes", bodies.element_nodes, model.element_nodes.node.size());
-    expect_partition(file, "/bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
-    expect_partition(file, "/bodies/rigid", bodies.rigid, model.rigid_bodies.size());
-    expect_partition(file, "/bodies/implicit", bodies.implicit, model.implicit_nodes.size());
-    expect_between(file, "/bodies/stable_step", bodies.stable_step, 0.0, infinity);
-    expect_between(file, "/bodies/rest_step", bodies.rest_step, 0.0, infinity);
-    expect_between(file, "/bodies/contact_distance", bodies.contact_distance, 0.0, infinity);
-    expect_between(file, "/bodies/core_nodes", bodies.core_nodes, 0, cylinder_core_nodes);
-    expect_between(file, "/bodies/round_radius", bodies.round_radius, 0.0, infinity);
+    expect_rows_of(file, "bodies/material", bodies.material, model.materials.slot.size(), true);
+    expect_rows_of(file, "bodies/collider", bodies.collider, model.colliders.slot.size(), true);
+    expect_partition(file, "bodies/nodes", bodies.nodes, model.nodes.position.size());
+    expect_partition(file, "bodies/node_blocks", bodies.node_blocks, model.node_blocks.begin.size());
+    expect_partition(file, "bodies/blocks", bodies.blocks, model.elements.first.size());
+    expect_partition(file, "bodies/element_nodes", bodies.element_nodes, model.element_nodes.node.size());
+    expect_partition(file, "bodies/tetrahedron_blocks", bodies.tetrahedron_blocks, model.tetrahedra.node.size());
+    expect_partition(file, "bodies/rigid", bodies.rigid, model.rigid_bodies.size());
+    expect_partition(file, "bodies/implicit", bodies.implicit, model.implicit_nodes.size());
+    expect_between(file, "bodies/stable_step", bodies.stable_step, 0.0, infinity);
+    expect_between(file, "bodies/rest_step", bodies.rest_step, 0.0, infinity);
+    expect_between(file, "bodies/contact_distance", bodies.contact_distance, 0.0, infinity);
+    expect_between(file, "bodies/core_nodes", bodies.core_nodes, 0, cylinder_core_nodes);
+    expect_between(file, "bodies/round_radius", bodies.round_radius, 0.0, infinity);
     for (std::size_t b = 0; b < bodies.slot.size(); ++b) {
         const auto complain = [&](const char* field, const std::string& found, const std::string& expected) {
-            file.complain(std::string("/bodies/") + field, found + " at row " + std::to_string(b), expected);
+            file.complain(std::string("bodies/") + field, found + " at row " + std::to_string(b), expected);
         };
         const bool deforms = bodies.kind[b] == BodyKind::deformable;
         if (deforms != (bodies.material[b] != no_index))
@@ -129,12 +129,12 @@ void check_bodies(const Hdf5File& file, const Model& model) {
         const Index implicit = bodies.implicit[b].size();
         if (implicit > 0 && (bodies.rigid[b].size() == 0 || implicit != bodies.nodes[b].size()))
             complain("implicit", std::to_string(implicit) + " rows",
-                     "one row per node for a body with a row in /rigid_bodies, none for other bodies");
+                     "one row per node for a body with a row in rigid_bodies, none for other bodies");
     }
 }
 
 /// Checks the tables in which each body has a range of rows.
-void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
+void check_rows_of_bodies(const SavedFile& file, const Model& model) {
     const NodeBlockTable& blocks = model.node_blocks;
     const ElementBlockTable& elements = model.elements;
     const auto expect_body = [&](const char* path, Index found, std::size_t body, Index row) {
@@ -151,89 +151,88 @@ void check_rows_of_bodies(const Hdf5File& file, const Model& model) {
     for (std::size_t b = 0; b < model.bodies.slot.size(); ++b) {
         const Range nodes = model.bodies.nodes[b], rows = model.bodies.element_nodes[b], rigid = model.bodies.rigid[b];
         for (Index r = rigid.begin; r < rigid.end; ++r)
-            expect_body("/rigid_bodies/body", model.rigid_bodies.body[r], b, r);
-        for (Index n = nodes.begin; n < nodes.end; ++n) expect_body("/nodes/body", model.nodes.body[n], b, n);
+            expect_body("rigid_bodies/body", model.rigid_bodies.body[r], b, r);
+        for (Index n = nodes.begin; n < nodes.end; ++n) expect_body("nodes/body", model.nodes.body[n], b, n);
         Index next = nodes.begin;
         for (Index k = model.bodies.node_blocks[b].begin; k < model.bodies.node_blocks[b].end; ++k) {
-            expect_body("/node_blocks/body", blocks.body[k], b, k);
+            expect_body("node_blocks/body", blocks.body[k], b, k);
             if (blocks.begin[k] != next || blocks.end[k] <= next || blocks.end[k] - next > nodes_per_block ||
                 blocks.end[k] > nodes.end)
-                file.complain("/node_blocks/end", at_row(blocks.end[k], k),
+                file.complain("node_blocks/end", at_row(blocks.end[k], k),
                               "the end of a block of 1 to 256 nodes that begins where the previous block ends");
             next = blocks.end[k];
         }
         if (next != step_nodes_of(nodes, model.bodies.core_nodes[b]).end)
-            file.complain("/node_blocks/end",
+            file.complain("node_blocks/end",
                           std::to_string(next) + " as the end of the last block of body " + std::to_string(b),
                           std::to_string(step_nodes_of(nodes, model.bodies.core_nodes[b]).end) +
                               ", the end of the nodes of the body that a step moves");
         for (Index t = model.bodies.tetrahedron_blocks[b].begin; t < model.bodies.tetrahedron_blocks[b].end; ++t)
-            for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("/tetrahedra/node", corner, nodes, t);
+            for (const NodeLane& corner : model.tetrahedra.node[t]) expect_nodes("tetrahedra/node", corner, nodes, t);
         for (Index k = rows.begin; k < rows.end; ++k)
-            expect_nodes("/element_nodes/node", model.element_nodes.node[k], nodes, k);
+            expect_nodes("element_nodes/node", model.element_nodes.node[k], nodes, k);
         Index first = rows.begin;
         const Range of_body = model.bodies.blocks[b];
         for (Index e = of_body.begin; e < of_body.end; ++e) {
-            expect_body("/elements/body", elements.body[e], b, e);
+            expect_body("elements/body", elements.body[e], b, e);
             constexpr Index fewest_nodes = 4;
             if (elements.first[e] != first || elements.count[e] < fewest_nodes ||
                 elements.count[e] > rows.end - elements.first[e])
-                file.complain("/elements/count", at_row(elements.count[e], e),
-                              "at least 4 rows of /element_nodes, which follow the rows of the previous block");
+                file.complain("elements/count", at_row(elements.count[e], e),
+                              "at least 4 rows of element_nodes, which follow the rows of the previous block");
             first += elements.count[e];
             if (!elements.opens_patch[e] && e == of_body.begin)
-                file.complain("/elements/opens_patch", "0 at row " + std::to_string(e),
+                file.complain("elements/opens_patch", "0 at row " + std::to_string(e),
                               "1 in the first block of elements of a body");
         }
         if (first != rows.end)
-            file.complain("/elements/count",
+            file.complain("elements/count",
                           std::to_string(first) + " as the end of the last block of body " + std::to_string(b),
-                          std::to_string(rows.end) + ", the end of the rows of the body in /element_nodes");
+                          std::to_string(rows.end) + ", the end of the rows of the body in element_nodes");
     }
-    expect_rows_of(file, "/elements/material", elements.material, model.materials.slot.size());
+    expect_rows_of(file, "elements/material", elements.material, model.materials.slot.size());
 }
 
-void check_scripts(const Hdf5File& file, const std::string& table, const auto& rows) {
+void check_scripts(const SavedFile& file, const std::string& table, const auto& rows) {
     for (std::size_t i = 0; i < rows.script.size(); ++i) {
         const MotionScript& script = rows.script[i];
         if (script.key_begin < 0 || script.key_end < script.key_begin ||
             script.key_end > static_cast<Index>(rows.keyframe.size()))
-            file.complain(
-                "/" + table + "/script/key_end",
-                std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
-                    std::to_string(i),
-                "a range of the " + std::to_string(rows.keyframe.size()) + " rows of /" + table + "/keyframe");
+            file.complain(table + "/script/key_end",
+                          std::to_string(script.key_begin) + " to " + std::to_string(script.key_end) + " at row " +
+                              std::to_string(i),
+                          "a range of the " + std::to_string(rows.keyframe.size()) + " rows of " + table + "/keyframe");
         for (Index k = script.key_begin + 1; k < script.key_end; ++k)
             if (!(rows.keyframe[k].time > rows.keyframe[k - 1].time))
-                file.complain("/" + table + "/keyframe",
+                file.complain(table + "/keyframe",
                               "a time that is not after the previous time, at row " + std::to_string(k),
                               "ascending times");
     }
 }
 
-void check_moved(const Hdf5File& file, const Model& model) {
-    expect_rows_of(file, "/colliders/body", model.colliders.body, model.bodies.slot.size(), true);
+void check_moved(const SavedFile& file, const Model& model) {
+    expect_rows_of(file, "colliders/body", model.colliders.body, model.bodies.slot.size(), true);
     for (std::size_t c = 0; c < model.colliders.slot.size(); ++c) {
         const Index body = model.colliders.body[c];
         if (body != no_index && model.bodies.collider[body] != static_cast<Index>(c))
-            file.complain("/colliders/body", at_row(body, c), "the body whose collider is this row");
+            file.complain("colliders/body", at_row(body, c), "the body whose collider is this row");
     }
     check_scripts(file, "colliders", model.colliders);
     const AttachmentTable& attachments = model.attachments;
     check_scripts(file, "attachments", attachments);
-    expect_rows_of(file, "/attachments/body", attachments.body, model.bodies.slot.size());
-    expect_partition(file, "/attachments/nodes", attachments.nodes, attachments.node.size());
+    expect_rows_of(file, "attachments/body", attachments.body, model.bodies.slot.size());
+    expect_partition(file, "attachments/nodes", attachments.nodes, attachments.node.size());
     for (std::size_t a = 0; a < attachments.slot.size(); ++a)
         for (const Index n : part(attachments.node, attachments.nodes[a])) {
             const Range nodes = model.bodies.nodes[attachments.body[a]];
             if (n < nodes.begin || n >= nodes.end)
-                file.complain("/attachments/node", "node " + std::to_string(n) + " of attachment " + std::to_string(a),
+                file.complain("attachments/node", "node " + std::to_string(n) + " of attachment " + std::to_string(a),
                               "a node of the attached body, " + std::to_string(nodes.begin) + " to " +
                                   std::to_string(nodes.end - 1));
         }
 }
 
-void check_disabled_pairs(const Hdf5File& file, const Model& model) {
+void check_disabled_pairs(const SavedFile& file, const Model& model) {
     const auto lives = [](const auto& map, std::uint64_t slot) {
         return map.has_slot(static_cast<std::uint32_t>(slot));
     };
@@ -244,32 +243,32 @@ void check_disabled_pairs(const Hdf5File& file, const Model& model) {
                            (slots.is_collider ? lives(model.collider_map, slots.second)
                                               : lives(model.body_map, slots.second) && slots.first < slots.second);
         if (!named || (i > 0 && !(keys[i - 1] < keys[i])))
-            file.complain("/disabled_pairs/key", at_row(std::to_string(keys[i]), i),
+            file.complain("disabled_pairs/key", at_row(std::to_string(keys[i]), i),
                           "ascending keys of pairs of existing objects: two bodies, or a body and a collider");
     }
 }
 
 /// Checks the data for evaluating stable steps in parallel with the steps. Empty columns mean that no evaluation has
 /// started yet.
-void check_watch(const Hdf5File& file, const Model& model) {
+void check_watch(const SavedFile& file, const Model& model) {
     const StepWatch& watch = model.watch;
     const std::size_t rows = watch.step.size(), nodes = watch.position.size();
-    if (rows != 0) expect_size(file, "/watch/step", rows, model.bodies.slot.size());
-    if (nodes != 0) expect_size(file, "/watch/position", nodes, model.nodes.position.size());
-    expect_size(file, "/watch/stiffness_sum", watch.stiffness_sum.size(), nodes);
+    if (rows != 0) expect_size(file, "watch/step", rows, model.bodies.slot.size());
+    if (nodes != 0) expect_size(file, "watch/position", nodes, model.nodes.position.size());
+    expect_size(file, "watch/stiffness_sum", watch.stiffness_sum.size(), nodes);
     const std::size_t looked_at = nodes > 0 ? rows : 0;
-    expect_between(file, "/watch/progress/kept", std::array{watch.kept}, 0, static_cast<Index>(looked_at));
-    expect_between(file, "/watch/progress/body", std::array{watch.body}, 0, watch.kept);
+    expect_between(file, "watch/progress/kept", std::array{watch.kept}, 0, static_cast<Index>(looked_at));
+    expect_between(file, "watch/progress/body", std::array{watch.body}, 0, watch.kept);
 }
 
 /// Checks the clusters, and computes the columns that follow from the node lists of the clusters.
-void check_clusters(const Hdf5File& file, Model& model) {
+void check_clusters(const SavedFile& file, Model& model) {
     NodeClusters& clusters = model.clusters;
     const std::size_t count = clusters.body.size();
-    expect_size(file, "/clusters/nodes/offset", clusters.nodes.offset.size(), count > 0 ? count + 1 : 0);
-    expect_rows_of(file, "/clusters/body", clusters.body, model.bodies.slot.size());
+    expect_size(file, "clusters/nodes/offset", clusters.nodes.offset.size(), count > 0 ? count + 1 : 0);
+    expect_rows_of(file, "clusters/body", clusters.body, model.bodies.slot.size());
     if (count == 0) return;
-    expect_all_offsets(file, "/clusters/nodes/offset", clusters.nodes.offset, clusters.nodes.item.size());
+    expect_all_offsets(file, "clusters/nodes/offset", clusters.nodes.offset, clusters.nodes.item.size());
     clusters.cluster_of.assign(model.nodes.position.size(), no_index);
     clusters.place.assign(model.nodes.position.size(), no_index);
     std::size_t entries = 0;
@@ -282,21 +281,21 @@ void check_clusters(const Hdf5File& file, Model& model) {
             const Index n = of_cluster[i];
             if (n < nodes.begin || n >= nodes.end || (i > 0 && n <= of_cluster[i - 1]) ||
                 clusters.cluster_of[n] != no_index)
-                file.complain("/clusters/nodes/item", "node " + std::to_string(n) + " of cluster " + std::to_string(c),
+                file.complain("clusters/nodes/item", "node " + std::to_string(n) + " of cluster " + std::to_string(c),
                               "ascending nodes of the cluster's body, each in only one cluster");
             clusters.cluster_of[n] = static_cast<Index>(c);
             clusters.place[n] = static_cast<Index>(i);
         }
         if (of_cluster.empty())
-            file.complain("/clusters/nodes/offset", "no nodes in cluster " + std::to_string(c), "at least one node");
+            file.complain("clusters/nodes/offset", "no nodes in cluster " + std::to_string(c), "at least one node");
     }
-    expect_size(file, "/clusters/inverse", clusters.inverse.size(), entries);
+    expect_size(file, "clusters/inverse", clusters.inverse.size(), entries);
 }
 
-void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
+void check_rigid_bodies(const SavedFile& file, const RigidBodyTable& table) {
     const auto require = [&](bool good, const char* column, std::size_t r, const char* found, const char* expected) {
         if (!good)
-            file.complain(std::string("/rigid_bodies/") + column, found + (" at row " + std::to_string(r)), expected);
+            file.complain(std::string("rigid_bodies/") + column, found + (" at row " + std::to_string(r)), expected);
     };
     for (std::size_t r = 0; r < table.size(); ++r) {
         require(table.mass[r] > 0 && std::isfinite(table.mass[r]), "mass", r, "a mass that is not positive and finite",
@@ -314,22 +313,22 @@ void check_rigid_bodies(const Hdf5File& file, const RigidBodyTable& table) {
 }
 
 /// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies.
-void check_joined_bodies(const Hdf5File& file, const Model& model, const char* name, AnyTable table) {
+void check_joined_bodies(const SavedFile& file, const Model& model, const char* name, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
         if (info.role != ColumnRole::body) continue;
         const AnyColumn column = table.column(info);
         const std::span<const Index> rows(reinterpret_cast<const Index*>(column.read()), column.size());
-        expect_rows_of(file, std::string("/") + name + "/" + info.name, rows, model.bodies.slot.size(), true);
+        expect_rows_of(file, std::string(name) + "/" + info.name, rows, model.bodies.slot.size(), true);
     }
 }
 
-void check_joints(const Hdf5File& file, const Model& model) {
+void check_joints(const SavedFile& file, const Model& model) {
     const JointTable& table = model.joints;
-    expect_between(file, "/joints/step", table.step, 0.0, infinity);
+    expect_between(file, "joints/step", table.step, 0.0, infinity);
     for (std::size_t j = 0; j < table.size(); ++j) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
             if (!good)
-                file.complain(std::string("/joints/") + column, found + (" at row " + std::to_string(j)), expected);
+                file.complain(std::string("joints/") + column, found + (" at row " + std::to_string(j)), expected);
         };
         const auto is_rigid = [&](Index body) {
             return body == no_index || model.is_rigid(static_cast<std::size_t>(body));
@@ -348,7 +347,7 @@ void check_joints(const Hdf5File& file, const Model& model) {
                 "a strength and a speed >= 0");
         const Range keys = table.motor_keys[j];
         require(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(table.key.size()),
-                "motor_keys", "a range that does not exist", "a range of the rows of /joints/key");
+                "motor_keys", "a range that does not exist", "a range of the rows of joints/key");
         require(keys.size() == 0 || table.drive[j] != JointDrive::none, "motor_keys", "keys without a motor",
                 "no keys");
         require(std::ranges::adjacent_find(table.keys_of(j), std::greater_equal<>(), &JointMotorKey::time) ==
@@ -364,31 +363,31 @@ void check_joints(const Hdf5File& file, const Model& model) {
     Index end = 0;
     for (const Range& keys : ranges) {
         if (keys.begin != end)
-            file.complain("/joints/motor_keys", "a range of keys that begins at row " + std::to_string(keys.begin),
+            file.complain("joints/motor_keys", "a range of keys that begins at row " + std::to_string(keys.begin),
                           "row " + std::to_string(end) + ", where the last range ends");
         end = keys.end;
     }
     if (end != static_cast<Index>(table.key.size()))
-        file.complain("/joints/key", std::to_string(table.key.size()) + " rows",
+        file.complain("joints/key", std::to_string(table.key.size()) + " rows",
                       std::to_string(end) + ", as many as the motors of joints have keys");
 }
 
-void check_implicit_nodes(const Hdf5File& file, const ImplicitNodeTable& table) {
+void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
         if (!table.displacement[row].allFinite())
-            file.complain("/implicit_nodes/displacement", found, "finite numbers (m)");
-        if (!table.velocity[row].allFinite()) file.complain("/implicit_nodes/velocity", found, "finite numbers (m/s)");
-        if (!table.left[row].allFinite()) file.complain("/implicit_nodes/left", found, "finite numbers (m)");
+            file.complain("implicit_nodes/displacement", found, "finite numbers (m)");
+        if (!table.velocity[row].allFinite()) file.complain("implicit_nodes/velocity", found, "finite numbers (m/s)");
+        if (!table.left[row].allFinite()) file.complain("implicit_nodes/left", found, "finite numbers (m)");
     }
 }
 
 }  // namespace
 
-void check_model(const Hdf5File& file, Model& model) {
+void check_model(const SavedFile& file, Model& model) {
     check_sizes(file, model);
-    expect_between(file, "/nodes/mass", model.nodes.mass, 0.0, infinity);
-    expect_between(file, "/nodes/inverse_mass", model.nodes.inverse_mass, 0.0, infinity);
+    expect_between(file, "nodes/mass", model.nodes.mass, 0.0, infinity);
+    expect_between(file, "nodes/inverse_mass", model.nodes.inverse_mass, 0.0, infinity);
     check_bodies(file, model);
     check_rows_of_bodies(file, model);
     check_moved(file, model);

@@ -7,7 +7,7 @@ namespace skerry {
 namespace {
 
 template <class T>
-void expect_numbers(const Hdf5File& file, std::string_view path, std::span<const T> values, T least, T most) {
+void expect_numbers(const SavedFile& file, std::string_view path, std::span<const T> values, T least, T most) {
     for (std::size_t row = 0; row < values.size(); ++row)
         if (!(values[row] >= least && values[row] <= most))
             file.complain(std::string(path), at_row(std::to_string(values[row]), row),
@@ -24,24 +24,24 @@ std::string at_row(Index found, std::size_t row) {
     return at_row(std::to_string(found), row);
 }
 
-void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected) {
+void expect_size(const SavedFile& file, std::string_view path, std::size_t found, std::size_t expected) {
     if (found != expected)
         file.complain(std::string(path), std::to_string(found) + " rows",
                       std::to_string(expected) + ", the size of the table or list to which this data set belongs");
 }
 
-void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows) {
+void expect_one_size(const SavedFile& file, const char* name, AnyTable table, std::size_t rows) {
     for (const ColumnInfo& info : table.columns()) {
         if (!info.has_row_each) continue;
         const AnyColumn column = table.column(info);
         if (is_saved(info.role))
-            expect_size(file, std::string("/") + name + "/" + info.name, column.size(), rows);
+            expect_size(file, std::string(name) + "/" + info.name, column.size(), rows);
         else
             column.resize(rows);
     }
 }
 
-void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
+void expect_rows_of(const SavedFile& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none) {
     for (std::size_t i = 0; i < rows.size(); ++i)
         if ((rows[i] < 0 && !(none && rows[i] == no_index)) || rows[i] >= static_cast<Index>(count))
@@ -49,19 +49,19 @@ void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const
                           "a row index below " + std::to_string(count) + (none ? ", or -1 for none" : ""));
 }
 
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most) {
+void expect_between(const SavedFile& file, std::string_view path, std::span<const Real> values, Real least, Real most) {
     expect_numbers(file, path, values, least, most);
 }
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const Index> values, Index least,
+void expect_between(const SavedFile& file, std::string_view path, std::span<const Index> values, Index least,
                     Index most) {
     expect_numbers(file, path, values, least, most);
 }
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
+void expect_between(const SavedFile& file, std::string_view path, std::span<const std::uint8_t> values,
                     std::uint8_t least, std::uint8_t most) {
     expect_numbers(file, path, values, least, most);
 }
 
-void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count) {
+void expect_partition(const SavedFile& file, std::string_view path, std::span<const Range> ranges, std::size_t count) {
     Index end = 0;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         if (ranges[i].begin != end || ranges[i].end < end)
@@ -75,10 +75,19 @@ void expect_partition(const Hdf5File& file, std::string_view path, std::span<con
                       "ranges that end at " + std::to_string(count) + ", the number of rows");
 }
 
-void expect_all_offsets(const Hdf5File& file, const std::string& path, std::span<const Index> offset, std::size_t items,
-                        const std::string& of) {
-    file.expect_offsets(path, offset, items, of);
-    if (offset.back() != static_cast<Index>(items))
+void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
+                        std::size_t items, const std::string& of) {
+    const auto most = static_cast<Index>(items);
+    for (std::size_t i = 0; i < offset.size(); ++i) {
+        const Index least = i == 0 ? 0 : offset[i - 1];
+        if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
+        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i) + of;
+        if (i == 0) file.complain(path, found, "0, the first offset");
+        if (offset[i] > most)
+            file.complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
+        file.complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");
+    }
+    if (offset.back() != most)
         file.complain(path, std::to_string(offset.back()) + " as the last offset" + of,
                       std::to_string(items) + ", the number of items");
 }

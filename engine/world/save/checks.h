@@ -9,49 +9,49 @@
 
 #include "components/any_table.h"
 #include "components/range.h"
-#include "engine/hdf5/hdf5_file.h"
+#include "engine/world/save/saved_file.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
 
 /// Checks sizes, links, ranges and handles of the model. Must be called before any data are derived from the tables.
-void check_model(const Hdf5File& file, Model& model);
+void check_model(const SavedFile& file, Model& model);
 /// Checks pairs, warm-start impulses and data of the contact search. Surfaces must have been built.
-void check_cache(const Hdf5File& file, const Model& model, ContactCache& cache);
-void check_candidates(const Hdf5File& file, const Model& model, const PairTable& pairs);
+void check_cache(const SavedFile& file, const Model& model, ContactCache& cache);
+void check_candidates(const SavedFile& file, const Model& model, const PairTable& pairs);
 /// Checks the contacts of the last step.
-void check_contacts(const Hdf5File& file, const Model& model, ContactTable& contacts);
-void check_resting_contacts(const Hdf5File& file, const Model& model, RestingContactTable& resting);
+void check_contacts(const SavedFile& file, const Model& model, ContactTable& contacts);
+void check_resting_contacts(const SavedFile& file, const Model& model, RestingContactTable& resting);
 /// Checks the clock. `kick`: time for which forces acted in the last step [s].
-void check_clock(const Hdf5File& file, const Clock& clock, Real kick);
+void check_clock(const SavedFile& file, const Clock& clock, Real kick);
 
 /// Returns text for messages, such as "5 at row 7".
 std::string at_row(const std::string& found, std::size_t row);
 std::string at_row(Index found, std::size_t row);
 
 /// Checks that a column has the expected number of rows.
-void expect_size(const Hdf5File& file, std::string_view path, std::size_t found, std::size_t expected);
+void expect_size(const SavedFile& file, std::string_view path, std::size_t found, std::size_t expected);
 
 /// Checks that all saved columns of a table have `rows` rows, and resizes the unsaved columns to this size. Columns
 /// that contain lists may have any size.
-void expect_one_size(const Hdf5File& file, const char* name, AnyTable table, std::size_t rows);
+void expect_one_size(const SavedFile& file, const char* name, AnyTable table, std::size_t rows);
 
 /// Checks that offsets, at least one, ascend from 0 to the number of items. `of` ends the found value in the message.
-void expect_all_offsets(const Hdf5File& file, const std::string& path, std::span<const Index> offset, std::size_t items,
-                        const std::string& of = {});
+void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
+                        std::size_t items, const std::string& of = {});
 
 /// Checks that every entry is a row number of a table with `count` rows. If `none` is true, no_index is accepted too.
-void expect_rows_of(const Hdf5File& file, std::string_view path, std::span<const Index> rows, std::size_t count,
+void expect_rows_of(const SavedFile& file, std::string_view path, std::span<const Index> rows, std::size_t count,
                     bool none = false);
 
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const Real> values, Real least, Real most);
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const Index> values, Index least,
+void expect_between(const SavedFile& file, std::string_view path, std::span<const Real> values, Real least, Real most);
+void expect_between(const SavedFile& file, std::string_view path, std::span<const Index> values, Index least,
                     Index most);
-void expect_between(const Hdf5File& file, std::string_view path, std::span<const std::uint8_t> values,
+void expect_between(const SavedFile& file, std::string_view path, std::span<const std::uint8_t> values,
                     std::uint8_t least, std::uint8_t most);
 
 /// Checks that each range begins where the previous range ends, and that the ranges together cover `count` rows.
-void expect_partition(const Hdf5File& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
+void expect_partition(const SavedFile& file, std::string_view path, std::span<const Range> ranges, std::size_t count);
 
 bool is_rotation(const Mat3& matrix);
 

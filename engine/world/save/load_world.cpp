@@ -1,16 +1,17 @@
+#include <algorithm>
 #include <array>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "engine/hdf5/hdf5_file.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/save/checks.h"
-#include "engine/world/save/file_head.h"
 #include "engine/world/save/list_state.h"
+#include "engine/world/save/saved_file.h"
 #include "engine/world/save/world_file.h"
 #include "engine/world/state_hash.h"
 #include "engine/world/step/step.h"
@@ -23,93 +24,82 @@ namespace {
 /// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
 /// lane.
 bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 18> paths{"/watch/step",
-                                                     "/watch/look/in_frame",
-                                                     "/watch/look/highest",
-                                                     "/tetrahedra/altitude",
-                                                     "/tetrahedra/uninverted_until",
-                                                     "/bodies/uninverted_until",
-                                                     "/bodies/rest_step",
-                                                     "/bodies/stable_step",
-                                                     "/bodies/cluster_step",
-                                                     "/bodies/travel",
-                                                     "/colliders/travel",
-                                                     "/pairs/valid_until",
-                                                     "/pairs/candidates/asleep_until",
-                                                     "/search/body_valid_until",
-                                                     "/search/collider_valid_until",
-                                                     "/joints/lower",
-                                                     "/joints/upper",
-                                                     "/joints/motor"};
+    constexpr std::array<std::string_view, 18> paths{"watch/step",
+                                                     "watch/look/in_frame",
+                                                     "watch/look/highest",
+                                                     "tetrahedra/altitude",
+                                                     "tetrahedra/uninverted_until",
+                                                     "bodies/uninverted_until",
+                                                     "bodies/rest_step",
+                                                     "bodies/stable_step",
+                                                     "bodies/cluster_step",
+                                                     "bodies/travel",
+                                                     "colliders/travel",
+                                                     "pairs/valid_until",
+                                                     "pairs/candidates/asleep_until",
+                                                     "search/body_valid_until",
+                                                     "search/collider_valid_until",
+                                                     "joints/lower",
+                                                     "joints/upper",
+                                                     "joints/motor"};
     return std::find(paths.begin(), paths.end(), path) != paths.end();
+}
+
+std::string description(NumberType number, std::size_t width) {
+    const bool reals = number == NumberType::real || number == NumberType::single;
+    return (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") + (reals ? "reals" : "integers") +
+           " of " + std::to_string(bytes_of(number)) + " bytes";
 }
 
 /// The archive (see list_state.h) that reads from a file.
 class Reader final : public Archive {
 public:
-    explicit Reader(const Hdf5File& file) : file_(file) {}
+    explicit Reader(const SavedFile& file) : file_(file), unread_(file.arrays()) {}
 
     void column(const std::string& path, AnyColumn column) override {
-        read(path, column.type(), [&](std::size_t count) {
-            column.resize(count);
-            return column.write();
-        });
+        const std::size_t rows = rows_of(path, column.type());
+        column.resize(rows);
+        read(path, column.type(), column.write(), column.type().bytes, rows);
+    }
+    /// Refuses a file with arrays that were not read.
+    void require_end() const {
+        if (!unread_.empty())
+            file_.complain(unread_.begin()->first, "an array", "no array of this name in the present version");
     }
 
 private:
-    // function that allocates memory for a number of rows and returns its address
-    using Place = FunctionRef<std::byte*(std::size_t)>;
-
     void put_value(const std::string& path, void* value, const RowType& type) override {
-        read(path, type, [&](std::size_t count) {
-            if (count != 1) file_.complain(path, std::to_string(count) + " rows", "one row");
-            return static_cast<std::byte*>(value);
-        });
+        read(path, type, static_cast<std::byte*>(value), type.bytes, 1);
     }
-    void read(const std::string& path, const RowType& type, Place place) const {
-        if (type.members == nullptr)
-            read_numbers(path, type, place);
-        else
-            read_members(path, type, place);
+    const SavedArray& array(const std::string& path, const RowType& type) const {
+        const auto found = unread_.find(path);
+        const std::string expected = description(type.number, type.width);
+        if (found == unread_.end()) file_.complain(path, "nothing", expected);
+        const SavedArray& array = found->second;
+        if (array.number != type.number || array.width != type.width)
+            file_.complain(path, description(array.number, array.width), expected);
+        return array;
     }
-    void read_numbers(const std::string& path, const RowType& type, Place place) const {
-        const std::byte* rows = nullptr;
-        std::size_t count = 0;
-        file_.read_rows(path, hdf5_type(type.number), type.width, [&](std::size_t found) -> void* {
-            count = found;
-            std::byte* const room = place(found);
-            rows = room;
-            return room;
-        });
-        check(path, type, rows, count);
+    /// Returns the number of rows of a column. For a column of structs it is that of the first member.
+    std::size_t rows_of(const std::string& path, const RowType& type) const {
+        if (type.members == nullptr) return array(path, type).rows;
+        const Member& first = type.members().front();
+        return rows_of(path + "/" + first.name, *first.type);
     }
-    /// Reads a column of structs, one data set for each member. The size of the first data set determines the number of
-    /// rows.
-    void read_members(const std::string& path, const RowType& type, Place place) const {
-        std::byte* rows = nullptr;
-        std::size_t count = 0;
-        bool first = true;
-        for (const Member& member : type.members()) {
-            const std::string of_member = path + "/" + member.name;
-            const std::size_t bytes = member.type->bytes;
-            std::vector<std::byte> values;
-            std::size_t found = 0;
-            read(of_member, *member.type, [&](std::size_t wanted) {
-                found = wanted;
-                values.resize(wanted * bytes);
-                return values.data();
-            });
-            if (first) {
-                count = found;
-                rows = place(count);
-                first = false;
-            }
-            if (found != count)
-                file_.complain(of_member, std::to_string(found) + " rows",
-                               std::to_string(count) + ", as many as the other members have");
-            for (std::size_t i = 0; i < count; ++i)
-                std::memcpy(rows + i * type.bytes + member.offset, values.data() + i * bytes, bytes);
+    /// Reads rows into memory, in which the distance between two rows is `stride` [bytes].
+    void read(const std::string& path, const RowType& type, std::byte* to, std::size_t stride, std::size_t rows) {
+        if (type.members != nullptr) {
+            for (const Member& member : type.members())
+                read(path + "/" + member.name, *member.type, rows == 0 ? nullptr : to + member.offset, stride, rows);
+            return;
         }
+        const SavedArray& found = array(path, type);
+        if (found.rows != rows)
+            file_.complain(path, std::to_string(found.rows) + " rows",
+                           rows == 1 ? "one row" : std::to_string(rows) + ", as many as the other members have");
+        check(path, type, found.bytes.data(), rows);
+        copy_rows(found.bytes.data(), found.row_bytes(), to, stride, found.row_bytes(), rows);
+        unread_.erase(path);
     }
     void check(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
         if (type.number == NumberType::real)
@@ -140,12 +130,13 @@ private:
         file_.complain(path, found + " at row " + std::to_string(row), expected);
     }
 
-    const Hdf5File& file_;
+    const SavedFile& file_;
+    std::map<std::string, SavedArray> unread_;
 };
 
 /// Makes a world with the saved settings. The caller may replace the backend and the number of threads of the saved
 /// world.
-World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
+World world_of(const SavedFile& file, const LoadSettings& wanted, Reader& reader, SavedRows& saved) {
     Settings settings;
     Tuning tuning;
     list_settings(settings, tuning, saved, reader);
@@ -154,17 +145,16 @@ World world_of(const Hdf5File& file, const LoadSettings& wanted, Reader& reader,
         validate(settings);
         validate(tuning);
     } catch (const SceneError& error) {
-        file.complain("/settings", std::string("invalid settings (") + error.what() + ")", "valid settings");
+        file.complain("settings", std::string("invalid settings (") + error.what() + ")", "valid settings");
     }
     const std::span<const Backend> here = available_backends();
     if (std::find(here.begin(), here.end(), settings.backend) == here.end()) settings.backend = Backend::automatic;
-    settings.backend = wanted.backend.value_or(settings.backend);
-    settings.threads = wanted.threads.value_or(settings.threads);
+    use(wanted, settings);
     return tuned_world(settings, tuning);
 }
 
 /// Checks the saved data, and computes all data of the world that are not saved.
-void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
+void derive(const SavedFile& file, const SavedRows& saved, WorldState& world) {
     Model& model = world.model;
     check_clock(file, world.clock, world.scratch.parameters.kick);
     check_model(file, model);
@@ -192,35 +182,63 @@ void derive(const Hdf5File& file, const SavedRows& saved, WorldState& world) {
     check_resting_contacts(file, model, world.cache.resting);
 }
 
-void expect_hash(const Hdf5File& file, WorldState& world, Reader& reader) {
-    std::uint64_t saved = 0;
-    reader.value("/state_hash", saved);
-    const std::uint64_t found = state_hash(world);
-    char text[2][20];
-    std::snprintf(text[0], sizeof text[0], "%016" PRIx64, found);
-    std::snprintf(text[1], sizeof text[1], "%016" PRIx64, saved);
-    if (found != saved)
-        file.complain("/state_hash", text[1], text[0] + std::string(", the hash of the contents of the file"));
+void expect_hash(const SavedFile& file, WorldState& world) {
+    const std::string found = hash_text(state_hash(world));
+    if (found != file.texts().state_hash)
+        file.complain("state_hash", file.texts().state_hash, found + ", the hash of the contents of the file");
+}
+
+std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) refuse_file(name, "no such file", "check the path");
+    if (!std::filesystem::is_regular_file(status)) refuse_file(name, "a folder or device", "check the path");
+    std::ifstream in(path, std::ios::binary);
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (!in || error) refuse_file(name, "a file that cannot be opened or read", "check the permissions of the file");
+    // The rest is read only if the start is that of a saved world, because other files can have any size.
+    std::vector<std::byte> bytes(std::min<std::uint64_t>(size, start_bytes));
+    const auto read_on = [&](std::size_t begin) {
+        const auto count = static_cast<std::streamsize>(bytes.size() - begin);
+        in.read(reinterpret_cast<char*>(bytes.data() + begin), count);
+        if (in.gcount() != count)
+            refuse_file(name, "bytes that cannot be read", "check the disk, or save the world again");
+    };
+    read_on(0);
+    require_start(name, bytes, size);
+    const std::size_t begin = bytes.size();
+    bytes.resize(size);
+    read_on(begin);
+    return bytes;
 }
 
 }  // namespace
 
-LoadedWorld load_world(const std::filesystem::path& path, const LoadSettings& settings, bool compare_hash) {
-    check_head(path);
-    const Hdf5File file(path, "a world that Skerry saved (HDF5)",
-                        "the file is damaged or was edited; save the world again");
+LoadedWorld read_world(const std::string& name, std::span<const std::byte> bytes, const LoadSettings& settings,
+                       bool compare_hash) {
+    const SavedFile file(name, bytes);
     Reader reader(file);
     SavedRows saved;
-    LoadedWorld loaded{world_of(file, settings, reader, saved), {file.text_or_nothing("/note")}};
+    LoadedWorld loaded{world_of(file, settings, reader, saved), {file.texts().note}};
     WorldState& world = WorldAccess::state_of(loaded.world);
     list_state(world, saved, reader);
+    reader.require_end();
     derive(file, saved, world);
-    if (compare_hash) expect_hash(file, world, reader);
+    if (compare_hash) expect_hash(file, world);
     return loaded;
+}
+
+LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings) {
+    return read_world(file.string(), read_bytes(file), settings);
 }
 
 World World::load(const std::filesystem::path& file, const LoadSettings& settings) {
     return load_world(file, settings).world;
+}
+
+World World::from_bytes(std::span<const std::byte> bytes, const LoadSettings& settings) {
+    return read_world("saved world", bytes, settings).world;
 }
 
 }  // namespace skerry

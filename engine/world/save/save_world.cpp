@@ -1,11 +1,11 @@
-#include <cstring>
 #include <ostream>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "engine/hdf5/hdf5_image.h"
 #include "engine/output/write_file.h"
-#include "engine/world/save/file_head.h"
 #include "engine/world/save/list_state.h"
+#include "engine/world/save/saved_file.h"
 #include "engine/world/save/world_file.h"
 #include "engine/world/state_hash.h"
 
@@ -13,58 +13,57 @@ namespace skerry {
 
 namespace {
 
-/// The archive (see list_state.h) that writes to a file.
-class StateWriter final : public Archive {
+/// The archive (see list_state.h) that collects the arrays of a world. Each member of a struct becomes an array.
+class ArrayLister final : public Archive {
 public:
-    explicit StateWriter(Hdf5Image& image) : image_(image) {}
-
     void column(const std::string& path, AnyColumn column) override {
-        put_rows(path, column.type(), column.read(), column.size());
+        add(path, column.type(), column.read(), column.type().bytes, column.size());
     }
+    std::vector<ArraySource> take() { return std::move(arrays_); }
 
 private:
     void put_value(const std::string& path, void* value, const RowType& type) override {
-        put_rows(path, type, static_cast<const std::byte*>(value), 1);
+        add(path, type, static_cast<const std::byte*>(value), type.bytes, 1);
     }
-    void put_rows(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) {
+    void add(const std::string& path, const RowType& type, const std::byte* first, std::size_t stride,
+             std::size_t rows) {
         if (type.members == nullptr) {
-            image_.put_rows(path, hdf5_type(type.number), count, type.width, rows);
+            arrays_.push_back({path, type.number, rows, type.width, first, stride});
             return;
         }
-        for (const Member& member : type.members()) {
-            const std::size_t bytes = member.type->bytes;
-            std::vector<std::byte> values(count * bytes);
-            for (std::size_t i = 0; i < count; ++i)
-                std::memcpy(values.data() + i * bytes, rows + i * type.bytes + member.offset, bytes);
-            put_rows(path + "/" + member.name, *member.type, values.data(), count);
-        }
+        for (const Member& member : type.members())
+            add(path + "/" + member.name, *member.type, rows == 0 ? nullptr : first + member.offset, stride, rows);
     }
 
-    Hdf5Image& image_;
+    std::vector<ArraySource> arrays_;
 };
 
 }  // namespace
 
+std::vector<std::byte> bytes_of_world(WorldState& world, const SavedNote& note) {
+    world.settle();
+    SavedRows saved = rows_to_save(world);
+    ArrayLister lister;
+    list_settings(world.model.settings, world.model.tuning, saved, lister);
+    list_state(world, saved, lister);
+    return saved_bytes(lister.take(), {.state_hash = hash_text(state_hash(world)), .note = note.text});
+}
+
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file) {
     world.require_between_steps("save");
-    world.settle();
-    Hdf5Image image(file.string());
-    SavedRows saved = rows_to_save(world);
-    StateWriter writer(image);
-    list_settings(world.model.settings, world.model.tuning, saved, writer);
-    list_state(world, saved, writer);
-    std::uint64_t hash = state_hash(world);
-    writer.value("/state_hash", hash);
-    image.put_text("/note", note.text);
-    const std::vector<char> body = image.bytes();
+    const std::vector<std::byte> bytes = bytes_of_world(world, note);
     write_file(file, [&](std::ostream& out) {
-        out << head_of(body);
-        out.write(body.data(), static_cast<std::streamsize>(body.size()));
+        out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     });
 }
 
 void World::save(const std::filesystem::path& file) const {
     save_world(*state_, {}, file);
+}
+
+std::vector<std::byte> World::to_bytes() const {
+    state_->require_between_steps("to_bytes");
+    return bytes_of_world(*state_, {});
 }
 
 }  // namespace skerry

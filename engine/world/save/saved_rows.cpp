@@ -125,14 +125,14 @@ Shape shape_of(ColliderShape kind, const std::array<Real, 6>& s, const SurfaceMe
     return mesh;
 }
 
-void expect_rows(const Hdf5File& file, const std::string& path, std::size_t found, std::size_t expected,
+void expect_rows(const SavedFile& file, const std::string& path, std::size_t found, std::size_t expected,
                  const char* of) {
     if (found != expected)
         file.complain(path, std::to_string(found) + " rows", std::to_string(expected) + ", the number of " + of);
 }
 
 template <class T>
-void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
+void expect_ragged(const SavedFile& file, const std::string& path, const Ragged<T>& rows, std::size_t count,
                    const char* of) {
     expect_rows(file, path, rows.size(), count, of);
     if (!rows.offset.empty())
@@ -143,15 +143,15 @@ void expect_ragged(const Hdf5File& file, const std::string& path, const Ragged<T
 }
 
 /// Checks that a saved mesh is valid, so that it could be added to a world.
-void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) {
-    const std::string path = "/meshes/nodes";
+void check_mesh(const SavedMeshes& meshes, std::size_t m, const SavedFile& file) {
+    const std::string path = "meshes/nodes";
     const MeshParts parts = parts_of(meshes, m);
     const auto count = static_cast<Index>(parts.nodes.size());
     const auto expect_corners = [&](const char* field, const auto& items) {
         for (const auto& item : items)
             for (const Index n : item)
                 if (n < 0 || n >= count)
-                    file.complain(std::string("/meshes/") + field,
+                    file.complain(std::string("meshes/") + field,
                                   "node " + std::to_string(n) + " of mesh " + std::to_string(m),
                                   "a node index below " + std::to_string(count));
     };
@@ -172,15 +172,15 @@ void check_mesh(const SavedMeshes& meshes, std::size_t m, const Hdf5File& file) 
 }
 
 /// Checks the lists of tetrahedra that the elements of a body cover.
-void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const Hdf5File& file) {
+void check_cover(const MeshParts& parts, std::size_t places, const std::string& body, const SavedFile& file) {
     const std::span<const Index> offset = parts.covered_offset;
     if (offset.size() != places + 1)
-        file.complain("/meshes/covered_offset", std::to_string(offset.size()) + " offsets of " + body,
+        file.complain("meshes/covered_offset", std::to_string(offset.size()) + " offsets of " + body,
                       std::to_string(places + 1) + ", one more than the elements of the body");
-    expect_all_offsets(file, "/meshes/covered_offset", offset, parts.covered_item.size(), " of " + body);
+    expect_all_offsets(file, "meshes/covered_offset", offset, parts.covered_item.size(), " of " + body);
     for (const Index t : parts.covered_item)
         if (t < 0 || t >= static_cast<Index>(parts.tetrahedra.size()))
-            file.complain("/meshes/covered_item", "tetrahedron " + std::to_string(t) + " of " + body,
+            file.complain("meshes/covered_item", "tetrahedron " + std::to_string(t) + " of " + body,
                           "a tetrahedron index below " + std::to_string(parts.tetrahedra.size()));
 }
 
@@ -197,30 +197,30 @@ std::array<Real, 12> numbers_of(const RigidPose& pose) {
     return numbers;
 }
 
-Mat3 rotation_of(const Real* numbers, const char* path, const std::string& body, const Hdf5File& file) {
+Mat3 rotation_of(const Real* numbers, const char* path, const std::string& body, const SavedFile& file) {
     const Mat3 rotation = Eigen::Map<const Mat3>(numbers);
     if (!is_rotation(rotation)) file.complain(path, "a matrix that is not a rotation for " + body, "a rotation matrix");
     return rotation;
 }
 
 /// Reads the pose at which a body was added. `body`: name of the body in messages.
-RigidPose pose_of(const std::array<Real, 12>& numbers, const std::string& body, const Hdf5File& file) {
-    return {Eigen::Map<const Vec3>(numbers.data()), rotation_of(numbers.data() + 3, "/records/body_start", body, file)};
+RigidPose pose_of(const std::array<Real, 12>& numbers, const std::string& body, const SavedFile& file) {
+    return {Eigen::Map<const Vec3>(numbers.data()), rotation_of(numbers.data() + 3, "records/body_start", body, file)};
 }
 
 /// Reads the shape of the mesh of a body that is frozen in another shape. The list is empty for all other bodies.
-void put_mesh_shape(std::span<const Vec3> shape, std::size_t body, const Hdf5File& file, Model& model) {
+void put_mesh_shape(std::span<const Vec3> shape, std::size_t body, const SavedFile& file, Model& model) {
     BodyRecord& record = model.body_records[body];
     if (shape.empty()) return;
     const std::string name = "body " + std::to_string(body);
     if (!model.is_rigid(body) || shape.size() != static_cast<std::size_t>(model.bodies.nodes[body].size()))
-        file.complain("/records/mesh_shape", std::to_string(shape.size()) + " nodes for " + name,
+        file.complain("records/mesh_shape", std::to_string(shape.size()) + " nodes for " + name,
                       "none, or one for each node of a rigid body");
     record.mesh_shape.assign(shape.begin(), shape.end());
     try {
         mesh::require_positive({.nodes = record.mesh_shape, .tetrahedra = record.tetrahedra}, name);
     } catch (const SceneError& error) {
-        file.complain("/records/mesh_shape", std::string("an invalid shape (") + error.what() + ")", "a valid mesh");
+        file.complain("records/mesh_shape", std::string("an invalid shape (") + error.what() + ")", "a valid mesh");
     }
 }
 
@@ -301,28 +301,28 @@ SavedRows rows_to_save(const WorldState& world) {
     return saved;
 }
 
-void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
+void put_records(const SavedRows& saved, const SavedFile& file, Model& model) {
     const std::size_t bodies = model.bodies.slot.size(), colliders = model.colliders.slot.size();
     const SavedMeshes& meshes = saved.meshes;
     const std::size_t count = meshes.nodes.size();
-    expect_rows(file, "/meshes/of_body", meshes.of_body.size(), bodies, "bodies");
-    expect_ragged(file, "/meshes/nodes", meshes.nodes, count, "meshes");
-    expect_ragged(file, "/meshes/tetrahedra", meshes.tetrahedra, count, "meshes");
-    expect_ragged(file, "/meshes/surface", meshes.surface, count, "meshes");
-    expect_ragged(file, "/meshes/covered_offset", meshes.covered_offset, count, "meshes");
-    expect_ragged(file, "/meshes/covered_item", meshes.covered_item, count, "meshes");
-    expect_rows(file, "/records/body_element", saved.body_element.size(), bodies, "bodies");
-    expect_rows(file, "/records/body_asked", saved.body_asked.size(), bodies, "bodies");
-    expect_rows(file, "/records/body_settled", saved.body_settled.size(), bodies, "bodies");
-    expect_rows(file, "/records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
-    expect_rows(file, "/records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
-    expect_rows(file, "/records/body_start", saved.body_start.size(), bodies, "bodies");
-    expect_rows(file, "/records/body_built", saved.body_built.size(), bodies, "bodies");
-    expect_ragged(file, "/records/mesh_shape", saved.mesh_shape, bodies, "bodies");
-    expect_ragged(file, "/records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
-    expect_rows_of(file, "/records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
-    expect_ragged(file, "/records/body_name", saved.body_name, bodies, "bodies");
-    if (saved.world == 0) file.complain("/handles/world", "0", "the number of a world, an integer > 0");
+    expect_rows(file, "meshes/of_body", meshes.of_body.size(), bodies, "bodies");
+    expect_ragged(file, "meshes/nodes", meshes.nodes, count, "meshes");
+    expect_ragged(file, "meshes/tetrahedra", meshes.tetrahedra, count, "meshes");
+    expect_ragged(file, "meshes/surface", meshes.surface, count, "meshes");
+    expect_ragged(file, "meshes/covered_offset", meshes.covered_offset, count, "meshes");
+    expect_ragged(file, "meshes/covered_item", meshes.covered_item, count, "meshes");
+    expect_rows(file, "records/body_element", saved.body_element.size(), bodies, "bodies");
+    expect_rows(file, "records/body_asked", saved.body_asked.size(), bodies, "bodies");
+    expect_rows(file, "records/body_settled", saved.body_settled.size(), bodies, "bodies");
+    expect_rows(file, "records/choice_reason", saved.choice_reason.size(), bodies, "bodies");
+    expect_rows(file, "records/choice_estimate", saved.choice_estimate.size(), bodies, "bodies");
+    expect_rows(file, "records/body_start", saved.body_start.size(), bodies, "bodies");
+    expect_rows(file, "records/body_built", saved.body_built.size(), bodies, "bodies");
+    expect_ragged(file, "records/mesh_shape", saved.mesh_shape, bodies, "bodies");
+    expect_ragged(file, "records/tetrahedron_material", saved.tetrahedron_material, bodies, "bodies");
+    expect_rows_of(file, "records/tetrahedron_material", saved.tetrahedron_material.item, model.materials.slot.size());
+    expect_ragged(file, "records/body_name", saved.body_name, bodies, "bodies");
+    if (saved.world == 0) file.complain("handles/world", "0", "the number of a world, an integer > 0");
     model.set_world(saved.world);
     for (std::size_t m = 0; m < count; ++m) check_mesh(meshes, m, file);
 
@@ -331,19 +331,19 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         const std::string body = "body " + std::to_string(b);
         const Index m = meshes.of_body[b];
         if (m < 0 || m >= static_cast<Index>(count))
-            file.complain("/meshes/of_body", std::to_string(m) + " for " + body,
+            file.complain("meshes/of_body", std::to_string(m) + " for " + body,
                           "the index of one of the " + std::to_string(count) + " meshes");
         const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(m));
         const Range nodes = model.bodies.nodes[b];
         const bool deforms = model.bodies.kind[b] == BodyKind::deformable;
         if (parts.nodes.size() != static_cast<std::size_t>(nodes.size()) || deforms == parts.tetrahedra.empty() ||
             static_cast<Index>(parts.tetrahedra.size()) != model.bodies.tetrahedron_count[b])
-            file.complain("/meshes/of_body",
+            file.complain("meshes/of_body",
                           "a mesh with " + std::to_string(parts.nodes.size()) + " nodes and " +
                               std::to_string(parts.tetrahedra.size()) + " tetrahedra for " + body,
                           std::to_string(nodes.size()) + " nodes and " +
                               std::to_string(model.bodies.tetrahedron_count[b]) +
-                              " tetrahedra, as in /bodies (no tetrahedra only for a mesh collider)");
+                              " tetrahedra, as in bodies (no tetrahedra only for a mesh collider)");
         check_cover(parts, static_cast<std::size_t>(model.bodies.blocks[b].size()) * element_lanes, body, file);
         std::ranges::copy(parts.nodes, model.nodes.rest_position.begin() + nodes.begin);
         BodyRecord& record = model.body_records.emplace_back();
@@ -353,34 +353,34 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         record.settled = saved.body_settled[b] != 0;
         const std::array<Real, 7>& e = saved.choice_estimate[b];
         if (std::ranges::any_of(e, [](Real value) { return !(value >= 0); }))
-            file.complain("/records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");
+            file.complain("records/choice_estimate", "a negative number or NaN for " + body, "numbers >= 0");
         record.choice = {saved.choice_reason[b], e[0], e[1], e[2], e[3], e[4], e[5], e[6]};
         record.start = pose_of(saved.body_start[b], body, file);
-        record.built = rotation_of(saved.body_built[b].data(), "/records/body_built", body, file);
+        record.built = rotation_of(saved.body_built[b].data(), "records/body_built", body, file);
         record.tetrahedra.assign(parts.tetrahedra.begin(), parts.tetrahedra.end());
         put_mesh_shape(saved.mesh_shape[b], b, file, model);
         record.surface.assign(parts.surface.begin(), parts.surface.end());
         const std::span<const Index> materials = saved.tetrahedron_material[b];
         if (!materials.empty() && materials.size() != parts.tetrahedra.size())
-            file.complain("/records/tetrahedron_material", std::to_string(materials.size()) + " materials for " + body,
+            file.complain("records/tetrahedron_material", std::to_string(materials.size()) + " materials for " + body,
                           "none, or one for each of " + std::to_string(parts.tetrahedra.size()) + " tetrahedra");
         record.tetrahedron_material.assign(materials.begin(), materials.end());
         for (const Index at : parts.covered_offset) record.element_tetrahedra.offset.push_back(at);
         for (const Index t : parts.covered_item) record.element_tetrahedra.item.push_back(t);
     }
 
-    expect_rows(file, "/records/shape_kind", saved.shape_kind.size(), colliders, "colliders");
-    expect_rows(file, "/records/shape_size", saved.shape_size.size(), colliders, "colliders");
-    expect_ragged(file, "/records/collider_name", saved.collider_name, colliders, "colliders");
-    expect_rows(file, "/records/collider_settled", saved.collider_settled.size(), colliders, "colliders");
+    expect_rows(file, "records/shape_kind", saved.shape_kind.size(), colliders, "colliders");
+    expect_rows(file, "records/shape_size", saved.shape_size.size(), colliders, "colliders");
+    expect_ragged(file, "records/collider_name", saved.collider_name, colliders, "colliders");
+    expect_rows(file, "records/collider_settled", saved.collider_settled.size(), colliders, "colliders");
     for (std::size_t c = 0; c < colliders; ++c) {
         SurfaceMesh mesh;
         const Index body = model.colliders.body[c];
         if ((body == no_index) == (saved.shape_kind[c] == ColliderShape::mesh) ||
             model.colliders.geometry[c].shape != saved.shape_kind[c])
-            file.complain("/records/shape_kind",
+            file.complain("records/shape_kind",
                           "a shape of collider " + std::to_string(c) + " that contradicts the table of colliders",
-                          "the shape in /colliders/geometry/shape, a mesh only for a collider with a body");
+                          "the shape in colliders/geometry/shape, a mesh only for a collider with a body");
         if (body != no_index) {
             const MeshParts parts = parts_of(meshes, static_cast<std::size_t>(meshes.of_body[body]));
             mesh = {{parts.nodes.begin(), parts.nodes.end()}, {parts.surface.begin(), parts.surface.end()}};
@@ -389,7 +389,7 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
         try {
             validate(shape, ColliderSettings{});
         } catch (const SceneError& error) {
-            file.complain("/records/shape_size",
+            file.complain("records/shape_size",
                           "an invalid shape of collider " + std::to_string(c) + " (" + error.what() + ")",
                           "a valid shape");
         }
@@ -398,9 +398,9 @@ void put_records(const SavedRows& saved, const Hdf5File& file, Model& model) {
     }
 }
 
-void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs) {
-    expect_ragged(file, "/pairs/candidates", saved.candidates, pairs.size(), "pairs");
-    expect_rows(file, "/pairs/candidates/asleep_until", saved.asleep_until.size(), saved.candidates.item.size(),
+void put_candidates(const SavedRows& saved, const SavedFile& file, const Model& model, PairTable& pairs) {
+    expect_ragged(file, "pairs/candidates", saved.candidates, pairs.size(), "pairs");
+    expect_rows(file, "pairs/candidates/asleep_until", saved.asleep_until.size(), saved.candidates.item.size(),
                 "candidates");
     pairs.candidates.resize(pairs.size());
     pairs.asleep_until.resize(pairs.size());
@@ -415,15 +415,15 @@ void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& m
     check_candidates(file, model, pairs);
 }
 
-void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits) {
+void put_limits(const SavedRows& saved, const SavedFile& file, StepLimits& limits) {
     const std::size_t count = saved.limit.size();
     constexpr const char* of = "limits";
-    expect_rows(file, "/run/limits/slot", saved.limit_slot.size(), count, of);
-    expect_rows(file, "/run/limits/generation", saved.limit_generation.size(), count, of);
-    expect_ragged(file, "/run/limits/name", saved.limit_name, count, of);
-    expect_rows(file, "/run/limits/steps", saved.limit_steps.size(), count, of);
-    expect_rows(file, "/run/limits/tries", saved.limit_tries.size(), count, of);
-    expect_rows(file, "/run/limits/seconds", saved.limit_seconds.size(), count, of);
+    expect_rows(file, "run/limits/slot", saved.limit_slot.size(), count, of);
+    expect_rows(file, "run/limits/generation", saved.limit_generation.size(), count, of);
+    expect_ragged(file, "run/limits/name", saved.limit_name, count, of);
+    expect_rows(file, "run/limits/steps", saved.limit_steps.size(), count, of);
+    expect_rows(file, "run/limits/tries", saved.limit_tries.size(), count, of);
+    expect_rows(file, "run/limits/seconds", saved.limit_seconds.size(), count, of);
     std::vector<StepLimitReport> entries(count);
     for (std::size_t i = 0; i < count; ++i)
         entries[i] = {.limit = saved.limit[i],
@@ -435,16 +435,16 @@ void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits
     limits.restore(std::move(entries));
 }
 
-void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record) {
+void put_start(const SavedRows& saved, const SavedFile& file, RunRecord& record) {
     const SavedStart& start = saved.start;
     const std::size_t overlaps = start.overlap.size(), moves = start.moved.size();
-    expect_rows(file, "/run/start/kind", start.kind.size(), overlaps, "overlaps");
-    expect_rows(file, "/run/start/measure", start.measure.size(), overlaps, "overlaps");
-    expect_rows(file, "/run/start/resolved", start.resolved.size(), overlaps, "overlaps");
-    expect_ragged(file, "/run/start/first_name", start.first_name, overlaps, "overlaps");
-    expect_ragged(file, "/run/start/second_name", start.second_name, overlaps, "overlaps");
-    expect_ragged(file, "/run/start/moved_name", start.moved_name, moves, "moves");
-    expect_rows(file, "/run/start/translation", start.translation.size(), moves, "moves");
+    expect_rows(file, "run/start/kind", start.kind.size(), overlaps, "overlaps");
+    expect_rows(file, "run/start/measure", start.measure.size(), overlaps, "overlaps");
+    expect_rows(file, "run/start/resolved", start.resolved.size(), overlaps, "overlaps");
+    expect_ragged(file, "run/start/first_name", start.first_name, overlaps, "overlaps");
+    expect_ragged(file, "run/start/second_name", start.second_name, overlaps, "overlaps");
+    expect_ragged(file, "run/start/moved_name", start.moved_name, moves, "moves");
+    expect_rows(file, "run/start/translation", start.translation.size(), moves, "moves");
     for (std::size_t i = 0; i < overlaps; ++i) {
         const auto& of = start.overlap[i];
         const auto& m = start.measure[i];
@@ -465,14 +465,14 @@ void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record) 
                                       .translation = start.translation[i]});
 }
 
-void put_self_crossings(const SavedRows& saved, const Hdf5File& file, RunRecord& record) {
+void put_self_crossings(const SavedRows& saved, const SavedFile& file, RunRecord& record) {
     const SavedSelfCrossings& found = saved.self_crossings;
     const std::size_t count = found.body.size();
     constexpr const char* of = "bodies that cross themselves";
-    expect_ragged(file, "/run/self_crossings/name", found.name, count, of);
-    expect_rows(file, "/run/self_crossings/self_contact", found.self_contact.size(), count, of);
-    expect_rows(file, "/run/self_crossings/time", found.time.size(), count, of);
-    expect_rows(file, "/run/self_crossings/places", found.places.size(), count, of);
+    expect_ragged(file, "run/self_crossings/name", found.name, count, of);
+    expect_rows(file, "run/self_crossings/self_contact", found.self_contact.size(), count, of);
+    expect_rows(file, "run/self_crossings/time", found.time.size(), count, of);
+    expect_rows(file, "run/self_crossings/places", found.places.size(), count, of);
     for (std::size_t i = 0; i < count; ++i)
         record.self_crossings.push_back({.body = handle_of<BodyHandle>(found.body[i][0], found.body[i][1], saved.world),
                                          .name = text_of(found.name[i]),

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "components/ragged.h"
-#include "engine/hdf5/hdf5_file.h"
+#include "engine/world/save/saved_file.h"
 #include "engine/world/world_state.h"
 
 namespace skerry {
@@ -75,11 +75,11 @@ SavedRows rows_to_save(const WorldState& world);
 // with the columns of the world.
 
 /// Restores meshes and names of bodies and colliders. Must be called after the ranges of the bodies were checked.
-void put_records(const SavedRows& saved, const Hdf5File& file, Model& model);
+void put_records(const SavedRows& saved, const SavedFile& file, Model& model);
 /// Restores the contact candidates of pairs. Must be called after the surfaces were built.
-void put_candidates(const SavedRows& saved, const Hdf5File& file, const Model& model, PairTable& pairs);
-void put_limits(const SavedRows& saved, const Hdf5File& file, StepLimits& limits);
-void put_start(const SavedRows& saved, const Hdf5File& file, RunRecord& record);
-void put_self_crossings(const SavedRows& saved, const Hdf5File& file, RunRecord& record);
+void put_candidates(const SavedRows& saved, const SavedFile& file, const Model& model, PairTable& pairs);
+void put_limits(const SavedRows& saved, const SavedFile& file, StepLimits& limits);
+void put_start(const SavedRows& saved, const SavedFile& file, RunRecord& record);
+void put_self_crossings(const SavedRows& saved, const SavedFile& file, RunRecord& record);
 
 }  // namespace skerry

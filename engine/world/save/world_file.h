@@ -1,7 +1,9 @@
-// Files that hold a whole world (docs/save_restore.md): a text that identifies the file, followed by an HDF5 part.
+// Files that hold a whole world (docs/save_restore.md).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "engine/world/world_state.h"
@@ -20,8 +22,12 @@ struct LoadedWorld {
     World world;
     SavedNote note;
 };
-/// Implementation of World::load. If `compare_hash` is true, a world whose hash differs from the saved hash is refused.
-/// Tests of the reading code pass false, so that all consistent values are accepted.
-LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings, bool compare_hash = true);
+/// Implementation of World::load.
+LoadedWorld load_world(const std::filesystem::path& file, const LoadSettings& settings);
+/// Implementation of World::from_bytes. `name` stands for the file in messages. If `compare_hash` is true, a world
+/// whose hash differs from the saved hash is refused. Tests of the reading code pass false, so that all consistent
+/// values are accepted.
+LoadedWorld read_world(const std::string& name, std::span<const std::byte> bytes, const LoadSettings& settings,
+                       bool compare_hash = true);
 
 }  // namespace skerry

@@ -375,6 +375,67 @@ TEST_CASE("assignments that cannot be carried out are refused by what is wrong w
     }
 }
 
+TEST_CASE("a scene in a text is read like a file in the given folder", "[unit]") {
+    const TemporaryFolder folder;
+    folder.write("materials.json", R"({"materials": {"steel": {"E": 2e11}}})");
+    folder.write("mesh.node", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n");
+    folder.write("mesh.ele", "1 4 0\n1 1 2 3 4\n");
+    const std::string text = R"({"include": "materials.json",
+        "bodies": [{"name": "b", "mesh": {"file": "mesh.node"}, "material": "steel"}]})";
+    const Scene scene = load_scene_text(text, folder.path());
+    const Scene of_file = load_scene(folder.write("scene.json", text));
+    CHECK(scene.name == "scene");
+    CHECK(scene.world.state_hash() == of_file.world.state_hash());
+    CHECK(load_scene_text(text, folder.path(), {.assignments = {"name=given"}}).name == "given");
+    const Scene short_scene = load_scene_text(scene_with(""), folder.path(), {.step_size = 1e-5});
+    CHECK(short_scene.world.settings().step_size == 1e-5);
+    CHECK_THROWS_WITH(load_scene_text("", folder.path()), "scene: found an empty file, expected a scene in JSON");
+    CHECK_THROWS_WITH(load_scene_text(scene_with(R"("colour": 1)"), folder.path()),
+                      Catch::StartsWith("scene: colour: found an unknown key"));
+    CHECK_THROWS_WITH(load_scene_text(R"({"include": "none.json"})", folder.path()),
+                      Catch::StartsWith("scene: include: ") && Catch::Contains((folder.path() / "none.json").string()));
+    CHECK_THROWS_WITH(load_scene_text(R"({"materials": {}})", folder.path()),
+                      Catch::StartsWith("scene: bodies: found"));
+}
+
+namespace {
+
+/// Parts of the error from building a scene out of a text.
+Complaint parts_about(const std::string& text) {
+    try {
+        load_scene_text(text, {});
+    } catch (const SceneError& error) {
+        return error.complaint();
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("an error carries the parts of its message", "[unit]") {
+    const Complaint unknown = parts_about(scene_with(R"("colider": [])"));
+    CHECK(unknown.file == "scene");
+    CHECK(unknown.field == "colider");
+    CHECK(unknown.found == "an unknown key");
+    CHECK_THAT(unknown.expected, Catch::StartsWith("one of"));
+    CHECK(unknown.hint == "did you mean \"colliders\"?");
+    const Complaint no_json = parts_about("{\n\"name\" 3}");
+    CHECK(no_json.file == "scene");
+    CHECK_THAT(no_json.object, Catch::StartsWith("line 2, column"));
+    CHECK_THAT(no_json.found, Catch::StartsWith("text that is not valid JSON"));
+    // The world finds this error. The scene adds the place.
+    const Complaint inner = parts_about(
+        R"({"materials": {"m": {}}, "bodies": [{"name": "block", "material": "m",
+            "shape": {"sphere": {"radius": 1}}, "dynamics": "explicit"}]})");
+    CHECK(inner.file == "scene");
+    CHECK(inner.object == "body \"block\"");
+    CHECK(inner.field == "bodies[0]: dynamics");
+    CHECK_THAT(inner.found, Catch::Contains("explicit"));
+    const SceneError plain("a text");
+    CHECK(plain.complaint().text().empty());
+    CHECK(std::string(plain.what()) == "a text");
+}
+
 TEST_CASE("the published schema is the one that this reader has", "[unit][contract]") {
     std::ifstream file(std::filesystem::path(SKERRY_SOURCE_DIR) / "docs/scene.schema.json");
     std::ostringstream text;

@@ -8,7 +8,6 @@
 #include "components/types.h"
 #include "engine/world/save/world_file.h"
 #include "skerry/joint.h"
-#include "skerry/problem.h"
 #include "tests/support/lively_scene.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/world_file_damage.h"
@@ -27,22 +26,26 @@ World full_world() {
     return world;
 }
 
-struct SavedFile {
+using Bytes = std::vector<std::byte>;
+
+struct FileOfWorld {
     TemporaryFolder folder;
     std::string path;
-    std::vector<char> bytes;
+    Bytes bytes;
 
-    explicit SavedFile(const World& world) : path((folder.path() / "world.h5").string()) {
+    explicit FileOfWorld(const World& world) : path((folder.path() / "world.skerry").string()) {
         world.save(path);
-        std::ifstream in(path, std::ios::binary);
-        bytes.assign(std::istreambuf_iterator<char>(in), {});
+        const std::string content = content_of(path);
+        const auto begin = reinterpret_cast<const std::byte*>(content.data());
+        bytes.assign(begin, begin + content.size());
     }
-    void write(std::span<const char> content) const {
-        std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+    static std::string content_of(const std::filesystem::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
     }
     /// Error message of World::load for the content.
-    std::string refusal(std::span<const char> content) const {
-        write(content);
+    std::string refusal(std::string_view content) const {
+        std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
         try {
             World::load(path);
         } catch (const SceneError& error) {
@@ -50,90 +53,159 @@ struct SavedFile {
         }
         return {};
     }
+    std::string refusal(std::span<const std::byte> content) const {
+        return refusal(std::string_view(reinterpret_cast<const char*>(content.data()), content.size()));
+    }
 };
-
-std::span<const char> text(const std::string& content) {
-    return content;
-}
 
 }  // namespace
 
 TEST_CASE("a saved world that was cut off anywhere is refused by its size", "[unit][long]") {
-    const SavedFile saved(full_world());
+    const FileOfWorld saved(full_world());
     SplitMix random(1);
     for (int i = 0; i < 200; ++i) {
         const std::size_t size = random.next() % saved.bytes.size();
         const std::string refusal = saved.refusal(std::span(saved.bytes).first(size));
         INFO(refusal);
         CHECK(refusal.starts_with(saved.path + ": found "));
-        if (size >= head_bytes) {
+        if (size >= start_bytes) {
             CHECK_THAT(refusal, Contains(std::to_string(size) + " bytes"));
             CHECK_THAT(refusal, Contains(std::to_string(saved.bytes.size())));
         }
     }
-    std::vector<char> longer = saved.bytes;
-    longer.push_back(0);
+    Bytes longer = saved.bytes;
+    longer.push_back(std::byte{0});
     CHECK_THAT(saved.refusal(longer), Contains("the file has extra bytes at its end"));
     CHECK(saved.refusal(saved.bytes).empty());
 }
 
 TEST_CASE("a saved world of which any bit was turned over is refused", "[unit][long]") {
-    const SavedFile saved(full_world());
+    const FileOfWorld saved(full_world());
     SplitMix random(2);
-    std::vector<char> bytes = saved.bytes;
+    Bytes bytes = saved.bytes;
     const auto turn_over = [&](std::size_t at, int bit) {
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << bit));
+        bytes[at] ^= std::byte{1} << bit;
         const std::string refusal = saved.refusal(bytes);
         CAPTURE(at, bit);
         CHECK(refusal.starts_with(saved.path + ": found "));
         bytes[at] = saved.bytes[at];
     };
-    for (std::size_t at = 0; at < head_bytes; at += 3) turn_over(at, static_cast<int>(at % 8));
+    for (std::size_t at = 0; at < start_bytes; at += 3) turn_over(at, static_cast<int>(at % 8));
     for (int i = 0; i < 300; ++i) turn_over(random.next() % bytes.size(), static_cast<int>(random.next() % 8));
     CHECK(saved.refusal(bytes).empty());
 }
 
 TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
-    const SavedFile saved(full_world());
-    CHECK_THAT(saved.refusal(text("")), Contains("found a file of another kind, expected a world that Skerry saved"));
-    CHECK_THAT(saved.refusal(text("{\"bodies\": []}")), Contains("expected a world that Skerry saved, version 24"));
-    CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(head_bytes)), Contains("a file of another kind"));
-    std::vector<char> other = saved.bytes;
-    const std::string name = "version 24";
-    *(std::search(other.begin(), other.end(), name.begin(), name.end()) + 8) = '1';
-    CHECK_THAT(saved.refusal(other), Contains("found version 14, expected version 24"));
+    const FileOfWorld saved(full_world());
+    CHECK_THAT(saved.refusal(""), Contains("found a file of another kind, expected a world that Skerry saved"));
+    CHECK_THAT(saved.refusal("{\"bodies\": []}"), Contains("expected a world that Skerry saved, version 25"));
+    CHECK_THAT(saved.refusal(std::span(saved.bytes).subspan(start_bytes)), Contains("a file of another kind"));
+    Bytes other = saved.bytes;
+    const auto begin = reinterpret_cast<const char*>(other.data());
+    const std::string name = "version 25";
+    const auto place = std::search(begin, begin + other.size(), name.begin(), name.end()) - begin;
+    other[static_cast<std::size_t>(place) + 8] = std::byte{'1'};
+    CHECK_THAT(saved.refusal(other), Contains("found version 15, expected version 25"));
+    CHECK_THAT(saved.refusal("Skerry world, version 24\nAn HDF5 file of 8000 bytes begins at byte 512.\n"),
+               Contains("found version 24, expected version 25"));
     CHECK_THROWS_WITH(World::load(saved.folder.path()), Contains("found a folder or device"));
     CHECK_THROWS_WITH(World::load(saved.folder.path() / "none"), Contains("no such file"));
-    // HDF5 with a valid head but with unexpected contents
-    ContactProblem problem;
-    problem.q = {Vec3(0, 0, -1)};
-    problem.mu = {0.5};
-    problem.row_offset = {0, 1};
-    problem.column = {0};
-    problem.block = {Mat3::Identity()};
-    const auto file = saved.folder.path() / "problem.hdf5";
-    write_problem(problem, file);
-    std::ifstream in(file, std::ios::binary);
-    std::vector<char> foreign(head_bytes, 0);
-    foreign.insert(foreign.end(), std::istreambuf_iterator<char>(in), {});
-    renew_head(foreign);
-    CHECK_THAT(saved.refusal(foreign), Contains("/settings: gravity: found nothing, expected rows of 3 reals"));
+}
+
+TEST_CASE("a saved world whose header is not that of a saved world is refused, although its checksum is right",
+          "[unit]") {
+    const FileOfWorld saved(full_world());
+    const auto content = reinterpret_cast<const char*>(saved.bytes.data());
+    const std::string_view whole(content, saved.bytes.size());
+    // Replaces a text in the header by a text of the same length.
+    const auto refusal = [&](const std::string& before, const std::string& after) {
+        const std::size_t place = whole.find(before);
+        REQUIRE(place != std::string_view::npos);
+        REQUIRE(before.size() == after.size());
+        Bytes bytes = saved.bytes;
+        std::memcpy(bytes.data() + place, after.data(), after.size());
+        renew_checksum(bytes);
+        const std::string message = saved.refusal(bytes);
+        CHECK(message.starts_with(saved.path + ": "));
+        return message;
+    };
+    const std::string position = R"("nodes/position":{"dtype":"F64","shape":[)";
+    const std::size_t at = whole.find(position) + position.size();
+    const std::string rows(whole.substr(at, whole.find(']', at) - at));
+    const std::string offsets = rows + R"(],"data_offsets":[)";
+    const std::size_t begin = whole.find(position + offsets) + position.size() + offsets.size();
+    const std::string range(whole.substr(begin, whole.find(']', begin) - begin));
+
+    CHECK_THAT(refusal("nodes/position", "nodes/velocity"), Contains("expected an array with another name"));
+    CHECK_THAT(refusal("nodes/position", "nodes/Position"), Contains("nodes: position: found nothing, expected rows"));
+    CHECK_THAT(refusal("search/rebase", "search/REBASE"), Contains("search: rebase: found nothing"));
+    CHECK_THAT(refusal(position, R"("nodes/position":{"dtype":"I64","shape":[)"),
+               Contains("expected one of the types"));
+    CHECK_THAT(refusal(position, R"("nodes/position":{"dtype":"U64","shape":[)"),
+               Contains("nodes: position: found rows of 3 integers of 8 bytes, expected rows of 3 reals of 8 bytes"));
+    CHECK_THAT(refusal(position, R"("nodes/position":{"dtype":"F64","shave":[)"), Contains("expected ,\"shape\":["));
+    CHECK_THAT(refusal(position + rows, position + (rows[0] == '9' ? "8" : "9") + rows.substr(1)),
+               Contains("within the file"));
+    CHECK_THAT(refusal(position + rows, position + std::string(rows.size() - 2, '9') + ",0"),
+               Contains("expected a shape of at most 2147483647"));
+    CHECK_THAT(refusal(position + offsets + range, position + offsets + " " + range.substr(1)),
+               Contains("header: found other text") && Contains("],\"data_offsets\":["));
+    const std::string gap = position + offsets + (range[0] == '9' ? "8" : "9") + range.substr(1);
+    CHECK_THAT(refusal(position + offsets + range, gap), Contains("header: found other text"));
+    CHECK_THAT(refusal("\"note\":\"\"}", "\"note\":\"}\""), Contains("header: found other text at byte"));
+    CHECK_THAT(refusal("\"note\"", "\"npte\""), Contains("expected ,\"note\":\""));
+}
+
+TEST_CASE("a world in memory has the bytes of its file, and is read like a file", "[unit]") {
+    const World world = full_world();
+    const FileOfWorld saved(world);
+    const Bytes bytes = world.to_bytes();
+    CHECK(bytes == saved.bytes);
+    World again = World::from_bytes(bytes, {.threads = 2});
+    CHECK(again.state_hash() == world.state_hash());
+    CHECK(again.settings().threads == 2);
+    CHECK(again.to_bytes().size() == bytes.size());
+    CHECK_THROWS_WITH(World::from_bytes(std::span(bytes).first(bytes.size() - 1)),
+                      Contains("saved world: found " + std::to_string(bytes.size() - 1) + " bytes"));
+    CHECK_THROWS_WITH(World::from_bytes({}), Contains("saved world: found a file of another kind"));
+    CHECK_THROWS_WITH(again.advance(0.01,
+                                    [&](const StepReport&) {
+                                        again.to_bytes();
+                                        return true;
+                                    }),
+                      Contains("to_bytes"));
+}
+
+TEST_CASE("a text that is saved with a world comes back unchanged", "[unit]") {
+    World world;
+    const TemporaryFolder folder;
+    const std::string note = "a \"quoted\" \\ path\n\tand \x01 \xc3\xa9";
+    save_world(WorldAccess::state_of(world), {note}, folder.path() / "w");
+    CHECK(load_world(folder.path() / "w", {}).note.text == note);
+}
+
+TEST_CASE("all numbers of a saved world are aligned in memory", "[unit]") {
+    const Bytes bytes = full_world().to_bytes();
+    for (const ValuesInFile& values : values_in(bytes)) {
+        CAPTURE(values.path);
+        CHECK(values.begin % values.number_bytes == 0);
+    }
 }
 
 TEST_CASE(
     "wrong values in a saved world whose checksum is right are refused, or change nothing that the next step sees",
     "[unit][slow]") {
     const World world = full_world();
-    const SavedFile saved(world);
-    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    const FileOfWorld saved(world);
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
     REQUIRE(sets.size() > 150);
     int refused = 0, named = 0, taken = 0;
     SplitMix random(3);
     for (const ValuesInFile& values : sets)
         for (int i = 0; i < 4; ++i) {
-            std::vector<char> bytes = saved.bytes;
+            Bytes bytes = saved.bytes;
             change_value(values, random.next(), static_cast<unsigned>(random.next() % 10), bytes);
-            renew_head(bytes);
+            renew_checksum(bytes);
             CAPTURE(values.path);
             const std::string refusal = saved.refusal(bytes);
             const std::size_t slash = values.path.rfind('/');
@@ -151,32 +223,32 @@ TEST_CASE(
 }
 
 TEST_CASE("a saved world in which values do not fit together is refused by name", "[unit]") {
-    const SavedFile saved(full_world());
-    const std::vector<ValuesInFile> sets = values_in(saved.path);
+    const FileOfWorld saved(full_world());
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
     const auto refusal = [&](const std::string& path, std::size_t place, unsigned choice) {
         const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
         REQUIRE(set != sets.end());
-        std::vector<char> bytes = saved.bytes;
+        Bytes bytes = saved.bytes;
         change_value(*set, place, choice, bytes);
-        renew_head(bytes);
+        renew_checksum(bytes);
         return saved.refusal(bytes);
     };
     constexpr unsigned huge = 7, none = 7, infinite = 8, minus_one = 8;
-    CHECK_THAT(refusal("/nodes/position", 4, none), Contains("/nodes: position: found nan at row 1, expected finite"));
-    CHECK_THAT(refusal("/nodes/velocity", 0, infinite), Contains("/nodes: velocity: found inf at row 0"));
-    CHECK_THAT(refusal("/elements/material", 3, huge), Contains("/elements: material: found 2147483647 at row 3"));
-    CHECK_THAT(refusal("/element_nodes/node", 9, minus_one), Contains("/element_nodes: node: found node -1 at row 1"));
-    CHECK_THAT(refusal("/bodies/nodes", 1, huge), Contains("at row 1, expected a range that begins at 2147483647"));
-    CHECK_THAT(refusal("/bodies/kind", 0, 3), Contains("/bodies: kind: found 3 at row 0, expected 0 to 1"));
-    CHECK_THAT(refusal("/handles/bodies/row", 0, huge), Contains("/handles/bodies: row: found 2147483647"));
-    CHECK_THAT(refusal("/meshes/tetrahedra/item", 0, huge), Contains("/meshes: tetrahedra: found node 2147483647"));
-    CHECK_THAT(refusal("/pairs/candidates/first", 0, huge), Contains("/pairs/candidates: first: found"));
-    CHECK_THAT(refusal("/last_step/contacts/stencil/node", 0, huge),
-               Contains("/last_step/contacts/stencil: node: found"));
-    CHECK_THAT(refusal("/records/body_built", 0, none), Contains("/records: body_built"));
-    CHECK_THAT(refusal("/settings/method", 0, 5), Contains("/settings: method: found 255"));
-    CHECK_THAT(refusal("/settings/tolerance", 0, 1), Contains("tolerance: found -1"));
-    CHECK_THAT(refusal("/materials/young_modulus", 0, 2), Contains("state_hash"));
+    CHECK_THAT(refusal("nodes/position", 4, none), Contains("nodes: position: found nan at row 1, expected finite"));
+    CHECK_THAT(refusal("nodes/velocity", 0, infinite), Contains("nodes: velocity: found inf at row 0"));
+    CHECK_THAT(refusal("elements/material", 3, huge), Contains("elements: material: found 2147483647 at row 3"));
+    CHECK_THAT(refusal("element_nodes/node", 9, minus_one), Contains("element_nodes: node: found node -1 at row 1"));
+    CHECK_THAT(refusal("bodies/nodes", 1, huge), Contains("at row 1, expected a range that begins at 2147483647"));
+    CHECK_THAT(refusal("bodies/kind", 0, 3), Contains("bodies: kind: found 3 at row 0, expected 0 to 1"));
+    CHECK_THAT(refusal("handles/bodies/row", 0, huge), Contains("handles/bodies: row: found 2147483647"));
+    CHECK_THAT(refusal("meshes/tetrahedra/item", 0, huge), Contains("meshes: tetrahedra: found node 2147483647"));
+    CHECK_THAT(refusal("pairs/candidates/first", 0, huge), Contains("pairs/candidates: first: found"));
+    CHECK_THAT(refusal("last_step/contacts/stencil/node", 0, huge),
+               Contains("last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("records/body_built", 0, none), Contains("records: body_built"));
+    CHECK_THAT(refusal("settings/method", 0, 5), Contains("settings: method: found 255"));
+    CHECK_THAT(refusal("settings/tolerance", 0, 1), Contains("tolerance: found -1"));
+    CHECK_THAT(refusal("materials/young_modulus", 0, 2), Contains("state_hash"));
 }
 
 TEST_CASE("a saved world in which two motors share their keys is refused", "[unit]") {
@@ -189,38 +261,38 @@ TEST_CASE("a saved world in which two motors share their keys is refused", "[uni
         const JointMotor motor{.strength = 1, .keys = {{.time = 0, .speed = 1}, {.time = 1, .speed = 2}}};
         Joints(world).add({.kind = JointKind::hinge, .first = body, .motor = motor});
     }
-    const SavedFile saved(world);
+    const FileOfWorld saved(world);
     CHECK(saved.refusal(saved.bytes).empty());
-    const std::vector<ValuesInFile> sets = values_in(saved.path);
-    const auto keys = std::ranges::find(sets, "/joints/motor_keys", &ValuesInFile::path);
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
+    const auto keys = std::ranges::find(sets, "joints/motor_keys", &ValuesInFile::path);
     REQUIRE(keys != sets.end());
-    std::vector<char> bytes = saved.bytes;
+    Bytes bytes = saved.bytes;
     std::memcpy(bytes.data() + keys->begin + sizeof(Range), bytes.data() + keys->begin, sizeof(Range));
-    renew_head(bytes);
-    CHECK_THAT(saved.refusal(bytes), Contains("/joints: motor_keys: found a range of keys that begins at row 0"));
+    renew_checksum(bytes);
+    CHECK_THAT(saved.refusal(bytes), Contains("joints: motor_keys: found a range of keys that begins at row 0"));
 }
 
 TEST_CASE("a saved world with a self-contact but without positions of its last search is refused", "[unit]") {
-    const SavedFile saved(full_world());
-    const std::vector<ValuesInFile> sets = values_in(saved.path);
-    std::vector<char> bytes = saved.bytes;
+    const FileOfWorld saved(full_world());
+    const std::vector<ValuesInFile> sets = values_in(saved.bytes);
+    Bytes bytes = saved.bytes;
     const auto values = [&](const std::string& path) {
         const auto set = std::ranges::find(sets, path, &ValuesInFile::path);
         REQUIRE(set != sets.end());
         return *set;
     };
     // The first pair becomes a self-contact of its first body.
-    const ValuesInFile first = values("/pairs/first"), second = values("/pairs/second");
+    const ValuesInFile first = values("pairs/first"), second = values("pairs/second");
     std::memcpy(bytes.data() + second.begin, bytes.data() + first.begin, first.number_bytes);
     constexpr unsigned self = 2;
-    change_value(values("/pairs/kind"), 0, self, bytes);
-    renew_head(bytes);
-    CHECK_THAT(saved.refusal(bytes), Contains("/pairs: self_origin: found 0 rows"));
+    change_value(values("pairs/kind"), 0, self, bytes);
+    renew_checksum(bytes);
+    CHECK_THAT(saved.refusal(bytes), Contains("pairs: self_origin: found 0 rows"));
 }
 
 TEST_CASE("a world that cannot be written stays, and so does the file before it", "[unit]") {
     const World world = full_world();
-    const SavedFile saved(world);
+    const FileOfWorld saved(world);
     std::filesystem::create_directory(saved.path + ".part");  // blocks the path of the temporary file
     CHECK_THROWS_WITH(world.save(saved.path), Contains(saved.path));
     CHECK(World::load(saved.path).state_hash() == world.state_hash());
@@ -233,7 +305,7 @@ TEST_CASE("what was chosen, and by what, is kept in files", "[scene]") {
     const auto steel = world.add_material({.young_modulus = 2e11});
     const auto body = world.add_body(mesh::box(Vec3::Constant(0.1), {2, 2, 2}),
                                      {.material = steel, .dynamics = BodyDynamics::automatic, .name = "block"});
-    const std::filesystem::path file = folder.path() / "world.h5";
+    const std::filesystem::path file = folder.path() / "world.skerry";
     world.save(file);
     World again = World::load(file);
     CHECK(again.dynamics_choice(body).reason == DynamicsReason::cost);

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import index_array, real_array, require_shape, vector
+from .._arrays import VectorLike, index_array, real_array, require_shape
 from .._settings import Dynamics, ElementKind, Motion, Pose
 from .objects import MovedObject, TouchingObject
 from .reports import DynamicsEstimate
@@ -157,8 +157,8 @@ class Body(TouchingObject):
     def select(
         self,
         *,
-        box: tuple[ArrayLike, ArrayLike] | None = None,
-        sphere: tuple[ArrayLike, float] | None = None,
+        box: tuple[VectorLike, VectorLike] | None = None,
+        sphere: tuple[VectorLike, float] | None = None,
         below: float | None = None,
         above: float | None = None,
         surface: bool = False,
@@ -195,7 +195,7 @@ class Body(TouchingObject):
 
     # Control.
 
-    def attach(self, nodes: ArrayLike, *, motion: Motion | None = None, pivot: ArrayLike | None = None) -> Attachment:
+    def attach(self, nodes: ArrayLike, *, motion: Motion | None = None, pivot: VectorLike | None = None) -> Attachment:
         """Prescribes the motion of some nodes. From now on they stay in place or follow `motion`.
 
         nodes: numbers within the body (j,), or a truth value for each node (n,). motion: velocities, or keys at
@@ -205,7 +205,7 @@ class Body(TouchingObject):
         SceneError: there is no such node, or fewer than three nodes that are not on one line for a rigid or implicit
         body. BufferError: arrays of views() are in use."""
         chosen = self._node_numbers(nodes)
-        point = (0.0, 0.0, 0.0) if pivot is None else vector(pivot, "pivot")
+        point = real_array((0.0, 0.0, 0.0) if pivot is None else pivot, "pivot", (3,))
         handle = self._core.attach(self._handle, chosen, motion or Motion(), point)
         return Attachment(self._world, handle, self, len(chosen))
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from .._errors import SceneError
 from .._settings import Material
+from .changes import MaterialChanges
 from .objects import WorldObject
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class MaterialHandle(WorldObject):
         """The material as a record."""
         return Material(**self._core.material(self._handle))
 
-    def change(self, material: Material | None = None, /, **changes: Any) -> None:
+    def change(self, material: Material | None = None, /, **changes: Unpack[MaterialChanges]) -> None:
         """Replaces the material, or some of its fields: handle.change(density=900). Bodies keep shapes and velocities,
         and get new masses and stable steps. SceneError: the model would change, or a body has no stable step with the
         new values. Nothing is changed then."""

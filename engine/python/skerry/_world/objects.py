@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
 
-from numpy.typing import ArrayLike
-
-from .._arrays import vector
+from .._arrays import VectorLike, real_array
 from .._errors import SceneError
 from .._settings import Pose, Surface
+from .changes import SurfaceChanges
 
 if TYPE_CHECKING:
     from .world import World
@@ -77,12 +76,14 @@ class PosedObject(WorldObject):
     def pose(self, pose: Pose) -> None:
         self._core.set_pose(self._handle, _checked_pose(pose))
 
-    def set_velocity(self, velocity: ArrayLike, angular_velocity: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+    def set_velocity(self, velocity: VectorLike, angular_velocity: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Sets the velocities, each of shape (3,) [m/s, rad/s]. A collider or an attachment keeps them until they are
         set again, and turns about the origin of its pose. A body gets the velocities of a rigid motion about its centre
         of mass."""
         self._core.set_velocity(
-            self._handle, vector(velocity, "velocity"), vector(angular_velocity, "angular_velocity")
+            self._handle,
+            real_array(velocity, "velocity", (3,)),
+            real_array(angular_velocity, "angular_velocity", (3,)),
         )
 
     def remove(self) -> None:
@@ -114,7 +115,7 @@ class TouchingObject(PosedObject):
         """Name."""
         return self._name
 
-    def set_surface(self, surface: Surface | None = None, /, **values: float | None) -> None:
+    def set_surface(self, surface: Surface | None = None, /, **values: Unpack[SurfaceChanges]) -> None:
         """Sets friction and restitution: set_surface(friction=0.3). Values that are not given are those of the material
         of a body, and for a collider those of the body that touches it."""
         self._core.set_surface_properties(self._handle, dataclasses.replace(surface or Surface(), **values))
@@ -210,14 +211,21 @@ class Objects(Mapping[str, Item], Generic[Item]):
 class _Values(ValuesView[Item]):
     """The values by number, since names may not be unique."""
 
+    def __init__(self, objects: Objects[Item]) -> None:
+        super().__init__(objects)
+        self._objects = objects
+
     def __iter__(self) -> Iterator[Item]:
-        objects: Objects[Item] = self._mapping  # type: ignore[assignment]
-        return iter([objects._make(handle) for handle in objects._all()])
+        return iter([self._objects._make(handle) for handle in self._objects._all()])
 
 
 class _Items(ItemsView[str, Item]):
     """The items by number, since names may not be unique."""
 
+    def __init__(self, objects: Objects[Item]) -> None:
+        super().__init__(objects)
+        self._objects = objects
+
     def __iter__(self) -> Iterator[tuple[str, Item]]:
-        objects: Objects[Item] = self._mapping  # type: ignore[assignment]
+        objects = self._objects
         return iter([(objects._core.name(handle), objects._make(handle)) for handle in objects._all()])

@@ -13,7 +13,7 @@ _MOST_ROWS = 50
 
 def world_table(world: World) -> str:
     """HTML text with the time of the world and its objects."""
-    rows = [
+    rows: list[tuple[str, str, str]] = [
         (body.name, body.dynamics, f"{body.node_count:,} nodes, {body.mass:.3g} kg{', asleep' if body.asleep else ''}")
         for body in world.bodies.values()
     ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from .._arrays import Vector
@@ -331,9 +331,9 @@ class WorldReport:
     """Bodies that were moved to resolve these overlaps."""
     self_crossings: tuple[SelfCrossing, ...]
     """Bodies whose surface was found to cross itself."""
-    step_limits: tuple[StepLimitReport, ...]
+    step_limits: tuple[StepLimitReport, ...] = field(repr=False)
     """Causes that limited step lengths, the most frequent first."""
-    stages: tuple[StageReport, ...]
+    stages: tuple[StageReport, ...] = field(repr=False)
     """Computing times of the stages of the step."""
     stable_step: float
     """Stable step of the stiffest body now [s]."""

@@ -10,12 +10,10 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import SimpleNamespace
-from typing import Any
-
-from numpy.typing import ArrayLike
+from typing import Any, Unpack
 
 from .. import _core
-from .._arrays import RotationLike, read_only, rotation, vector
+from .._arrays import RotationLike, VectorLike, read_only, real_array, rotation, vector
 from .._errors import Doubt, SceneError, StepError
 from .._settings import (
     Capsule,
@@ -31,6 +29,7 @@ from .._settings import (
     Sphere,
 )
 from .body import Attachment, Body, Indices
+from .changes import MaterialChanges, SettingsChanges
 from .collider import Collider
 from .joint import Joint, joint_label
 from .material import MaterialHandle
@@ -66,7 +65,7 @@ class World:
 
     __slots__ = ("__weakref__", "_core", "_doubts", "_materials", "_mesh_arrays", "_watch")
 
-    def __init__(self, settings: Settings | None = None, /, **changes: Any) -> None:
+    def __init__(self, settings: Settings | None = None, /, **changes: Unpack[SettingsChanges]) -> None:
         self._hold(_core.World(dataclasses.replace(settings or Settings(), **changes)))
 
     def _hold(self, core: Any) -> None:
@@ -84,9 +83,20 @@ class World:
 
     # Copies and files.
 
-    def copy(self) -> World:
-        """A copy that continues exactly like this world. copy.bodies[body] is the copy of a body."""
-        return World._of(self._core.clone())
+    def copy(self, *, threads: int | None = None) -> World:
+        """A copy that continues with the same bits, by default with as many threads. copy.bodies[body] is the copy of a
+        body."""
+        return World._of(self._core.clone(threads))
+
+    def to_bytes(self) -> bytes:
+        """The bytes that save() writes."""
+        data: bytes = self._core.to_bytes()
+        return data
+
+    @staticmethod
+    def from_bytes(data: bytes, *, threads: int | None = None) -> World:
+        """Makes a world of the bytes of to_bytes()."""
+        return World._of(_core.World.from_bytes(data, threads))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Saves the world. An existing file is replaced completely or not at all."""
@@ -97,14 +107,18 @@ class World:
         """Reads a world that save() wrote. It continues with the same bits on any number of threads."""
         return World._of(_core.World.load(os.fspath(path), threads))
 
-    __copy__ = copy
+    def __copy__(self) -> World:
+        return self.copy()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> World:
         return self.copy()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (World.from_bytes, (self.to_bytes(),))
+
     # Building.
 
-    def add_material(self, material: Material | None = None, /, **changes: Any) -> MaterialHandle:
+    def add_material(self, material: Material | None = None, /, **changes: Unpack[MaterialChanges]) -> MaterialHandle:
         """Adds a material: add_material(Material(density=900)) or add_material(density=900). SceneError: a value is out
         of range."""
         return MaterialHandle(self, self._core.add_material(dataclasses.replace(material or Material(), **changes)))
@@ -115,10 +129,10 @@ class World:
         material: Material | MaterialHandle,
         *,
         materials: Mapping[int, Material | MaterialHandle] | None = None,
-        position: ArrayLike = (0.0, 0.0, 0.0),
+        position: VectorLike = (0.0, 0.0, 0.0),
         rotation: RotationLike = (0.0, 0.0, 0.0),
-        velocity: ArrayLike = (0.0, 0.0, 0.0),
-        angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
+        velocity: VectorLike = (0.0, 0.0, 0.0),
+        angular_velocity: VectorLike = (0.0, 0.0, 0.0),
         dynamics: Dynamics = "automatic",
         element: ElementKind = "smoothed",
         self_contact: bool = False,
@@ -164,7 +178,7 @@ class World:
         self,
         shape: Shape,
         *,
-        position: ArrayLike = (0.0, 0.0, 0.0),
+        position: VectorLike = (0.0, 0.0, 0.0),
         rotation: RotationLike = (0.0, 0.0, 0.0),
         motion: Motion | None = None,
         friction: float | None = None,
@@ -207,8 +221,8 @@ class World:
         first: Body,
         second: Body | None = None,
         *,
-        point: ArrayLike = (0.0, 0.0, 0.0),
-        axis: ArrayLike = (0.0, 0.0, 1.0),
+        point: VectorLike = (0.0, 0.0, 0.0),
+        axis: VectorLike = (0.0, 0.0, 1.0),
         lower: float | None = None,
         upper: float | None = None,
         motor: Motor | None = None,
@@ -365,9 +379,9 @@ class World:
 
     # Control.
 
-    def set_gravity(self, gravity: ArrayLike) -> None:
+    def set_gravity(self, gravity: VectorLike) -> None:
         """Sets the acceleration of all bodies, shape (3,) [m/s^2]."""
-        self._core.set_gravity(vector(gravity, "gravity"))
+        self._core.set_gravity(real_array(gravity, "gravity", (3,)))
 
     def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
         """Switches the collision of two bodies, or of a body and a collider, on or off. For a body with itself it sets

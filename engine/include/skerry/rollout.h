@@ -1,0 +1,124 @@
+// Rollouts: many worlds that follow given controls, on all cores (docs/control.md).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skerry/recorder.h"
+#include "skerry/world.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// Moves a collider or an attachment, so that it reaches a pose at the end of the interval (World::move_to). Numbers:
+/// position [m] and rotation vector [rad].
+struct PoseControl {
+    std::variant<ColliderHandle, AttachmentHandle> object{};
+};
+/// Moves a collider or an attachment at constant velocities (World::set_velocity). Numbers: velocity [m/s] and angular
+/// velocity [rad/s].
+struct VelocityControl {
+    std::variant<ColliderHandle, AttachmentHandle> object{};
+};
+/// Sets the target speed of the motor of a hinge or slider. The joint must have a motor, which keeps its `strength`.
+/// Numbers: the speed [rad/s or m/s].
+struct MotorSpeedControl {
+    JointHandle joint{};
+};
+/// Sets the target coordinate of the motor of a hinge or slider. The joint must have a motor, which keeps its
+/// `strength` and `fastest`. Numbers: the coordinate [rad or m].
+struct MotorPositionControl {
+    JointHandle joint{};
+};
+/// Sets the external forces on all nodes of a body (World::set_loads). Numbers: three per node [N].
+struct NodeForceControl {
+    BodyHandle body{};
+};
+/// Sets an external force on a body. The force is distributed over the nodes in proportion to their masses, so that it
+/// acts at the centre of mass. Numbers: three [N].
+struct BodyForceControl {
+    BodyHandle body{};
+};
+/// Sets the acceleration of gravity. Numbers: three [m/s^2].
+struct GravityControl {};
+
+/// One controlled quantity. An object may have only one control. Each value applies from the start of its interval.
+struct RolloutControl {
+    std::variant<PoseControl, VelocityControl, MotorSpeedControl, MotorPositionControl, NodeForceControl,
+                 BodyForceControl, GravityControl>
+        what;
+    // Values in the order (world, interval, number), or in the order (interval, number) for all worlds. The values are
+    // not copied and must exist until rollout() returns.
+    std::span<const Real> values;
+};
+
+struct RolloutProgress {
+    std::size_t worlds_done = 0, worlds = 0;
+    std::size_t intervals_done = 0;  // number of completed intervals of all worlds
+};
+
+struct RolloutSettings {
+    std::size_t intervals = 1;  // number of control intervals, >= 1
+    Real dt = 0;                // duration of an interval, > 0 [s]
+    std::vector<RolloutControl> controls{};
+    std::vector<RecordedProbe> record{};  // quantities that are recorded at the end of each interval
+    int threads = 0;                      // number of threads of the rollout; 0: the number of cores
+    bool keep_worlds = false;             // true: the result contains the worlds at the end of the rollout
+    // If given, called with each copy of a world and its number before the first interval, to change materials, poses
+    // and the like. The calls come from several threads at once. They must not remove objects that controls or probes
+    // name. An exception ends the rollout, which rethrows the exception of the lowest number.
+    std::function<void(World& copy, std::size_t number)> prepare{};
+    // If given, called about every 20 ms on the thread that called rollout(). If it returns false or throws, all worlds
+    // stop before their next step. An exception is rethrown.
+    std::function<bool(const RolloutProgress&)> go_on{};
+};
+
+/// Values of one probe, with the columns that a Recorder gives it.
+struct RolloutSeries {
+    std::string name;
+    std::vector<SeriesColumn> columns;
+    std::vector<Real> values;  // in the order (world, interval, column); NaN in intervals that were not completed
+};
+
+/// End of the rollout of one world.
+struct RolloutStatus {
+    std::size_t intervals = 0;  // number of completed intervals
+    StepReport report{};        // report of the last call of advance; `stopped` if go_on ended the rollout
+    std::string error{};        // message of the SceneError with which advance refused to start, else empty
+    // Reasons why the values cannot be trusted (WorldReport::distrust). They may arise before the rollout.
+    std::string distrust{};
+
+    /// True if all intervals were completed.
+    bool ok() const { return report.ok() && error.empty(); }
+    /// Names the body and the reason why the world stopped. Empty if ok().
+    std::string message() const { return error.empty() ? report.message() : error; }
+};
+
+struct RolloutResult {
+    std::vector<Real> time;  // simulated time at the end of each interval, in the order (world, interval) [s]
+    std::vector<RolloutSeries> series;  // one entry for each entry of RolloutSettings::record
+    std::vector<RolloutStatus> status;  // by world
+    std::vector<World> worlds;          // final worlds if keep_worlds is set, with one thread each; else empty
+};
+
+/// Advances a copy of each world through all intervals, several worlds at once. The worlds do not change, and no other
+/// thread may use them during the call. Worlds may occur several times, but all must be copies of one world, so that
+/// the handles of controls and probes are valid in each of them.
+///
+/// The results are bitwise those of a loop that clones each world, applies the controls of an interval, calls
+/// advance(dt) and samples a Recorder, on any number of threads. A world whose step is refused stops, and the others
+/// continue. If there are fewer worlds than threads, each world gets an equal number of threads.
+///
+/// Each thread of the rollout has one copy of a world at a time; with keep_worlds all copies remain. The results need 8
+/// bytes per value. To continue a rollout, keep the worlds and pass them to the next call. Throws SceneError before any
+/// world runs if a setting, a handle or a value is invalid.
+RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);
+/// Advances `count` copies of one world.
+RolloutResult rollout(const World& world, std::size_t count, const RolloutSettings& settings);
+
+}  // namespace skerry
+#pragma GCC visibility pop

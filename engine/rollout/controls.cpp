@@ -1,0 +1,199 @@
+#include "engine/rollout/controls.h"
+
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include "engine/world/world_state.h"
+#include "skerry/joint.h"
+
+namespace skerry {
+
+namespace {
+
+const Model& model_of(const World& world) {
+    return WorldAccess::state_of(world).model;
+}
+
+std::size_t row_of(const World& world, auto handle) {
+    return static_cast<std::size_t>(model_of(world).row(handle, "rollout"));
+}
+
+std::string name_of_object(const World& world, BodyHandle body) {
+    return "body '" + world.name(body) + "'";
+}
+std::string name_of_object(const World& world, ColliderHandle collider) {
+    return "collider '" + world.name(collider) + "'";
+}
+std::string name_of_object(const World& world, AttachmentHandle attachment) {
+    const auto body = static_cast<std::size_t>(model_of(world).attachments.body[row_of(world, attachment)]);
+    return "attachment of body '" + model_of(world).body_records[body].name + "'";
+}
+std::string name_of_object(const World& world, JointHandle joint) {
+    return "joint " + std::to_string(row_of(world, joint));
+}
+
+/// Calls visit(handle) for the object of a control. Gravity has none.
+void visit_object(const RolloutControl& control, auto&& visit) {
+    std::visit(
+        [&](const auto& what) {
+            if constexpr (requires { what.body; })
+                visit(what.body);
+            else if constexpr (requires { what.joint; })
+                visit(what.joint);
+            else if constexpr (requires { what.object; })
+                std::visit(visit, what.object);
+        },
+        control.what);
+}
+
+bool same_object(const RolloutControl& a, const RolloutControl& b) {
+    bool same = std::holds_alternative<GravityControl>(a.what) && std::holds_alternative<GravityControl>(b.what);
+    visit_object(a, [&](auto first) {
+        visit_object(b, [&](auto second) {
+            if constexpr (std::is_same_v<decltype(first), decltype(second)>) same = first == second;
+        });
+    });
+    return same;
+}
+
+/// Name of each kind of control before the name of its object, and number of values per interval.
+struct ControlKind {
+    const char* title;
+    std::size_t count;
+};
+constexpr std::array<ControlKind, std::variant_size_v<decltype(RolloutControl::what)>> control_kinds{{
+    {"pose of ", 6},
+    {"velocity of ", 6},
+    {"motor speed of ", 1},
+    {"motor position of ", 1},
+    {"forces on the nodes of ", 3},  // for each node
+    {"force on ", 3},
+    {"gravity", 3},
+}};
+
+/// Text such as "pose of collider 'finger'".
+std::string title_of(const World& world, const RolloutControl& control) {
+    std::string title = control_kinds[control.what.index()].title;
+    visit_object(control, [&](auto handle) { title += name_of_object(world, handle); });
+    return title;
+}
+
+[[noreturn]] void refuse_control(const std::string& control, const std::string& field, const std::string& found,
+                                 const std::string& expected) {
+    Complaint{.file = {}, .object = control, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
+}
+
+std::string numbered(const char* what, std::size_t number) {
+    return what + ("[" + std::to_string(number) + "]");
+}
+
+Vec3 vector_at(std::span<const Real> values, std::size_t first) {
+    return {values[first], values[first + 1], values[first + 2]};
+}
+
+/// Applies the values of one interval to a world.
+struct ApplyControl {
+    std::span<const Real> values;
+    Real dt;  // [s]
+    std::vector<Vec3>& forces;
+    World& world;
+
+    void operator()(const PoseControl& control) const {
+        const Pose pose{vector_at(values, 0), vector_at(values, 3)};
+        std::visit([&](auto object) { world.move_to(object, pose, dt); }, control.object);
+    }
+    void operator()(const VelocityControl& control) const {
+        std::visit([&](auto object) { world.set_velocity(object, vector_at(values, 0), vector_at(values, 3)); },
+                   control.object);
+    }
+    void operator()(const MotorSpeedControl& control) const { drive(control.joint, {.speed = values[0]}); }
+    void operator()(const MotorPositionControl& control) const { drive(control.joint, {.position = values[0]}); }
+    void operator()(const NodeForceControl& control) const {
+        forces.resize(values.size() / 3);
+        for (std::size_t n = 0; n < forces.size(); ++n) forces[n] = vector_at(values, 3 * n);
+        world.set_loads(control.body, forces);
+    }
+    void operator()(const BodyForceControl& control) const {
+        const Model& model = model_of(world);
+        const auto mass = rows_of(model.nodes.mass, model.bodies.nodes[row_of(world, control.body)]);
+        const Vec3 per_mass = vector_at(values, 0) / world.mass(control.body);
+        forces.resize(mass.size());
+        for (std::size_t n = 0; n < forces.size(); ++n) forces[n] = mass[n] * per_mass;
+        world.set_loads(control.body, forces);
+    }
+    void operator()(const GravityControl&) const { world.set_gravity(vector_at(values, 0)); }
+
+private:
+    void drive(JointHandle joint, JointMotor motor) const {
+        const JointMotorRow now = model_of(world).joints.motor[row_of(world, joint)];
+        motor.strength = now.most;
+        motor.fastest = now.most_speed;
+        Joints(world).set_motor(joint, motor);
+    }
+};
+
+}  // namespace
+
+std::size_t number_count(const World& world, const RolloutControl& control) {
+    visit_object(control, [&](auto handle) {
+        const std::size_t row = row_of(world, handle);
+        if constexpr (std::is_same_v<decltype(handle), JointHandle>)
+            if (model_of(world).joints.drive[row] == JointDrive::none)
+                refuse_control(name_of_object(world, handle), "motor", "no motor",
+                               "a hinge or slider with a motor (Joints::set_motor)");
+    });
+    const std::size_t count = control_kinds[control.what.index()].count;
+    const auto* const nodes = std::get_if<NodeForceControl>(&control.what);
+    return nodes ? count * world.positions(nodes->body).size() : count;
+}
+
+void check_controls(std::span<const World* const> worlds, std::size_t world_count, const RolloutSettings& settings) {
+    for (std::size_t c = 0; c < settings.controls.size(); ++c) {
+        const RolloutControl& control = settings.controls[c];
+        const std::string place = numbered("controls", c);
+        std::size_t count = 0;
+        for (std::size_t w = 0; w < worlds.size(); ++w) {
+            std::size_t of_world = 0;
+            try {
+                of_world = number_count(*worlds[w], control);
+            } catch (const SceneError& error) {
+                throw SceneError(place + ": " + (w > 0 ? "a later world" : "the first world") + ": " + error.what());
+            }
+            if (w == 0) count = of_world;
+            if (of_world != count)
+                refuse_control(place, "worlds", "an object with another number of nodes than in the first world",
+                               "worlds that are copies of one world");
+        }
+        const std::string title = place + " (" + title_of(*worlds[0], control) + ")";
+        for (std::size_t earlier = 0; earlier < c; ++earlier)
+            if (same_object(settings.controls[earlier], control))
+                refuse_control(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
+                               "one control for each object");
+        const std::size_t of_one = settings.intervals * count, of_all = world_count * of_one;
+        if (control.values.size() != of_one && control.values.size() != of_all)
+            refuse_control(title, "values", std::to_string(control.values.size()) + " values",
+                           std::to_string(of_all) + " (worlds " + std::to_string(world_count) + ", intervals " +
+                               std::to_string(settings.intervals) + ", numbers " + std::to_string(count) + ") or " +
+                               std::to_string(of_one) + " for all worlds");
+        for (std::size_t i = 0; i < control.values.size(); ++i)
+            if (!std::isfinite(control.values[i]))
+                refuse_control(title,
+                               "world " + std::to_string(i / of_one) + ", interval " +
+                                   std::to_string(i % of_one / count) + ", number " + std::to_string(i % count),
+                               std::to_string(control.values[i]), "a finite number");
+    }
+}
+
+std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
+                                std::size_t world, std::size_t interval) {
+    const bool for_all = control.values.size() == intervals * count;
+    return control.values.subspan(((for_all ? 0 : world * intervals) + interval) * count, count);
+}
+
+void apply(const RolloutControl& control, std::span<const Real> values, Real dt, std::vector<Vec3>& forces,
+           World& world) {
+    std::visit(ApplyControl{values, dt, forces, world}, control.what);
+}
+
+}  // namespace skerry

@@ -1,0 +1,26 @@
+// Controls of a rollout: their checks, and their effect on a world.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skerry/rollout.h"
+
+namespace skerry {
+
+/// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
+/// the object is a joint without motor.
+std::size_t number_count(const World& world, const RolloutControl& control);
+/// Checks number and values of all controls, and that no object has two controls. `worlds`: the worlds without
+/// duplicates, at least one.
+void check_controls(std::span<const World* const> worlds, std::size_t world_count, const RolloutSettings& settings);
+/// The values of a control for one interval of one world. `count`: number of values per interval.
+std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
+                                std::size_t world, std::size_t interval);
+/// Applies a control for an interval of duration dt [s]. `forces` is memory that is used again.
+void apply(const RolloutControl& control, std::span<const Real> values, Real dt, std::vector<Vec3>& forces,
+           World& world);
+
+}  // namespace skerry

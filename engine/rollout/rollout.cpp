@@ -1,0 +1,182 @@
+#include "skerry/rollout.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "engine/output/series/probe_columns.h"
+#include "engine/rollout/controls.h"
+#include "engine/world/world_state.h"
+#include "jobs/run_tasks.h"
+
+namespace skerry {
+
+namespace {
+
+// Time between two calls of RolloutSettings::go_on. A program must react to Ctrl-C within 50 ms.
+constexpr std::chrono::milliseconds watch_period{20};
+
+[[noreturn]] void refuse_setting(const char* field, const std::string& found, const std::string& expected) {
+    Complaint{.file = {}, .object = "rollout", .field = field, .found = found, .expected = expected, .hint = {}}
+        .raise();
+}
+
+/// Returns the worlds without neighbouring duplicates.
+std::vector<const World*> different_worlds(std::span<const World* const> worlds) {
+    std::vector<const World*> different(worlds.begin(), worlds.end());
+    different.erase(std::unique(different.begin(), different.end()), different.end());
+    return different;
+}
+
+void check_settings(std::size_t world_count, const RolloutSettings& settings) {
+    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<Index>::max());
+    if (world_count == 0) refuse_setting("worlds", "no world", "at least one world");
+    if (settings.intervals == 0) refuse_setting("intervals", "0", "at least one interval");
+    if (world_count > most || settings.intervals > most / world_count)
+        refuse_setting("intervals",
+                       std::to_string(settings.intervals) + " for each of " + std::to_string(world_count) + " worlds",
+                       "at most " + std::to_string(most) + " intervals of all worlds together");
+    if (!(settings.dt > 0) || !std::isfinite(settings.dt))
+        refuse_setting("dt", std::to_string(settings.dt), "a time > 0 (s)");
+    if (settings.threads < 0)
+        refuse_setting("threads", std::to_string(settings.threads),
+                       "a number of threads >= 0 (0: the number of cores)");
+}
+
+/// Makes the arrays of one probe. Throws SceneError if the worlds do not agree on the columns.
+RolloutSeries empty_series(std::span<const World* const> worlds, const RecordedProbe& probe) {
+    RolloutSeries series{.name = probe.name, .columns = {}, .values = {}};
+    add_columns(*worlds[0], probe, series.columns);
+    std::vector<SeriesColumn> columns;
+    for (const World* other : worlds.subspan(1)) {
+        columns.clear();
+        add_columns(*other, probe, columns);
+        if (columns.size() != series.columns.size())
+            refuse_setting(
+                "record",
+                "probe \"" + probe.name + "\" with " + std::to_string(columns.size()) + " columns in a later world",
+                std::to_string(series.columns.size()) + " columns, as in the first world");
+    }
+    return series;
+}
+
+/// A rollout that is running. Each world writes only its own part of the arrays of the result.
+class RunningRollout {
+public:
+    RunningRollout(std::span<const World* const> worlds, const RolloutSettings& settings) : settings_(settings) {
+        check_settings(worlds.size(), settings);
+        for (const World* world : worlds) {
+            if (!world) refuse_setting("worlds", "a null pointer", "a world");
+            sources_.push_back(&WorldAccess::state_of(*world));
+            sources_.back()->require_between_steps("rollout");
+        }
+        const std::vector<const World*> different = different_worlds(worlds);
+        for (const World* world : different) check_probes(*world, settings.record);
+        check_controls(different, worlds.size(), settings);
+        for (const RolloutControl& control : settings.controls)
+            number_count_.push_back(number_count(*worlds[0], control));
+        constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
+        const std::size_t rows = worlds.size() * settings.intervals;
+        for (const RecordedProbe& probe : settings.record) {
+            result_.series.push_back(empty_series(different, probe));
+            result_.series.back().values.assign(rows * result_.series.back().columns.size(), none);
+        }
+        result_.time.assign(rows, none);
+        result_.status.resize(worlds.size());
+        for (RolloutStatus& status : result_.status) status.report.status = StepStatus::stopped;
+        final_.resize(settings.keep_worlds ? worlds.size() : 0);
+    }
+
+    RolloutResult run() {
+        const int threads = settings_.threads > 0 ? settings_.threads : core_count();
+        const auto world_count = static_cast<Index>(sources_.size());
+        const int threads_of_world = std::max(1, threads / world_count);
+        run_tasks(
+            world_count, threads, [&](Index number) { run_world(static_cast<std::size_t>(number), threads_of_world); },
+            watch_period, [&] { watch(); });
+        for (std::optional<World>& world : final_)
+            if (world) result_.worlds.push_back(std::move(*world));
+        if (result_.worlds.size() != sources_.size()) result_.worlds.clear();
+        return std::move(result_);
+    }
+
+private:
+    void watch() {
+        if (!settings_.go_on || stop_) return;
+        try {
+            if (!settings_.go_on({worlds_done_, sources_.size(), intervals_done_})) stop_ = true;
+        } catch (...) {
+            stop_ = true;
+            throw;
+        }
+    }
+
+    void run_world(std::size_t number, int threads) {
+        if (stop_) return;
+        World copy = copy_of_settled(*sources_[number], {.backend = {}, .threads = threads});
+        if (settings_.prepare) settings_.prepare(copy, number);
+        RolloutStatus& status = result_.status[number];
+        status.report = {};
+        run_intervals(copy, number, status);
+        WorldReport report;
+        static_cast<RunCounters&>(report) = WorldAccess::state_of(copy).record.counters;
+        report.crossed = WorldAccess::state_of(copy).cache.crossings.let_through;
+        status.distrust = report.distrust();
+        if (settings_.keep_worlds) final_[number].emplace(std::move(copy));
+        ++worlds_done_;
+    }
+
+    void run_intervals(World& world, std::size_t number, RolloutStatus& status) {
+        std::vector<TrackedProbe> probes = track(world, settings_.record);
+        std::vector<Real> row;
+        std::vector<Vec3> forces;
+        for (std::size_t i = 0; i < settings_.intervals; ++i) {
+            for (std::size_t c = 0; c < settings_.controls.size(); ++c)
+                apply(settings_.controls[c],
+                      values_of(settings_.controls[c], number_count_[c], settings_.intervals, number, i), settings_.dt,
+                      forces, world);
+            try {
+                status.report = world.advance(settings_.dt, [this](const StepReport&) { return !stop_; });
+            } catch (const SceneError& error) {
+                status.error = error.what();
+            }
+            if (!status.ok()) return;
+            ++status.intervals;
+            const std::size_t place = number * settings_.intervals + i;
+            result_.time[place] = world.time();
+            for (std::size_t p = 0; p < probes.size(); ++p) {
+                row.clear();
+                add_forces(world, probes[p]);
+                put_row(world, probes[p], row);
+                std::ranges::copy(row, result_.series[p].values.begin() +
+                                           static_cast<std::ptrdiff_t>(place * result_.series[p].columns.size()));
+            }
+            ++intervals_done_;
+        }
+    }
+
+    const RolloutSettings& settings_;
+    // States of the given worlds, without pending changes, so that all threads may read them.
+    std::vector<const WorldState*> sources_;
+    std::vector<std::size_t> number_count_;  // number of values of each control per interval
+    RolloutResult result_;
+    std::vector<std::optional<World>> final_;
+    std::atomic<bool> stop_{false};
+    std::atomic<std::size_t> worlds_done_{0}, intervals_done_{0};
+};
+
+}  // namespace
+
+RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings) {
+    return RunningRollout(worlds, settings).run();
+}
+
+RolloutResult rollout(const World& world, std::size_t count, const RolloutSettings& settings) {
+    const std::vector<const World*> worlds(count, &world);
+    return rollout(worlds, settings);
+}
+
+}  // namespace skerry
