@@ -90,7 +90,7 @@ def main() -> None:
         while not (reached or cut_off):
             observation, reward, reached, cut_off, _ = env.step(push_straight(observation))
             total, steps = total + reward, steps + 1
-        print(f"episode {seed}: {'reached the target' if reached else 'failed'} after {steps} steps, return {total:.2f}")
+        print(f"episode {seed}: {'reached' if reached else 'missed'} the target, {steps} steps, return {total:.2f}")
         assert reached
 
 
