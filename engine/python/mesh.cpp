@@ -12,12 +12,23 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-Mesh mesh_of(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels) {
+/// A mesh with exactly these arrays.
+Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
+               const std::optional<Indices>& file_number) {
     const auto points = span_of(nodes);
     const auto rows = span_of(tetrahedra);
     Mesh mesh{.nodes{points.begin(), points.end()}, .tetrahedra{rows.begin(), rows.end()}};
-    if (labels) mesh.label.assign(labels->data(), labels->data() + labels->shape(0));
+    if (labels) mesh.label.assign(span_of(*labels).begin(), span_of(*labels).end());
+    if (file_number) mesh.file_number.assign(span_of(*file_number).begin(), span_of(*file_number).end());
     return mesh;
+}
+
+/// A mesh whose inverted tetrahedra are turned, and notes about this.
+nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels) {
+    Mesh mesh = same_mesh(nodes, tetrahedra, labels, {});
+    Notes notes;
+    mesh::turn_inverted(mesh, "mesh", &notes);
+    return nb::make_tuple(std::move(mesh), notes);
 }
 
 nb::tuple arrays_of(const SurfaceMesh& surface) {
@@ -97,7 +108,8 @@ void bind_mesh(nb::module_& module) {
             if (mesh.file_number.empty()) return nb::none();
             return nb::cast(array_of<Index>(std::span<const Index>(mesh.file_number)));
         });
-    module.def("mesh", &mesh_of, nb::arg("nodes"), nb::arg("tetrahedra"), nb::arg("labels").none());
+    module.def("new_mesh", &new_mesh, nb::arg(), nb::arg(), nb::arg().none());
+    module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none());
     module.def("read_mesh", &read);
     module.def("read_surface", &read_surface);
     module.def("box", [](const Vec3& size, const std::array<int, 3>& cells) { return mesh::box(size, cells); });

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from worlds import RUBBER, ball_world
-
 import skerry as sk
+from worlds import RUBBER, ball_world
 
 
 def test_arrays_have_the_shapes_that_their_descriptions_name() -> None:

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from worlds import RUBBER, ball_world
-
 import skerry as sk
+from worlds import RUBBER, ball_world
 
 
 def test_keywords_change_single_settings() -> None:
@@ -235,13 +234,13 @@ def test_a_watching_function_sees_every_step() -> None:
     assert len(seen) == report.steps
 
 
-class Stop(Exception):
+class StopError(Exception):
     pass
 
 
 def stop(report: sk.StepReport) -> None:
     if report.steps == 3:
-        raise Stop("at step 3")
+        raise StopError("at step 3")
 
 
 @pytest.mark.parametrize("way", ["watch", "check"])
@@ -250,7 +249,7 @@ def test_an_exception_of_a_callback_ends_the_call_between_two_steps(way: str) ->
     twin = world.copy()
     if way == "watch":
         world.watch_steps(stop)
-    with pytest.raises(Stop, match="at step 3"):
+    with pytest.raises(StopError, match="at step 3"):
         world.advance(0.05, check=stop if way == "check" else None)
     assert world.report().steps == 3
     twin.advance(0.05, check=lambda report: report.steps < 3)

@@ -1,6 +1,7 @@
 """Skerry: deformable bodies in frictional contact."""
 
 from ._errors import BusyError, Doubt, SceneError, StepError
+from ._mesh import Mesh, MeshReport, read_surface
 from ._settings import (
     Box,
     Bucket,
@@ -56,6 +57,8 @@ __all__ = [
     "JointState",
     "Material",
     "MaterialHandle",
+    "Mesh",
+    "MeshReport",
     "Motion",
     "MotionKey",
     "Motor",
@@ -77,4 +80,5 @@ __all__ = [
     "SurfaceMesh",
     "World",
     "WorldReport",
+    "read_surface",
 ]

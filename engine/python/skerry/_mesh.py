@@ -98,7 +98,7 @@ class Mesh:
         points = real_array(nodes, "nodes", ("n", 3))
         rows = index_array(tetrahedra, "tetrahedra", ("m", 4))
         given = None if labels is None else index_array(labels, "labels", (len(rows),))
-        core, notes = _core.mesh(points, rows, given)
+        core, notes = _core.new_mesh(points, rows, given)
         self._hold(core)
         _warn(notes)
 

@@ -1,7 +1,7 @@
 // Making, copying and saving worlds, and adding and removing their objects.
+#include <nanobind/stl/map.h>
 #include <filesystem>
 #include <map>
-#include <nanobind/stl/map.h>
 
 #include "engine/python/read_settings.h"
 #include "engine/python/world/parts.h"
@@ -77,45 +77,46 @@ LoadSettings load_settings(std::optional<int> threads) {
 }  // namespace
 
 void bind_building(WorldClass& type) {
-    type
-        .def("__init__",
+    type.def("__init__",
              [](WorldObject* self, nb::handle given) {
                  Use::require_threads();
                  Settings settings;
                  read(given, settings);
                  new (self) WorldObject(World(settings));
              })
-        .def("clone",
-             [](WorldObject& object, std::optional<int> threads) {
-                 Use use(object);
-                 return object_with(without_gil([&] { return object.world.clone(load_settings(threads)); }));
-             },
-             nb::arg("threads").none())
+        .def(
+            "clone",
+            [](WorldObject& object, std::optional<int> threads) {
+                Use use(object);
+                return object_with(without_gil([&] { return object.world.clone(load_settings(threads)); }));
+            },
+            nb::arg("threads").none())
         .def("to_bytes",
              [](WorldObject& object) {
                  Use use(object);
                  const auto bytes = without_gil([&] { return object.world.to_bytes(); });
                  return nb::bytes(bytes.data(), bytes.size());
              })
-        .def_static("from_bytes",
-                    [](const nb::bytes& bytes, std::optional<int> threads) {
-                        Use::require_threads();
-                        const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()), bytes.size());
-                        return object_with(
-                            without_gil([&] { return World::from_bytes(data, load_settings(threads)); }));
-                    },
-                    nb::arg("bytes"), nb::arg("threads").none())
+        .def_static(
+            "from_bytes",
+            [](const nb::bytes& bytes, std::optional<int> threads) {
+                Use::require_threads();
+                const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()), bytes.size());
+                return object_with(without_gil([&] { return World::from_bytes(data, load_settings(threads)); }));
+            },
+            nb::arg("bytes"), nb::arg("threads").none())
         .def("save",
              [](WorldObject& object, const std::string& file) {
                  Use use(object);
                  without_gil([&] { object.world.save(file); });
              })
-        .def_static("load",
-                    [](const std::string& file, std::optional<int> threads) {
-                        Use::require_threads();
-                        return object_with(without_gil([&] { return World::load(file, load_settings(threads)); }));
-                    },
-                    nb::arg("file"), nb::arg("threads").none())
+        .def_static(
+            "load",
+            [](const std::string& file, std::optional<int> threads) {
+                Use::require_threads();
+                return object_with(without_gil([&] { return World::load(file, load_settings(threads)); }));
+            },
+            nb::arg("file"), nb::arg("threads").none())
         .def("add_material",
              [](WorldObject& object, nb::handle given) {
                  Use use(object);

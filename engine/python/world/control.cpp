@@ -40,8 +40,7 @@ void reset_to(WorldObject& object, WorldObject& saved) {
 /// Binds the methods that move an object of the given kind.
 template <class HandleType>
 void bind_motion(WorldClass& type) {
-    type
-        .def("set_velocity",
+    type.def("set_velocity",
              guarded([](World& world, const HandleType& object, const Vec3& velocity, const Vec3& angular_velocity) {
                  world.set_velocity(object, velocity, angular_velocity);
              }))
@@ -50,15 +49,14 @@ void bind_motion(WorldClass& type) {
              }));
     if constexpr (!std::is_same_v<HandleType, BodyHandle>)
         type.def("move_to", guarded([](World& world, const HandleType& object, nb::handle pose, Real duration) {
-                      world.move_to(object, settings_of<Pose>(pose), duration);
-                  }));
+                     world.move_to(object, settings_of<Pose>(pose), duration);
+                 }));
 }
 
 /// Binds the methods that select how an object of the given kind touches others.
 template <class HandleType>
 void bind_contact(WorldClass& type) {
-    type
-        .def("set_surface_properties", guarded([](World& world, const HandleType& object, nb::handle surface) {
+    type.def("set_surface_properties", guarded([](World& world, const HandleType& object, nb::handle surface) {
                  world.set_surface_properties(object, settings_of<SurfaceSettings>(surface));
              }))
         .def("set_collision_groups",

@@ -15,6 +15,7 @@ void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
 void bind_views(WorldClass& type);
+void bind_results(WorldClass& type);
 
 /// The members of a report by name.
 nb::dict values_of(const StepReport& report);

@@ -54,16 +54,22 @@ void bind_world_state(WorldClass& type) {
         .def("settings", guarded([](World& world) { return values_of(world.settings()); }))
         .def("stable_step", guarded([](World& world) { return world.stable_step(); }))
         .def("energy", guarded([](World& world) { return values_of(world.energy()); }))
-        .def("report", guarded([](World& world) { return values_of(world.report()); }))
-        .def("state_hash", guarded([](World& world) { return world.state_hash(); }))
+        .def("report",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return values_of(without_gil([&] { return object.world.report(); }));
+             })
+        .def("state_hash",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return without_gil([&] { return object.world.state_hash(); });
+             })
         .def("bodies", guarded([](World& world) { return world.bodies(); }))
-        .def("bodies_named", guarded([](World& world, const std::string& name) {
-                 return named(world, world.bodies(), name);
-             }))
+        .def("bodies_named",
+             guarded([](World& world, const std::string& name) { return named(world, world.bodies(), name); }))
         .def("colliders", guarded([](World& world) { return world.colliders(); }))
-        .def("colliders_named", guarded([](World& world, const std::string& name) {
-                 return named(world, world.colliders(), name);
-             }))
+        .def("colliders_named",
+             guarded([](World& world, const std::string& name) { return named(world, world.colliders(), name); }))
         .def("name", guarded([](World& world, const BodyHandle& body) { return world.name(body); }))
         .def("name", guarded([](World& world, const ColliderHandle& collider) { return world.name(collider); }))
         .def("pose", guarded([](World& world, const BodyHandle& body) { return pose_object(world.pose(body)); }))
@@ -77,8 +83,8 @@ void bind_world_state(WorldClass& type) {
 }
 
 void bind_body_state(WorldClass& type) {
-    type
-        .def("positions", guarded([](World& world, const BodyHandle& body) { return python::array_of(world.positions(body)); }))
+    type.def("positions",
+             guarded([](World& world, const BodyHandle& body) { return python::array_of(world.positions(body)); }))
         .def("velocities",
              guarded([](World& world, const BodyHandle& body) { return python::array_of(world.velocities(body)); }))
         .def("node_count", guarded([](World& world, const BodyHandle& body) { return world.positions(body).size(); }))

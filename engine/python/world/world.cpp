@@ -40,8 +40,10 @@ void require_no_views(const WorldObject& object, const char* action) {
     std::string list;
     for (const auto& [name, arrays] : count)
         list += (list.empty() ? "" : ", ") + std::to_string(arrays) + " of body '" + name + "'";
-    PyErr_Format(PyExc_BufferError, "%s: arrays of views() are in use (%s); expected none, because the call may move "
-                 "their memory", action, list.c_str());
+    PyErr_Format(PyExc_BufferError,
+                 "%s: arrays of views() are in use (%s); expected none, because the call may move "
+                 "their memory",
+                 action, list.c_str());
     throw nb::python_error();
 }
 
@@ -51,14 +53,17 @@ template <class HandleType>
 void bind_handle(nb::module_& module, const char* name) {
     using Numbers = std::array<std::uint32_t, 3>;
     nb::class_<HandleType>(module, name)
-        .def("__eq__",
-             [](const HandleType& a, nb::handle b) { return nb::isinstance<HandleType>(b) && a == nb::cast<HandleType>(b); })
+        .def("__eq__", [](const HandleType& a,
+                          nb::handle b) { return nb::isinstance<HandleType>(b) && a == nb::cast<HandleType>(b); })
         .def("__hash__",
              [](const HandleType& a) {
                  return (static_cast<std::uint64_t>(a.world) << 40) ^ (static_cast<std::uint64_t>(a.generation) << 20) ^
                         a.slot;
              })
-        .def("__getstate__", [](const HandleType& a) { return Numbers{a.slot, a.generation, a.world}; })
+        .def("__getstate__",
+             [](const HandleType& a) {
+                 return Numbers{a.slot, a.generation, a.world};
+             })
         .def("__setstate__", [](HandleType& a, const Numbers& numbers) {
             new (&a) HandleType{.slot = numbers[0], .generation = numbers[1], .world = numbers[2]};
         });
@@ -89,6 +94,7 @@ void bind_world(nb::module_& module) {
     bind_control(type);
     bind_joints(type);
     bind_views(type);
+    bind_results(type);
 }
 
 }  // namespace skerry::python

@@ -29,7 +29,7 @@ class JointState:
     axis: Vector
     """Axis of the joint on the second body."""
     coordinate: float
-    """Angle of a hinge, counting full revolutions, or displacement of a slider, since the joint was added [rad or m]."""
+    """Angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or m]."""
     speed: float
     """Rate of `coordinate` [rad/s or m/s]."""
     force: Vector

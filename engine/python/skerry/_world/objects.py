@@ -181,7 +181,9 @@ class Objects(Mapping[str, Item], Generic[Item]):
         if found:
             raise KeyError(f"{len(found)} {self._kind} have the name '{name}'; use their numbers")
         names = ", ".join(f"'{known}'" for known in self)
-        raise KeyError(f"no {self._kind} have the name '{name}'; the names are {names}" if names else f"no {self._kind}")
+        raise KeyError(
+            f"no {self._kind} have the name '{name}'; the names are {names}" if names else f"no {self._kind}"
+        )
 
     def __iter__(self) -> Iterator[str]:
         return iter([self._core.name(handle) for handle in self._all()])

@@ -427,9 +427,9 @@ def world_report(world: World, values: dict[str, Any]) -> WorldReport:
 
     def records(kind: type, rows: list[dict[str, Any]]) -> tuple[Any, ...]:
         for row in rows:
-            for field, name in _NAMES.get(kind, {}).items():
-                if row[field] is not None:
-                    row[field] = world._body(row[field], row[name])
+            for key, name in _NAMES.get(kind, {}).items():
+                if row[key] is not None:
+                    row[key] = world._body(row[key], row[name])
             if row.get("collider") is not None:
                 row["collider"] = world._collider(row["collider"], row["second_name"])
             if "estimate" in row:
