@@ -8,6 +8,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstring>
@@ -24,10 +25,14 @@ namespace nb = nanobind;
 void bind_errors(nb::module_& module);
 void bind_settings(nb::module_& module);
 void bind_mesh(nb::module_& module);
+void bind_problem(nb::module_& module);
+void bind_recorder(nb::module_& module);
+void bind_scene(nb::module_& module);
 void bind_world(nb::module_& module);
 
 /// Arrays that Python passes in: C-contiguous, of exactly this type.
 using Vectors = nb::ndarray<const Real, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Reals = nb::ndarray<const Real, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 template <Py_ssize_t width>
 using IndexRows = nb::ndarray<const Index, nb::shape<-1, width>, nb::c_contig, nb::device::cpu>;

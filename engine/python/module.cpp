@@ -39,5 +39,8 @@ NB_MODULE(_core, module) {
     bind_errors(module);
     bind_settings(module);
     bind_mesh(module);
+    bind_problem(module);
     bind_world(module);
+    bind_recorder(module);
+    bind_scene(module);
 }

@@ -79,7 +79,7 @@ def test_attached_nodes_turn_about_the_pivot() -> None:
 
 def test_attaching_a_node_that_does_not_exist_is_refused() -> None:
     world, ball, _ = ball_world()
-    with pytest.raises(sk.SceneError, match="ball"):
+    with pytest.raises(sk.SceneError, match=r"attach: nodes: found node 10000, expected"):
         ball.attach([10_000])
 
 

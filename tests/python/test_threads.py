@@ -179,13 +179,14 @@ def test_an_interrupt_ends_a_run() -> None:
 
 
 FORKED = """
-    import os, sys
+    import os, warnings
     import skerry as sk
     from worlds import ball_world
 
     world, ball, floor = ball_world(backend="{backend}", threads=2)
     world.advance(0.01)
     calls = [lambda: world.time, lambda: world.advance(0.01), lambda: sk.World(), lambda: ball.positions]
+    warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12 warns of forks beside threads
     child = os.fork()
     if child == 0:
         try:
@@ -207,9 +208,7 @@ FORKED = """
 
 @pytest.mark.parametrize("backend", ["automatic", "threads"])
 def test_a_forked_process_is_told_to_use_spawn(backend: str) -> None:
-    run_program(
-        "import warnings; warnings.simplefilter('ignore', DeprecationWarning)\n" + FORKED.format(backend=backend)
-    )
+    run_program(FORKED.format(backend=backend))
 
 
 def test_a_process_may_fork_before_threads_start() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -32,6 +33,21 @@ class SceneError(ValueError):
         self.hint = hint
         if hint:
             self.add_note(hint)
+
+
+def scene_error(object: str, field: str, found: str, expected: str, hint: str = "", *, file: str = "") -> SceneError:
+    """A SceneError whose message has the given parts."""
+    place = ": ".join(part for part in (file, object, field) if part)
+    message = f"{place}: found {found}, expected {expected}"
+    return SceneError(message, file=file, object=object, field=field, found=found, expected=expected, hint=hint)
+
+
+def import_package(name: str) -> Any:
+    """An optional package. ImportError tells how to install it."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ImportError(f"found no package {name}, expected one; run: pip install {name}", name=name) from error
 
 
 class StepError(RuntimeError):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Vector, index_array, read_only, real_array, vector
-from ._errors import Doubt, SceneError
+from ._errors import Doubt, import_package, scene_error
 from ._settings import SurfaceMesh
 
 Path: TypeAlias = str | os.PathLike[str]
@@ -138,7 +138,7 @@ class Mesh:
         number for each, or one for all) with six tetrahedra each."""
         counts = np.asarray(cells if isinstance(cells, int) else list(cells))
         numbers = index_array(np.broadcast_to(counts, (3,)) if counts.ndim == 0 else counts, "cells", (3,))
-        return Mesh._of(_core.box(vector(size, "size"), numbers.tolist()))
+        return Mesh._of(_core.box(real_array(size, "size", (3,)), numbers.tolist()))
 
     @staticmethod
     def ball(radius: float, resolution: int) -> Mesh:
@@ -191,7 +191,7 @@ class Mesh:
 
     def to_meshio(self) -> Any:
         """The mesh as a meshio.Mesh. Labels become the cell data gmsh:physical. Needs the package meshio."""
-        meshio = _import("meshio")
+        meshio = import_package("meshio")
         data = {} if self.labels is None else {"gmsh:physical": [self.labels], "gmsh:geometrical": [self.labels]}
         return meshio.Mesh(self.nodes, [("tetra", self.tetrahedra)], cell_data=data)
 
@@ -208,7 +208,7 @@ class Mesh:
 
     def to_pyvista(self) -> Any:
         """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
-        pyvista = _import("pyvista")
+        pyvista = import_package("pyvista")
         grid = pyvista.UnstructuredGrid({_VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
         if self.labels is not None:
             grid.cell_data["region"] = self.labels
@@ -323,21 +323,9 @@ def _warn(notes: list[str]) -> None:
         warnings.warn(note, Doubt, stacklevel=3)
 
 
-def _import(name: str) -> Any:
-    try:
-        return __import__(name)
-    except ImportError as error:
-        raise ImportError(f"{name}: found no such package, expected one; run: pip install {name}", name=name) from error
-
-
-def _complain(object: str, field: str, found: str, expected: str, hint: str = "") -> SceneError:
-    message = f"{object}: {field}: found {found}, expected {expected}" + (f" ({hint})" if hint else "")
-    return SceneError(message, object=object, field=field, found=found, expected=expected, hint=hint)
-
-
 def _require_linear(object: str, curved: int) -> None:
     if curved:
-        raise _complain(object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order")
+        raise scene_error(object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order")
 
 
 def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
@@ -352,10 +340,10 @@ def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
 def _mesh_of_used_nodes(object: str, points: ArrayLike, rows: list[NDArray[Any]], labels: ArrayLike | None) -> Mesh:
     """Mesh without the nodes that no tetrahedron uses."""
     if not any(len(block) for block in rows):
-        raise _complain(object, "cells", "no tetrahedra", "at least one tetrahedron")
+        raise scene_error(object, "cells", "no tetrahedra", "at least one tetrahedron")
     nodes = real_array(points, f"{object}: points", ("n", 3))
     tetrahedra = index_array(np.concatenate(rows), f"{object}: cells", ("m", 4))
     if tetrahedra.min() < 0 or tetrahedra.max() >= len(nodes):
-        raise _complain(object, "cells", f"node {tetrahedra.max()}", f"nodes from 0 to {len(nodes) - 1}")
+        raise scene_error(object, "cells", f"node {tetrahedra.max()}", f"nodes from 0 to {len(nodes) - 1}")
     used, place = np.unique(tetrahedra, return_inverse=True)
     return Mesh(nodes[used], place.reshape(-1, 4).astype(np.int32), labels=labels)

@@ -53,7 +53,8 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
     World& world = object.world;
     const Settings& settings = world.settings();
     if (settings.backend != Backend::serial && settings.threads != 1) Use::note_threads();
-    const StepWatchScope scope(world, object.depth > 1 ? nb::none() : watch);  // a nested call is refused by advance()
+    const nb::object look = object.depth > 1 ? nb::none() : watch;  // advance() refuses a nested call
+    const StepWatchScope scope(world, look);
     const StepReport report = without_gil([&] {
         SignalWatch signals;
         return world.advance(dt, [&](const StepReport& so_far) {

@@ -16,6 +16,7 @@ void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
 void bind_views(WorldClass& type);
 void bind_results(WorldClass& type);
+void bind_problem_watch(WorldClass& type);
 
 /// The members of a report by name.
 nb::dict values_of(const StepReport& report);

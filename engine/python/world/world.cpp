@@ -79,14 +79,6 @@ void bind_world(nb::module_& module) {
     bind_handle<JointHandle>(module, "JointHandle");
     module.def("note_fork", &Use::note_fork);
 
-    nb::class_<Mesh>(module, "Mesh")
-        .def("__init__", [](Mesh* self, const Vectors& nodes, const IndexRows<4>& tetrahedra) {
-            const auto points = span_of(nodes);
-            const auto rows = span_of(tetrahedra);
-            new (self) Mesh{.nodes{points.begin(), points.end()}, .tetrahedra{rows.begin(), rows.end()}};
-        });
-    module.def("ball", &mesh::ball);
-
     WorldClass type(module, "World");
     bind_building(type);
     bind_advance(type);
@@ -95,6 +87,7 @@ void bind_world(nb::module_& module) {
     bind_joints(type);
     bind_views(type);
     bind_results(type);
+    bind_problem_watch(type);
 }
 
 }  // namespace skerry::python

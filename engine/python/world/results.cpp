@@ -133,7 +133,6 @@ nb::ndarray<nb::numpy, std::uint8_t> hits(const World& world, std::size_t count,
                             .normal = triple_of(hit->normal),
                             .distance = hit->distance};
         }
-        return 0;
     });
     return bytes_of(rows);
 }
