@@ -27,7 +27,7 @@ class PushEnv(gymnasium.Env[Floats, Floats]):
     metadata: dict[str, Any] = {"render_modes": []}
     step_seconds = 1 / 30
     reach = 0.3  # largest coordinate of the hand [m]
-    near = 0.01  # distance at which the target counts as reached [m]
+    near = 0.02  # distance at which the target counts as reached [m]
     step_limit = 150  # number of steps after which an episode is cut off
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class PushEnv(gymnasium.Env[Floats, Floats]):
         self._world.reset(self._start)
         angle = self.np_random.uniform(-np.pi, np.pi)
         self._puck.pose = sk.Pose(position=(0.06 * np.cos(angle), 0.06 * np.sin(angle), 0.016))
-        angle += self.np_random.uniform(-0.3, 0.3)
+        angle += self.np_random.uniform(-0.2, 0.2)
         self._target = 0.2 * np.array([np.cos(angle), np.sin(angle)])
         self._steps = 0
         return self._observe(), {}
@@ -73,11 +73,12 @@ class PushEnv(gymnasium.Env[Floats, Floats]):
 
 
 def push_straight(observation: Floats) -> Floats:
-    """A policy: keep the fingertip behind the puck as seen from the target, and push."""
+    """A policy: get behind the puck as seen from the target, and push the faster the better the fingertip is there."""
     _, tip, puck, target = observation.reshape(4, 2)
     direction = (target - puck) / np.linalg.norm(target - puck)
-    behind = puck - 0.04 * direction
-    return np.clip(4 * (behind - tip) + 0.1 * direction, -0.2, 0.2)
+    aside = (puck - tip) - (puck - tip) @ direction * direction
+    speed = 0.1 * max(0.1, 1 - float(np.linalg.norm(aside)) / 0.01)
+    return np.clip(8 * aside + speed * direction, -0.2, 0.2)
 
 
 def main() -> None:

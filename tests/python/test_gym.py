@@ -11,8 +11,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples/p
 
 
 def test_the_environment_passes_gymnasiums_own_check() -> None:
-    from gym_push import PushEnv
     from gymnasium.utils.env_checker import check_env
+
+    from gym_push import PushEnv
 
     check_env(PushEnv(), skip_render_check=True)
 
