@@ -30,5 +30,5 @@ def test_every_public_name_is_there_and_documented() -> None:
 
 def test_python_ends_silently_with_a_living_world() -> None:
     # nanobind reports objects that outlive the module, and references that were lost.
-    done = run("import skerry\nworld = skerry.World()\nworld.add_body(skerry.Mesh.ball(0.1, 4), 'rubber')\n")
+    done = run("import skerry\nworld = skerry.World()\nworld.add_body(skerry.Mesh.ball(0.1, 4), skerry.Material())\n")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
