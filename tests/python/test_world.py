@@ -182,6 +182,18 @@ def test_a_report_has_all_values_of_the_engine() -> None:
         report.time = 0.0  # type: ignore[misc]
 
 
+def test_a_report_of_a_call_has_all_values_of_the_engine() -> None:
+    world, _, _ = ball_world()
+    values = world._core.advance(0.06, None, None)
+    report = world.copy().try_advance(0.01)
+    assert set(values) == {field.name for field in dataclasses.fields(report)}
+    assert (values["status"], values["body"], values["node"]) == ("ok", None, None) and values["steps"] > 0
+    assert report == dataclasses.replace(report) and report != dataclasses.replace(report, steps=0)
+    assert pickle.loads(pickle.dumps(report)) == report
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        report.steps = 0  # type: ignore[misc]
+
+
 def test_a_report_lists_overlaps_at_the_start() -> None:
     world, ball, floor = ball_world()
     low = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 0.045), name="low")

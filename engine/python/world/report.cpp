@@ -106,6 +106,38 @@ nb::list list_of(const std::vector<Row>& rows) {
     return values;
 }
 
+void for_each_value(const StepReport& report, auto&& visit) {
+    visit("status", nb::cast(name_of_status(report.status)));
+    visit("message", nb::cast(report.message()));
+    visit("warning", nb::cast(report.warning()));
+    visit("body", object_of(report.body));
+    visit("body_name", nb::cast(report.body_name));
+    visit("node", index_or_none(report.node));
+    visit("element", index_or_none(report.element));
+    visit("value", nb::cast(report.value));
+    visit("step_size", nb::cast(report.step_size));
+    visit("steps", nb::cast(report.steps));
+    visit("shortened", nb::cast(report.shortened));
+    visit("retried", nb::cast(report.retried));
+    visit("limited", nb::cast(report.limited));
+    visit("limited_step", nb::cast(report.limited_step));
+    visit("limited_by", nb::cast(report.limited_by));
+    visit("contacts", nb::cast(report.contacts));
+    visit("regions", nb::cast(report.regions));
+    visit("largest_region", nb::cast(report.largest_region));
+    visit("unconverged", nb::cast(report.unconverged));
+    visit("worst_error", nb::cast(report.worst_error));
+    visit("worst_region", nb::cast(report.worst_region));
+    visit("max_penetration", nb::cast(report.max_penetration));
+    visit("max_gap_violation", nb::cast(report.max_gap_violation));
+    visit("held_penetration", nb::cast(report.held_penetration));
+    visit("inverted", nb::cast(report.inverted));
+    visit("inverted_body", object_of(report.inverted_body));
+    visit("inverted_name", nb::cast(report.inverted_name));
+    visit("inverted_element", index_or_none(report.inverted_element));
+    visit("crossed", nb::cast(report.crossed));
+}
+
 void add_counters(const RunCounters& counters, nb::dict& values) {
     values["steps"] = counters.steps;
     values["inline_steps"] = counters.inline_steps;
@@ -185,36 +217,15 @@ nb::dict values_of(const DynamicsEstimate& estimate) {
 }
 
 nb::dict values_of(const StepReport& report) {
+    // Names as Python texts, which are made once, because each call of advance() returns a report. They are not freed,
+    // as the interpreter may end before them.
+    static std::vector<PyObject*>& names = *new std::vector<PyObject*>;
     nb::dict values;
-    values["status"] = name_of_status(report.status);
-    values["message"] = report.message();
-    values["warning"] = report.warning();
-    values["body"] = object_of(report.body);
-    values["body_name"] = report.body_name;
-    values["node"] = index_or_none(report.node);
-    values["element"] = index_or_none(report.element);
-    values["value"] = report.value;
-    values["step_size"] = report.step_size;
-    values["steps"] = report.steps;
-    values["shortened"] = report.shortened;
-    values["retried"] = report.retried;
-    values["limited"] = report.limited;
-    values["limited_step"] = report.limited_step;
-    values["limited_by"] = report.limited_by;
-    values["contacts"] = report.contacts;
-    values["regions"] = report.regions;
-    values["largest_region"] = report.largest_region;
-    values["unconverged"] = report.unconverged;
-    values["worst_error"] = report.worst_error;
-    values["worst_region"] = report.worst_region;
-    values["max_penetration"] = report.max_penetration;
-    values["max_gap_violation"] = report.max_gap_violation;
-    values["held_penetration"] = report.held_penetration;
-    values["inverted"] = report.inverted;
-    values["inverted_body"] = object_of(report.inverted_body);
-    values["inverted_name"] = report.inverted_name;
-    values["inverted_element"] = index_or_none(report.inverted_element);
-    values["crossed"] = report.crossed;
+    std::size_t count = 0;
+    for_each_value(report, [&](const char* name, const nb::object& value) {
+        if (count == names.size()) names.push_back(PyUnicode_InternFromString(name));
+        if (PyDict_SetItem(values.ptr(), names[count++], value.ptr()) != 0) throw nb::python_error();
+    });
     return values;
 }
 

@@ -19,7 +19,7 @@ DynamicsReason: TypeAlias = Literal["given", "self_contact", "losses", "strain",
 OverlapKind: TypeAlias = Literal["crossing", "inside", "around", "coincident"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class StepReport:
     """Report of one call of World.advance()."""
 
@@ -404,12 +404,15 @@ class WorldReport:
 
 
 def step_report(world: World, values: dict[str, Any]) -> StepReport:
-    """Makes a StepReport of the values of the extension module."""
+    """Makes a StepReport of the values of the extension module, which become its fields. The constructor would set the
+    fields one by one, which takes as long as the rest of a call of advance() beside its steps."""
     if values["body"] is not None:
         values["body"] = world._body(values["body"], values["body_name"])
     if values["inverted_body"] is not None:
         values["inverted_body"] = world._body(values["inverted_body"], values["inverted_name"])
-    return StepReport(**values)
+    report = StepReport.__new__(StepReport)
+    object.__setattr__(report, "__dict__", values)
+    return report
 
 
 _NAMES = {
