@@ -9,9 +9,9 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from worlds import ball_world
 
 import skerry as sk
+from worlds import ball_world
 
 
 def test_a_film_has_a_frame_at_each_multiple_of_every_and_at_the_end() -> None:

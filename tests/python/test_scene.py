@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import SCENE, changed
 
 import skerry as sk
+from scenes import SCENE, changed
+
 
 def test_a_mapping_and_its_file_give_the_same_world(tmp_path: Path) -> None:
     (tmp_path / "drop.json").write_text(json.dumps(SCENE))

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes import SCENE, changed
 
 import skerry as sk
+from scenes import SCENE, changed
 
 HEIGHTS = [[0, 0, 0.06], [0, 0, 0.08], [0, 0, 0.1]]
 

@@ -172,7 +172,9 @@ def _json_text(value: Json, place: str) -> str:
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"{place}: found a value that JSON does not have ({error}), expected one that it has") from error
+        raise TypeError(
+            f"{place}: found a value that JSON does not have ({error}), expected one that it has"
+        ) from error
 
 
 def _plain(value: Any) -> Any:
