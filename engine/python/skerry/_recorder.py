@@ -13,10 +13,11 @@ from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Vector, VectorLike, real_array
+from ._arrays import Vector, VectorLike, index_array, real_array
+from ._settings import Field, held
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -93,8 +94,11 @@ class StressProbe:
 
     body: Body
     """The body."""
-    nodes: Sequence[int] = ()
+    nodes: Field[ArrayLike, tuple[int, ...]] = held(())
     """Numbers of the nodes; none: all nodes."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nodes", tuple(index_array(self.nodes, "StressProbe.nodes", ("j",)).tolist()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +169,7 @@ def _recorded(name: str, probe: Probe) -> Any:
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
-            return _core.stress_probe(name, probe.body._handle, [int(node) for node in probe.nodes])
+            return _core.stress_probe(name, probe.body._handle, list(probe.nodes))
         case VolumeProbe():
             return _core.volume_probe(name, probe.body._handle)
         case PoseProbe():
@@ -347,7 +351,7 @@ class Film:
         self._count = 0
         self._folder = tempfile.mkdtemp(prefix="skerry")
         try:
-            self._writer = _core.PageWriter(os.path.join(self._folder, "page.html"), title)
+            self._writer: Any = _core.PageWriter(os.path.join(self._folder, "page.html"), title)
             self._frames = _Frames(world, every, self._add)
         except BaseException:
             shutil.rmtree(self._folder)
