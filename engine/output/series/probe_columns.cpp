@@ -239,7 +239,7 @@ constexpr Overloaded measures_force{[](const BodyForceProbe&) { return true; },
 /// Throws SceneError if the world lacks an object or a node of the probe.
 void require_objects(const World& world, const RecordedProbe& probe) {
     const Model& model = WorldAccess::state_of(world).model;
-    const auto require = [&](auto handle) { (void)model.row(handle, "probe"); };
+    const auto require = [&](auto handle) { (void)model.row(handle, "Recorder"); };
     std::visit(Overloaded{[&](const PointProbe& point) {
                               require_nodes(world, point.body, point.node);
                               require_weights(point);

@@ -80,6 +80,18 @@ class CheckpointTest(ProgramCase):
         self.run_stats(scene, "--seconds", 0.25, "--checkpoint", checkpoint)
         self.same_run(self.run_stats("--restart", checkpoint, "--seconds", 0.4), expected)
 
+    def test_a_run_with_a_probe_of_a_joint_goes_on_with_the_same_rows(self):
+        lever = dict(SCENE["bodies"][0], name="lever", dynamics="rigid", position=[0, 0, 1])
+        hinge = {"kind": "hinge", "first": "lever", "point": [0, 0, 1.2], "axis": [0, 1, 0]}
+        scene = self.write("lever.json", dict(
+            SCENE, bodies=[lever], joints=[hinge],
+            probes=[{"name": "hinge", "quantity": "joint", "joint": "joint_0"}]))
+        whole, parts, checkpoint = (self.folder / name for name in ("whole.csv", "parts.csv", "run.skerry"))
+        self.run_stats(scene, "--seconds", 0.2, "--probes", whole)
+        self.run_stats(scene, "--seconds", 0.1, "--probes", parts, "--checkpoint", checkpoint)
+        self.run_stats("--restart", checkpoint, "--seconds", 0.2, "--probes", parts)
+        self.assertEqual(parts.read_text(), whole.read_text())
+
     def test_a_run_of_a_changed_scene_goes_on_with_it(self):
         checkpoint = self.folder / "run.skerry"
         change = ["--set", "bodies[0].name=brick", "--set", "probes[0].body=brick"]
