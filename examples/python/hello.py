@@ -15,8 +15,8 @@ while world.time < 2:
 
 report = world.report()
 print(
-    f"After {world.time:.3f} s and {report.steps:,} steps the ball's centre is {ball.center_of_mass[2]:.4f} m above the "
-    f"floor; it touched the floor with up to {report.max_contacts} nodes."
+    f"After {world.time:.3f} s and {report.steps:,} steps the ball's centre is {ball.center_of_mass[2]:.4f} m above "
+    f"the floor; it touched the floor with up to {report.max_contacts} nodes."
 )
 
 # The ball reached the floor, did not sink into it, and did not jump higher than it was dropped from.

@@ -18,7 +18,7 @@ poses[:, :, 0] += speeds[:, None] * dt * np.arange(1, steps + 1)
 
 out = sk.rollout(world, {finger: poses}, dt=dt, record={"ball": sk.BodyProbe(ball), "finger": sk.ForceProbe(finger)})
 moved = out["ball.position"][:, -1, 0]  # how far the ball has come in each world [m]
-for speed, distance, force in zip(speeds, moved, -out["finger.force"][:, :, 0].min(axis=1)):
+for speed, distance, force in zip(speeds, moved, -out["finger.force"][:, :, 0].min(axis=1), strict=True):
     print(f"finger at {speed:.3f} m/s: the ball moved by {100 * distance:5.2f} cm, largest mean force {force:.2f} N")
 
 assert not any(out.messages)

@@ -26,9 +26,7 @@ class Bench:
         rubber = sk.Material(young_modulus=5e4, density=500, friction=0.8, damping=20)
         self.floor = self.world.add_collider(sk.Plane(), name="floor")
         self.ball = self.world.add_body(sk.Mesh.ball(0.05, 4), rubber, position=(0, 0, 0.052), name="ball")
-        self.finger = self.world.add_collider(
-            sk.Box(size=(0.02, 0.04, 0.04)), position=(0.065, 0, 0.05), name="finger"
-        )
+        self.finger = self.world.add_collider(sk.Box(size=(0.02, 0.04, 0.04)), position=(0.065, 0, 0.05), name="finger")
         self.bar = self.world.add_body(
             sk.Mesh.box((0.2, 0.05, 0.05), (8, 2, 2)), rubber, position=(0, 0.5, 0.5), name="bar"
         )
@@ -145,9 +143,7 @@ def test_the_held_end_carries_the_weight_of_the_bar() -> None:
 def test_a_motor_follows_the_speeds_of_a_control() -> None:
     bench = Bench()
     speeds = np.linspace(0.5, 2, STEPS)
-    out = sk.rollout(
-        bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"hinge": sk.JointProbe(bench.hinge)}
-    )
+    out = sk.rollout(bench.world, {(bench.hinge, "speed"): speeds}, dt=DT, record={"hinge": sk.JointProbe(bench.hinge)})
     # The solver may miss the speed by its tolerance.
     assert np.diff(out["hinge.angle"][0]) == pytest.approx(speeds[1:] * DT, rel=sk.Settings().tolerance)
 
@@ -168,7 +164,9 @@ def test_a_continued_rollout_has_the_bits_of_a_longer_one() -> None:
     half = STEPS // 2
     first = sk.rollout(bench.world, {"finger": path[:, :half]}, dt=DT, record=record, keep_worlds=True)
     second = sk.rollout(first.worlds, {"finger": path[:, half:]}, dt=DT, record=record)
-    assert np.array_equal(np.concatenate([first["ball.positions"], second["ball.positions"]], axis=1), whole["ball.positions"])
+    assert np.array_equal(
+        np.concatenate([first["ball.positions"], second["ball.positions"]], axis=1), whole["ball.positions"]
+    )
 
 
 def test_a_world_that_stops_warns_and_has_nan() -> None:
@@ -188,9 +186,7 @@ def test_arrays_of_the_wrong_shape_are_refused_with_both_shapes() -> None:
     with pytest.raises(TypeError, match=r"found an array of the shape \(4, 5\), expected \(B, T, 6\) or \(T, 6\)"):
         sk.rollout(bench.world, {"finger": np.zeros((4, 5))}, dt=DT)
     with pytest.raises(TypeError, match=r"shape \(4, 2, 3\) with the number of intervals 2, expected 3"):
-        sk.rollout(
-            bench.world, {"finger": np.zeros((4, 3, 6)), (bench.ball, "force"): np.zeros((4, 2, 3))}, dt=DT
-        )
+        sk.rollout(bench.world, {"finger": np.zeros((4, 3, 6)), (bench.ball, "force"): np.zeros((4, 2, 3))}, dt=DT)
     with pytest.raises(TypeError, match="with the number of worlds 4, expected 2"):
         sk.rollout([bench.world, bench.world], {"finger": np.zeros((4, 3, 6))}, dt=DT)
 
@@ -224,7 +220,7 @@ def test_another_thread_finds_the_world_busy() -> None:
     started.wait()
     while thread.is_alive() and not errors:
         try:
-            bench.world.time
+            _ = bench.world.time
         except sk.BusyError as error:
             errors.append(error)
     thread.join()

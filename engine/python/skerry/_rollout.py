@@ -174,7 +174,8 @@ class _Values:
             raise scene_error(place, "quantity", repr(quantity), expected)
         self.name = f"{place} ({self.quantity})"
         self.handle = None if isinstance(target, World) else target._handle
-        shape = tuple(target.node_count if length < 0 else length for length in shapes[self.quantity])
+        nodes = target.node_count if isinstance(target, Body) else 0
+        shape = tuple(nodes if length < 0 else length for length in shapes[self.quantity])
         self.array = np.ascontiguousarray(values, dtype=np.float64)
         extra = self.array.ndim - len(shape)
         if extra not in (1, 2) or self.array.shape[extra:] != shape:
