@@ -228,32 +228,29 @@ def test_another_thread_finds_the_world_busy() -> None:
     assert bench.world.time == 0
 
 
-def test_ctrl_c_ends_a_rollout_within_50_ms() -> None:
+def test_ctrl_c_ends_a_rollout_and_leaves_the_world_whole() -> None:
     program = """
-        import time, skerry as sk
+        import skerry as sk
         world = sk.World()
         for i in range(4):
             world.add_body(sk.Mesh.ball(0.1, 6), sk.Material(young_modulus=1e6), position=(0, 0, 0.2 + 0.3 * i))
         world.add_collider(sk.Plane())
+        before = world.state_hash
         print("running", flush=True)
         try:
-            sk.rollout([world] * 8, dt=1.0, steps=1000)
+            sk.rollout([world] * 8, dt=1.0, steps=100_000)  # would take hours
         except KeyboardInterrupt:
-            print(time.monotonic(), flush=True)
+            assert world.state_hash == before
             world.advance(0.01)
-            print("whole", flush=True)
+            print("whole")
     """
-    process = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent(program)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "running\n"
-    time.sleep(0.3)
-    sent = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    out, errors = process.communicate(timeout=60)
-    assert errors == ""
-    stopped, whole = out.splitlines()
-    assert whole == "whole"
-    # The clock of both processes is the same. The limit is generous, since the machine may be busy.
-    assert float(stopped) - sent < 1.0
+    process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(program)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "running\n"
+        time.sleep(0.3)  # the rollout has begun
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert (out, process.returncode) == ("whole\n", 0)
