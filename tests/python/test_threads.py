@@ -4,10 +4,14 @@ import concurrent.futures
 import multiprocessing
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 import pytest
 import skerry as sk
+from skerry import _core
 from worlds import RUBBER, ball_world, run_program
 
 READS = {
@@ -30,9 +34,9 @@ READS = {
 }
 
 
-@pytest.mark.parametrize("read", READS)
-def test_a_world_that_another_thread_advances_is_busy(read: str) -> None:
-    world, ball, _ = ball_world()
+@contextmanager
+def busy(world: sk.World) -> Iterator[None]:
+    """Another thread advances the world until the end of the scope."""
     inside, done = threading.Event(), threading.Event()
 
     def wait(report: sk.StepReport) -> None:
@@ -43,12 +47,46 @@ def test_a_world_that_another_thread_advances_is_busy(read: str) -> None:
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         advance = pool.submit(world.advance, 1e-9)
         assert inside.wait(60)
-        with pytest.raises(sk.BusyError, match="in use by another thread"):
-            READS[read](world, ball)
-        done.set()
-        assert advance.result().ok
+        try:
+            yield
+        finally:
+            done.set()
+            assert advance.result().ok
     world.watch_steps(None)
+
+
+@pytest.mark.parametrize("read", READS)
+def test_a_world_that_another_thread_advances_is_busy(read: str) -> None:
+    world, ball, _ = ball_world()
+    with busy(world), pytest.raises(sk.BusyError, match="in use by another thread"):
+        READS[read](world, ball)
     READS[read](world, ball)
+
+
+def test_every_method_of_the_extension_module_can_be_busy() -> None:
+    world, ball, floor = ball_world()
+    handles = {"body": ball._handle, "collider": floor._handle, "attachment": ball.attach([0])._handle}
+    settings = (sk.Pose(position=(0, 0, 1)), sk.Surface(), np.zeros(3), np.zeros((ball.node_count, 3)), "rigid", 1, 1.0)
+    arguments: list[tuple[Any, ...]] = [(), (None,), (True,), (world.copy()._core,), (sk.Material(),), (np.zeros(3),)]
+    for handle in handles.values():
+        arguments += [(handle,), *((handle, value) for value in settings), (handle, handle), (handle, None)]
+        arguments += [(handle, np.zeros(3), np.zeros(3)), (handle, 1, 1), (handle, sk.Pose(), 1.0)]
+    called = set()
+    with busy(world):
+        for name in dir(_core.World):
+            method = getattr(_core.World, name)
+            if name.startswith("__") or name in ("load", "from_bytes"):
+                continue
+            for given in arguments:
+                try:
+                    method(world._core, *given)
+                except sk.BusyError:
+                    called.add(name)
+                except TypeError:
+                    pass
+                else:
+                    pytest.fail(f"{name} did not notice the other thread")
+    assert len(called) > 50 and {"mass", "views", "move_to", "set_positions", "report"} <= called
 
 
 def test_reads_of_a_second_thread_are_right_or_refused() -> None:
