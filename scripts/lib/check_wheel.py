@@ -22,7 +22,7 @@ def import_times():
     def once():
         text = subprocess.run([sys.executable, "-I", "-X", "importtime", "-c", "import skerry"], capture_output=True,
                               text=True, check=True).stderr
-        times = {name: int(total) / 1000 for total, name in re.findall(r"\|\s*(\d+) \|\s*(skerry|numpy)\n", text)}
+        times = {name: int(total) / 1000 for total, name in re.findall(r"\|\s*(\d+) \| +(skerry|numpy)\n", text)}
         return times["skerry"], times.get("numpy", 0)
     return min(once() for _ in range(5))
 

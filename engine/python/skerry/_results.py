@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import real_array, vector
+from ._arrays import VectorLike, real_array
+from ._problem import StepProblem, contact_problems
 
 if TYPE_CHECKING:
     from ._world import Attachment, Body, Collider, World
@@ -122,7 +124,7 @@ class ForceReport:
         """Mean of the sum of the magnitudes of the normal forces [N]."""
         return float(self._mean(np.array(self.pressing_impulse)))
 
-    def moment_about(self, point: ArrayLike) -> Reals:
+    def moment_about(self, point: VectorLike) -> Reals:
         """Mean moment about another fixed point (3,) [m], shape (3,) [N m]."""
         arm = self.moment_point - real_array(point, "point", (3,))
         return self._mean(self.moment_impulse + np.cross(arm, self.impulse))
@@ -207,10 +209,19 @@ class WorldResults:
         counts = np.bincount(region[region >= 0])
         return np.split(order[np.count_nonzero(region < 0) :], np.cumsum(counts)[:-1]) if len(counts) else []
 
-    def measure_forces(self, point: ArrayLike = (0.0, 0.0, 0.0), *, on: bool = True) -> None:
+    def contact_problems(self, *, every: int = 1) -> AbstractContextManager[list[StepProblem]]:
+        """Collects the contact problems of steps whose number is a multiple of `every`:
+
+        with world.contact_problems() as problems:
+            world.advance(0.1)
+        solution = skerry.solve(problems[0].problem)
+        """
+        return contact_problems(self._core, every)
+
+    def measure_forces(self, point: VectorLike = (0.0, 0.0, 0.0), *, on: bool = True) -> None:
         """From now on each call of advance() sums the forces of contacts and attachments, with moments about `point`,
         shape (3,) [m]. on=False ends this. Steps do not change. A loaded world does not measure."""
-        self._core.measure_forces(on, vector(point, "point"))
+        self._core.measure_forces(on, real_array(point, "point", (3,)))
 
     @property
     def measures_forces(self) -> bool:
@@ -224,8 +235,8 @@ class WorldResults:
 
     def cast_ray(
         self,
-        origin: ArrayLike,
-        direction: ArrayLike,
+        origin: VectorLike,
+        direction: VectorLike,
         max_distance: float = math.inf,
         *,
         bodies: bool = True,
@@ -269,7 +280,7 @@ class WorldResults:
 
     def nearest_point(
         self,
-        point: ArrayLike,
+        point: VectorLike,
         max_distance: float = math.inf,
         *,
         bodies: bool = True,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._arrays import VectorLike, index_array, real_array, require_shape
+from .._recorder import PointProbe, point_probe
 from .._settings import Dynamics, ElementKind, Motion, Pose
 from .objects import MovedObject, TouchingObject
 from .reports import DynamicsEstimate
@@ -192,6 +193,11 @@ class Body(TouchingObject):
             require_shape(condition, "where", (len(x),))
             chosen &= condition
         return np.flatnonzero(chosen).astype(np.int32)
+
+    def probe(self, point: VectorLike) -> PointProbe:
+        """Probe for a recorder: the material point that is now at `point` (3,) [m]. SceneError: the point is outside of
+        the body, farther from its nearest node than the mean edge."""
+        return point_probe(self, point)
 
     # Control.
 

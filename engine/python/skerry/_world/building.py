@@ -50,7 +50,7 @@ class JointSettings(SimpleNamespace):
 class Building:
     """The part of World that adds, finds and removes objects."""
 
-    __slots__ = ("__weakref__", "_core", "_doubts", "_materials", "_mesh_arrays", "_watch")
+    __slots__ = ("__weakref__", "_core", "_doubts", "_followers", "_materials", "_mesh_arrays", "_watch")
 
     @property
     def _self(self) -> World:
@@ -60,6 +60,7 @@ class Building:
     def _hold(self, core: Any) -> None:
         self._core = core
         self._watch: Callable[[StepReport], object] | None = None
+        self._followers: list[Callable[[], None]] = []  # called after each call of advance()
         self._doubts: set[tuple[str, ...]] = set()
         self._materials: dict[Material, Any] = {}
         self._mesh_arrays: dict[Any, tuple[Indices, Indices]] = {}

@@ -14,6 +14,8 @@ from typing import Any, Unpack
 from .. import _core
 from .._arrays import VectorLike, real_array
 from .._errors import Doubt, SceneError, StepError
+from .._recorder import WorldOutput
+from .._results import WorldResults
 from .._settings import Settings
 from .body import Body
 from .building import Building
@@ -31,7 +33,7 @@ _LARGEST_TRUSTED_ERROR = 0.5
 """Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""
 
 
-class World(Building):
+class World(Building, WorldResults, WorldOutput):
     """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
 
     World() has the default settings, World(settings) the given ones; keywords change single settings:
@@ -110,6 +112,8 @@ class World(Building):
     def try_advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
         """Advances like advance(), but returns the report of a step that could not be completed."""
         values = self._core.advance(dt, self._told(check), self._told(self._watch))
+        for follow in tuple(self._followers):
+            follow()
         report = step_report(self, values)
         if report.warning or report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
             self._warn_of(report)
