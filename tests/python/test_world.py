@@ -14,6 +14,9 @@ import skerry as sk
 from worlds import RUBBER, ball_world
 
 
+KEYS: list[dict[str, Any]] = [{"time": 0, "position": [0, 0, 0.13]}, {"time": 0.05, "position": [0, 0, 0.11]}]
+
+
 def test_keywords_change_single_settings() -> None:
     settings = sk.Settings(gravity=(0, 0, -1), threads=1)
     assert sk.World(settings, tolerance=1e-6).settings == dataclasses.replace(
@@ -87,6 +90,59 @@ def test_bodies_that_share_a_name_are_found_by_number() -> None:
         world.bodies["ball"]
     first, second = world.bodies.values()
     assert first == ball and second == world.bodies[1] != ball
+
+
+def test_a_world_built_in_python_has_the_bits_of_the_same_scene_from_a_file(tmp_path: pathlib.Path) -> None:
+    scene = {
+        "seconds": 0.1,
+        "settings": {"threads": 2, "tolerance": 1e-5},
+        "materials": {"rubber": {"young_modulus": 2e5, "friction": 0.3, "loss_factor": 0.1}},
+        "bodies": [
+            {
+                "name": "ball",
+                "mesh": {"ball": {"radius": 0.05, "resolution": 4}},
+                "material": "rubber",
+                "position": [0, 0, 0.05],
+                "rotation": {"axis": [0, 0, 1], "degrees": 90},
+            },
+            {
+                "name": "box",
+                "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}},
+                "material": "rubber",
+                "position": [0.11, 0, 0.051],
+                "velocity": [-0.5, 0, 0],
+                "angular_velocity": [0, 1, 0],
+                "dynamics": "rigid",
+            },
+        ],
+        "colliders": [
+            {"name": "floor", "shape": {"plane": {"normal": [0, 0, 1]}}, "friction": 0.4},
+            {"name": "finger", "shape": {"sphere": {"radius": 0.02}}, "motion": {"keys": KEYS}},
+        ],
+    }
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    loaded = sk.load_scene(tmp_path / "scene.json").world
+    world = sk.World(threads=1, tolerance=1e-5)
+    rubber = sk.Material(young_modulus=2e5, friction=0.3, loss_factor=0.1)
+    ball = world.add_body(sk.Mesh.ball(0.05, 4), rubber, position=(0, 0, 0.05), rotation=(0, 0, np.pi / 2), name="ball")
+    world.add_body(
+        sk.Mesh.box((0.1, 0.1, 0.1), 2),
+        rubber,
+        position=(0.11, 0, 0.051),
+        velocity=(-0.5, 0, 0),
+        angular_velocity=(0, 1, 0),
+        dynamics="rigid",
+        name="box",
+    )
+    world.add_collider(sk.Plane(), friction=0.4, name="floor")
+    keys = [sk.MotionKey(time=key["time"], position=key["position"]) for key in KEYS]
+    world.add_collider(sk.Sphere(radius=0.02), motion=sk.Motion(keys=keys), name="finger")
+    assert world.state_hash == loaded.state_hash
+    for each in (world, loaded):
+        each.advance(0.1)
+    assert world.report().max_contacts > 3
+    assert world.state_hash == loaded.state_hash
+    assert np.array_equal(ball.positions, loaded.bodies["ball"].positions)
 
 
 @pytest.mark.parametrize("copied", [sk.World.copy, copy.copy, copy.deepcopy, lambda w: pickle.loads(pickle.dumps(w))])
