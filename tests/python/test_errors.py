@@ -5,6 +5,7 @@ import traceback
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
 

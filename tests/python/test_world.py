@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
-
 
 KEYS: list[dict[str, Any]] = [{"time": 0, "position": [0, 0, 0.13]}, {"time": 0.05, "position": [0, 0, 0.11]}]
 
@@ -163,8 +163,8 @@ def test_a_copy_continues_with_the_same_bits(copied: Any) -> None:
 def test_a_copy_may_have_another_number_of_threads() -> None:
     world, _, _ = ball_world()
     world.advance(0.06)
-    other = world.copy(threads=2)
-    assert other.settings.threads == 2
+    other = world.copy(threads=2, backend="threads")
+    assert (other.settings.threads, other.settings.backend) == (2, "threads")
     other.advance(0.05)
     world.advance(0.05)
     assert other.state_hash == world.state_hash
@@ -184,6 +184,10 @@ def test_a_saved_world_continues_with_the_same_bits(tmp_path: pathlib.Path) -> N
     world.advance(0.06)
     world.save(tmp_path / "a.skerry")
     other = sk.World.load(tmp_path / "a.skerry", threads=2)
+    assert other.settings == dataclasses.replace(world.settings, threads=2)
+    assert sk.World.load(tmp_path / "a.skerry", backend="serial").settings.backend == "serial"
+    with pytest.raises(sk.SceneError, match="LoadSettings: backend: found 'mpi', expected one of 'tbb'"):
+        sk.World.load(tmp_path / "a.skerry", backend="mpi")  # type: ignore[arg-type]
     for each in (world, other):
         each.advance(0.05)
     assert other.state_hash == world.state_hash
