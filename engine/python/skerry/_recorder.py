@@ -7,6 +7,7 @@ import math
 import os
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import KW_ONLY, dataclass
@@ -343,18 +344,20 @@ class Film:
 
     Frames are kept in the compressed form of the page."""
 
-    __slots__ = ("_count", "_folder", "_frames", "_page", "_world", "_writer")
+    __slots__ = ("__weakref__", "_count", "_file", "_frames", "_page", "_remove_folder", "_world", "_writer")
 
     def __init__(self, world: World, title: str, every: float) -> None:
         self._world = world
         self._page: str | None = None
         self._count = 0
-        self._folder = tempfile.mkdtemp(prefix="skerry")
+        folder = tempfile.mkdtemp(prefix="skerry")
+        self._remove_folder = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        self._file = os.path.join(folder, "page.html")
         try:
-            self._writer: Any = _core.PageWriter(os.path.join(self._folder, "page.html"), title)
+            self._writer: Any = _core.PageWriter(self._file, title)
             self._frames = _Frames(world, every, self._add)
         except BaseException:
-            shutil.rmtree(self._folder)
+            self._remove_folder()
             raise
 
     def _add(self) -> None:
@@ -368,10 +371,10 @@ class Film:
         try:
             self._frames.end()
             self._writer.close(self._world._core)
-            with open(os.path.join(self._folder, "page.html"), encoding="utf-8") as file:
+            with open(self._file, encoding="utf-8") as file:
                 self._page = file.read()
         finally:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            self._remove_folder()
             self._writer = None
 
     def show(self, *, height: int = 560) -> Page:
