@@ -131,7 +131,7 @@ def test_wrong_arguments_are_refused() -> None:
     with pytest.raises(TypeError, match="steps: found neither a number nor an array"):
         sk.rollout(world, {}, dt=DT)
     with pytest.raises(TypeError, match="controls: found 3, expected the name of a collider"):
-        sk.rollout(world, {3: np.zeros((B, T, 3))}, dt=DT)  # type: ignore[dict-item]
+        sk.rollout(world, {3: np.zeros((B, T, 3))}, dt=DT)  # type: ignore[type-var]
     with pytest.raises(KeyError, match="hand"):
         sk.rollout(world, {"hand": poses()}, dt=DT)
     with pytest.raises(sk.SceneError, match="dt"):

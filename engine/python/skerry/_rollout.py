@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,6 +86,8 @@ Control: TypeAlias = (
 )
 """A quantity that a rollout sets at the start of each interval."""
 
+Key = TypeVar("Key", bound=Control | str)
+
 
 class RolloutResult(dict[str, NDArray[Any]]):
     """Arrays of a rollout by name, see rollout()."""
@@ -96,7 +98,7 @@ class RolloutResult(dict[str, NDArray[Any]]):
 
 def rollout(
     worlds: World | Sequence[World],
-    controls: Mapping[str, ArrayLike] | Mapping[Control, ArrayLike] | Mapping[Control | str, ArrayLike],
+    controls: Mapping[Key, ArrayLike],
     *,
     dt: float,
     steps: int | None = None,
