@@ -27,9 +27,9 @@ void bind_settings(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_problem(nb::module_& module);
 void bind_recorder(nb::module_& module);
+void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_world(nb::module_& module);
-void bind_rollout(nb::module_& module);
 
 /// Arrays that Python passes in: C-contiguous, of exactly this type.
 using Vectors = nb::ndarray<const Real, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;

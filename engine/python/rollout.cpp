@@ -65,17 +65,20 @@ nb::dict dict_of(RolloutResult&& result) {
         series.append(nb::make_tuple(quantities, array_of<Real>(std::span<const Real>(recorded.values))));
     }
     for (const RolloutStatus& world : result.status)
-        status.append(nb::make_tuple(world.intervals, world.message(), world.distrust));
-    for (World& world : result.worlds) worlds.append(nb::cast(new WorldObject(std::move(world))));
+        status.append(nb::make_tuple(world.message(), world.distrust));
+    for (World& world : result.worlds)
+        worlds.append(nb::cast(new WorldObject(std::move(world)), nb::rv_policy::take_ownership));
     values["series"] = series;
     values["status"] = status;
     values["worlds"] = worlds;
     return values;
 }
 
+/// Rolls out the given worlds, of which several may be the same. `progress` is None or is called about every 20 ms with
+/// the numbers of completed intervals and of all intervals.
 nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector<Control>& controls,
                      std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads,
-                     bool keep_worlds) {
+                     bool keep_worlds, const nb::object& progress) {
     std::deque<Use> used;  // a deque never moves its elements
     std::vector<const World*> worlds;
     for (WorldObject* object : objects) {
@@ -85,9 +88,10 @@ nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector
     RolloutSettings settings{.intervals = intervals, .dt = dt, .threads = threads, .keep_worlds = keep_worlds};
     std::ranges::transform(controls, std::back_inserter(settings.controls), control_of);
     settings.record = std::move(record);
-    settings.go_on = [](const RolloutProgress&) {
+    settings.go_on = [&](const RolloutProgress& so_far) {
         nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (!progress.is_none()) progress(so_far.intervals_done, so_far.worlds * intervals);
         return true;
     };
     if (threads != 1) Use::note_threads();
@@ -97,7 +101,8 @@ nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector
 }  // namespace
 
 void bind_rollout(nb::module_& module) {
-    module.def("rollout", &run_rollout);
+    module.def("rollout", &run_rollout, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
+               nb::arg().none());
 }
 
 }  // namespace skerry::python

@@ -21,5 +21,5 @@ moved = out["ball.position"][:, -1, 0]  # how far the ball has come in each worl
 for speed, distance, force in zip(speeds, moved, -out["finger.force"][:, :, 0].min(axis=1), strict=True):
     print(f"finger at {speed:.3f} m/s: the ball moved by {100 * distance:5.2f} cm, largest mean force {force:.2f} N")
 
-assert not any(out.messages)
+assert out["ok"].all()
 assert np.all(moved > speeds * steps * dt - 0.01)  # the ball is before the finger

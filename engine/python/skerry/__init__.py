@@ -31,7 +31,7 @@ from ._results import (
     contact_dtype,
     hit_dtype,
 )
-from ._rollout import Rollout, rollout
+from ._rollout import RolloutResult, rollout
 from ._scene import ContactProbe, Scene, load_scene, scene_schema
 from ._settings import (
     Backend,
@@ -138,7 +138,7 @@ __all__ = [
     "ProblemError",
     "ReactionProbe",
     "Recorder",
-    "Rollout",
+    "RolloutResult",
     "Scene",
     "SceneError",
     "SelfCrossing",

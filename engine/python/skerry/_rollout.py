@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
@@ -31,25 +32,16 @@ _CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
 number of nodes. The first quantity is the default."""
 
 
-class Rollout(dict[str, Reals]):
-    """Recorded values by name: arrays whose first two axes are the world and the interval. Values of intervals that
-    were not completed are NaN. rollout() makes it."""
+class RolloutResult(dict[str, NDArray[Any]]):
+    """Arrays of a rollout by name, see rollout()."""
 
-    time: Reals
-    """Time at the end of each interval, shape (B, T) [s]."""
-    completed: NDArray[np.int32]
-    """Number of completed intervals of each world, shape (B,)."""
-    messages: tuple[str, ...]
-    """For each world the reason why it stopped; empty if it completed all intervals."""
-    distrust: tuple[str, ...]
-    """For each world the reason why its values cannot be trusted; empty if there is none."""
     worlds: tuple[World, ...]
-    """The worlds at the end, if they were kept."""
+    """The worlds at the end, if keep_worlds was set."""
 
     def __repr__(self) -> str:
+        count, steps = self["time"].shape
         arrays = ", ".join(f"{name!r} {shape_text(values.shape)}" for name, values in self.items())
-        count, steps = self.time.shape
-        return f"<skerry.Rollout of {count:,} worlds, {steps:,} intervals: {arrays or 'no records'}>"
+        return f"<skerry.RolloutResult of {count:,} worlds and {steps:,} intervals: {arrays}>"
 
 
 def rollout(
@@ -61,7 +53,8 @@ def rollout(
     record: Mapping[str, Probe] | None = None,
     threads: int = 0,
     keep_worlds: bool = False,
-) -> Rollout:
+    progress: bool = False,
+) -> RolloutResult:
     """Advances copies of a world through T intervals of dt [s], several copies at once. The given worlds do not change.
 
         poses = np.zeros((64, 100, 6))  # 64 worlds, 100 intervals
@@ -77,14 +70,21 @@ def rollout(
 
     steps: number T of intervals; needed only without controls.
 
-    record: probes by name, as for World.recorder(). Their values at the end of each interval have the names of
-    Recorder.table(), but components and nodes are axes: out["tip.position"] has the shape (B, T, 3) for a PointProbe,
-    out["ball.positions"] (B, T, n, 3) for a NodesProbe, out["energy.elastic"] (B, T). Forces are those of the interval.
+    record: probes by name, as for World.recorder(). Their values are taken at the end of each interval; forces are those
+    of the interval.
 
-    threads: number of threads; 0: all cores. keep_worlds: True: the result holds the worlds at the end.
+    threads: number of threads; 0: all cores. keep_worlds: True: `worlds` of the result holds the worlds at the end.
+    progress: writes the share that is done to the standard error output.
+
+    The result has:
+    - "PROBE.QUANTITY", as in Recorder.table(): shape (B, T), (B, T, 3) for vectors, (B, T, n, 3) for the "position" of
+      all nodes of a body
+    - "time" at the end of each interval, shape (B, T) [s]
+    - "ok", shape (B,): False for a world whose step was refused. It stops, and its further values are NaN; the other
+      worlds continue. "message": why it stopped. "distrust": why its values cannot be trusted. Both become warnings.
 
     The values have the bits of a loop that copies each world, applies the controls of an interval, and calls
-    advance(dt). A world whose step is refused stops, with a warning; the others continue. Ctrl-C ends all of them.
+    advance(dt), for any number of threads. Ctrl-C ends the rollout.
 
     TypeError: an array has the wrong shape. SceneError: an object, a quantity or a value is wrong; no world has run
     then. BusyError: another thread uses one of the worlds."""
@@ -105,16 +105,17 @@ def rollout(
         intervals,
         threads,
         keep_worlds,
+        _show if progress else None,
     )
-    result = Rollout()
+    result = RolloutResult(time=values["time"].reshape((count, intervals)))
     for (name, probe), (columns, series) in zip(probes.items(), values["series"], strict=True):
         result.update(_arrays_of(name, probe, columns, series.reshape((count, intervals, -1))))
-    result.time = values["time"].reshape((count, intervals))
-    completed, messages, distrust = zip(*values["status"], strict=True)
-    result.completed = np.array(completed, dtype=np.int32)
-    result.messages, result.distrust = messages, distrust
+    messages, distrust = zip(*values["status"], strict=True)
+    result["message"], result["distrust"] = np.array(messages, dtype=np.str_), np.array(distrust, dtype=np.str_)
+    result["ok"] = result["message"] == ""
     result.worlds = tuple(World._of(core) for core in values["worlds"])
-    _warn(result, intervals)
+    _warn("stopped", messages)
+    _warn("cannot be trusted", distrust)
     return result
 
 
@@ -124,21 +125,16 @@ def _first_of(worlds: Sequence[World]) -> World:
     return worlds[0]
 
 
-def _warn(result: Rollout, intervals: int) -> None:
-    """Warns of worlds that stopped, and of values that cannot be trusted."""
-    stopped = [number for number, message in enumerate(result.messages) if message]
-    if stopped:
-        number = stopped[0]
-        warnings.warn(
-            f"rollout: {len(stopped)} of {len(result.messages)} worlds stopped; world {number} completed "
-            f"{result.completed[number]} of {intervals} intervals: {result.messages[number]}",
-            Doubt,
-            stacklevel=3,
-        )
-    for number, reason in enumerate(result.distrust):
-        if reason:
-            warnings.warn(f"rollout: world {number}: {reason}", Doubt, stacklevel=3)
-            break
+def _warn(state: str, reasons: Sequence[str]) -> None:
+    """Warns of the worlds that have a reason."""
+    worlds = [number for number, reason in enumerate(reasons) if reason]
+    if worlds:
+        text = f"rollout: {len(worlds)} of {len(reasons)} worlds {state}; world {worlds[0]}: {reasons[worlds[0]]}"
+        warnings.warn(text, Doubt, stacklevel=3)
+
+
+def _show(done: int, total: int) -> None:
+    print(f"\r{100 * done / total:.0f} %", end="\n" if done == total else "", file=sys.stderr, flush=True)
 
 
 def _common(controls: Mapping[Any, _Values], what: str, place: int, given: int | None) -> int | None:
@@ -189,7 +185,7 @@ class _Values:
 def _arrays_of(name: str, probe: Probe, columns: list[str], series: Reals) -> dict[str, Reals]:
     """The values of a probe by quantity. Columns whose names differ only in _x, _y and _z become one array."""
     if isinstance(probe, NodesProbe):
-        return {f"{name}.positions": series.reshape((*series.shape[:2], -1, 3))}
+        return {f"{name}.position": series.reshape((*series.shape[:2], -1, 3))}
     arrays, place = {}, 0
     while place < len(columns):
         quantity = columns[place].removesuffix("_x")
