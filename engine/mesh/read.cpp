@@ -77,9 +77,9 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Turns the inverted tetrahedra of a mesh whose node numbers are valid, unless they would then overlap others. Some programs list the nodes of all
-/// or some tetrahedra in the opposite order. If instead a node lies in a wrong place, tetrahedra at this node are
-/// inverted, too, but share each face with a tetrahedron on its other side.
+/// Turns the inverted tetrahedra of a mesh whose node numbers are valid, unless they would then overlap others. Some
+/// programs list the nodes of all or some tetrahedra in the opposite order. If instead a node lies in a wrong place,
+/// tetrahedra at this node are inverted, too, but share each face with a tetrahedron on its other side.
 void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)

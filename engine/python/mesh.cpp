@@ -96,14 +96,14 @@ void bind_mesh(nb::module_& module) {
     nb::class_<Mesh>(module, "Mesh")
         .def("nodes", [](const Mesh& mesh) { return array_of(mesh.nodes); })
         .def("tetrahedra",
-                     [](const Mesh& mesh) {
-                         return array_of<Index>(std::span<const std::array<Index, 4>>(mesh.tetrahedra), {4});
-                     })
+             [](const Mesh& mesh) {
+                 return array_of<Index>(std::span<const std::array<Index, 4>>(mesh.tetrahedra), {4});
+             })
         .def("labels",
-                     [](const Mesh& mesh) -> nb::object {
-                         if (mesh.label.empty()) return nb::none();
-                         return nb::cast(array_of<Index>(std::span<const int>(mesh.label)));
-                     })
+             [](const Mesh& mesh) -> nb::object {
+                 if (mesh.label.empty()) return nb::none();
+                 return nb::cast(array_of<Index>(std::span<const int>(mesh.label)));
+             })
         .def("file_number", [](const Mesh& mesh) -> nb::object {
             if (mesh.file_number.empty()) return nb::none();
             return nb::cast(array_of<Index>(std::span<const Index>(mesh.file_number)));
@@ -118,9 +118,8 @@ void bind_mesh(nb::module_& module) {
     module.def("lathe", &lathe);
     module.def("skittle", &mesh::skittle);
     module.def("table", &table);
-    module.def("write_mesh", [](const std::string& path, const Mesh& mesh) {
-        without_gil([&] { mesh::write(path, mesh); });
-    });
+    module.def("write_mesh",
+               [](const std::string& path, const Mesh& mesh) { without_gil([&] { mesh::write(path, mesh); }); });
     module.def("boundary", [](const Mesh& mesh) {
         const SurfaceMesh surface = without_gil([&] { return mesh::boundary(mesh); });
         return arrays_of(surface);

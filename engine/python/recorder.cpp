@@ -81,28 +81,32 @@ void bind_probes(nb::module_& module) {
     nb::class_<RecordedProbe>(module, "RecordedProbe")
         .def_ro("name", &RecordedProbe::name)
         .def_prop_ro("values", [](const RecordedProbe& probe) { return values_of(probe); });
-    module.def("point_probe",
-               [](const std::string& name, const BodyHandle& body, const std::array<Index, 4>& node,
-                  const std::array<Real, 4>& weight, const Point& origin) {
-                   return RecordedProbe{name, PointProbe{body, node, weight, vector_of(origin)}};
-               },
-               nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
-    module.def("body_probe",
-               [](const std::string& name, const BodyHandle& body, const Point& origin) {
-                   return RecordedProbe{name, BodyProbe{body, vector_of(origin)}};
-               },
-               nb::arg(), nb::arg(), nb::arg().none());
-    module.def("force_probe",
-               [](const std::string& name, const BodyHandle& on,
-                  const std::optional<std::variant<BodyHandle, ColliderHandle>>& by) {
-                   return RecordedProbe{name, BodyForceProbe{on, by}};
-               },
-               nb::arg(), nb::arg(), nb::arg().none());
-    module.def("force_probe",
-               [](const std::string& name, const ColliderHandle& on, const std::optional<BodyHandle>& by) {
-                   return RecordedProbe{name, ColliderForceProbe{on, by}};
-               },
-               nb::arg(), nb::arg(), nb::arg().none());
+    module.def(
+        "point_probe",
+        [](const std::string& name, const BodyHandle& body, const std::array<Index, 4>& node,
+           const std::array<Real, 4>& weight, const Point& origin) {
+            return RecordedProbe{name, PointProbe{body, node, weight, vector_of(origin)}};
+        },
+        nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+    module.def(
+        "body_probe",
+        [](const std::string& name, const BodyHandle& body, const Point& origin) {
+            return RecordedProbe{name, BodyProbe{body, vector_of(origin)}};
+        },
+        nb::arg(), nb::arg(), nb::arg().none());
+    module.def(
+        "force_probe",
+        [](const std::string& name, const BodyHandle& on,
+           const std::optional<std::variant<BodyHandle, ColliderHandle>>& by) {
+            return RecordedProbe{name, BodyForceProbe{on, by}};
+        },
+        nb::arg(), nb::arg(), nb::arg().none());
+    module.def(
+        "force_probe",
+        [](const std::string& name, const ColliderHandle& on, const std::optional<BodyHandle>& by) {
+            return RecordedProbe{name, ColliderForceProbe{on, by}};
+        },
+        nb::arg(), nb::arg(), nb::arg().none());
     module.def("reaction_probe", [](const std::string& name, const AttachmentHandle& attachment) {
         return RecordedProbe{name, ReactionProbe{attachment}};
     });
@@ -110,10 +114,9 @@ void bind_probes(nb::module_& module) {
         return RecordedProbe{name, JointProbe{joint}};
     });
     module.def("energy_probe", [](const std::string& name) { return RecordedProbe{name, EnergyProbe{}}; });
-    module.def("stress_probe",
-               [](const std::string& name, const BodyHandle& body, const std::vector<Index>& nodes) {
-                   return RecordedProbe{name, StressProbe{body, nodes}};
-               });
+    module.def("stress_probe", [](const std::string& name, const BodyHandle& body, const std::vector<Index>& nodes) {
+        return RecordedProbe{name, StressProbe{body, nodes}};
+    });
     module.def("volume_probe", [](const std::string& name, const BodyHandle& body) {
         return RecordedProbe{name, VolumeProbe{body}};
     });

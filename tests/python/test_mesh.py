@@ -80,7 +80,8 @@ def test_inverted_tetrahedra_are_turned_with_a_warning(turned: list[int]) -> Non
 
 
 def test_tetrahedra_that_would_overlap_when_turned_stay_inverted() -> None:
-    mesh = sk.Mesh([*NODES[:4], [0, 0, 0.5]], [[0, 1, 2, 3], [0, 2, 1, 4]])
+    nodes = np.array([*NODES[:4], [0, 0, 0.5]])
+    mesh = sk.Mesh(nodes, [[0, 1, 2, 3], [0, 2, 1, 4]])
     assert mesh.inspect().inverted == 1
 
 
@@ -137,7 +138,9 @@ def test_the_notes_of_a_file_become_warnings(tmp_path: Path) -> None:
     text = (tmp_path / "a.msh").read_text()
     place = text.index("$Elements")
     lines = text[place:].splitlines()
-    turned = [" ".join([*line.split()[:-2], *line.split()[:-3:-1]]) if len(line.split()) > 8 else line for line in lines]
+    turned = [
+        " ".join([*line.split()[:-2], *line.split()[:-3:-1]]) if len(line.split()) > 8 else line for line in lines
+    ]
     (tmp_path / "b.msh").write_text(text[:place] + "\n".join(turned) + "\n")
     with pytest.warns(sk.Doubt, match="b.msh: 2 of 2 tetrahedra"):
         sk.Mesh.read(tmp_path / "b.msh")
@@ -178,7 +181,11 @@ def test_a_meshio_mesh_comes_and_goes(tmp_path: Path) -> None:
 def test_a_meshio_mesh_loses_what_is_not_a_tetrahedron() -> None:
     meshio = pytest.importorskip("meshio")
     points = [[9, 9, 9], *NODES]
-    cells = [("triangle", [[0, 1, 2]]), ("tetra", np.array(TETRAHEDRA[:1]) + 1), ("tetra", np.array(TETRAHEDRA[1:]) + 1)]
+    cells = [
+        ("triangle", [[0, 1, 2]]),
+        ("tetra", np.array(TETRAHEDRA[:1]) + 1),
+        ("tetra", np.array(TETRAHEDRA[1:]) + 1),
+    ]
     data = {"size": [[0.5], [0.5], [0.5]], "region": [[3], [7], [9]]}
     assert sk.Mesh.from_meshio(meshio.Mesh(points, cells, cell_data=data)) == sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
     with pytest.raises(sk.SceneError, match="meshio mesh: cells: found no tetrahedra"):

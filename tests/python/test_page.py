@@ -1,5 +1,6 @@
 """Films of a run, and their pages in a notebook."""
 
+import gc
 import html
 import os
 import re
@@ -9,9 +10,9 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from worlds import ball_world
 
 import skerry as sk
+from worlds import ball_world
 
 
 def test_a_film_has_a_frame_at_each_multiple_of_every_and_at_the_end() -> None:
@@ -56,12 +57,16 @@ def test_a_film_of_a_failed_run_shows_it_up_to_the_failure() -> None:
 
 def test_a_film_leaves_no_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    world, _, _ = ball_world()
+    world = ball_world()[0]
     with world.record() as film:
         world.advance(0.01)
     film.show()
     with pytest.raises(ValueError, match="every: found -1"):
         world.record(every=-1)
+    left = world.record()
+    assert len(list(tmp_path.iterdir())) == 1
+    del film, left, world
+    gc.collect()
     assert list(tmp_path.iterdir()) == []
 
 

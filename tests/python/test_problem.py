@@ -52,7 +52,7 @@ def test_the_solution_obeys_coulombs_law() -> None:
     assert solution.converged and solution.regions == 2 and solution.largest_region == 2 and solution.unconverged == 0
     u, r = problem.velocity(solution.reaction), solution.reaction
     np.testing.assert_allclose(u.ravel(), W @ r.ravel() + Q.ravel(), atol=1e-14)
-    assert np.all(np.linalg.norm(r[:, 1:], axis=1) <= MU * r[:, 0] * (1 + 1e-9))
+    assert np.all(np.linalg.norm(r[:, 1:], axis=1) <= problem.mu * r[:, 0] * (1 + 1e-9))
     assert r[1] == pytest.approx([2, -0.4, 0], abs=1e-9)  # it slides: friction against the sliding direction
     assert u[0] == pytest.approx([0, 0, 0], abs=1e-8)  # it sticks
     error = sk.problem_error(problem, r)

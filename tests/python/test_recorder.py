@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from worlds import RUBBER, ball_world
 
 import skerry as sk
 from skerry import _core
+from worlds import RUBBER, ball_world
 
 G = 9.81
 
@@ -24,9 +24,7 @@ def test_a_recorder_follows_every_call_of_advance() -> None:
     assert len(recorder) == 11
     np.testing.assert_allclose(table["time"], np.arange(11) * 0.01, atol=1e-12)
     free = table["time"] < 0.04
-    np.testing.assert_allclose(
-        table["ball.position_z"][free], 0.06 - G / 2 * table["time"][free] ** 2, atol=1e-3
-    )
+    np.testing.assert_allclose(table["ball.position_z"][free], 0.06 - G / 2 * table["time"][free] ** 2, atol=1e-3)
     assert table["ball.velocity_z"][4] == pytest.approx(-G * 0.04, rel=1e-6)
     assert np.isnan(table["push.force_z"][0]) and np.nanmax(table["push.force_z"]) > 4 * ball.mass * G
     assert recorder.units["ball.position_z"] == "m" and recorder.units["push.force_z"] == "N"
@@ -94,7 +92,9 @@ def test_every_kind_of_probe_has_its_columns() -> None:
     assert last["hinge.angle"] == pytest.approx(1.0, rel=0.05)
     assert last["pose.rotation_z"] == pytest.approx(last["hinge.angle"])
     assert last["velocity.angular_velocity_z"] == pytest.approx(2.0, rel=1e-3)
-    assert last["stress.largest_von_mises"] == pytest.approx(bar.von_mises("nodes")[bar.select(below=1.0)].max(), rel=0.05)
+    assert last["stress.largest_von_mises"] == pytest.approx(
+        bar.von_mises("nodes")[bar.select(below=1.0)].max(), rel=0.05
+    )
     assert last["volume.smallest_volume_ratio"] == pytest.approx(1, abs=0.01)
     assert last["energy.kinetic"] == pytest.approx(world.energy.kinetic)
     assert last["nodes.position_z_0"] == pytest.approx(bar.positions[0, 2])

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from worlds import RUBBER, ball_world
 
 import skerry as sk
+from worlds import RUBBER, ball_world
 
 G = 9.81
 

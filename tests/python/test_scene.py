@@ -3,39 +3,12 @@
 import json
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 import skerry as sk
-
-SCENE: dict[str, Any] = {
-    "name": "drop",
-    "description": "A ball falls on a floor.",
-    "seconds": 0.1,
-    "frame_step": 0.02,
-    "probe_step": 0.01,
-    "settings": {"threads": 1},
-    "materials": {"rubber": {"young_modulus": 2e5}},
-    "bodies": [
-        {
-            "name": "ball",
-            "mesh": {"ball": {"radius": 0.05, "resolution": 4}},
-            "material": "rubber",
-            "position": [0, 0, 0.06],
-        }
-    ],
-    "colliders": [{"name": "floor", "shape": {"plane": {"normal": [0, 0, 1]}}}],
-    "probes": [
-        {"name": "ball", "body": "ball", "quantity": "motion"},
-        {"name": "push", "quantity": "force", "body": "ball", "by": "floor"},
-    ],
-}
-
-
-def changed(**values: Any) -> dict[str, Any]:
-    return {**SCENE, **values}
+from scenes import SCENE, changed
 
 
 def test_a_mapping_and_its_file_give_the_same_world(tmp_path: Path) -> None:

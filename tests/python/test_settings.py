@@ -73,7 +73,7 @@ def test_a_vector_of_another_shape_is_refused_with_both_shapes() -> None:
 
 def test_a_vector_of_words_is_refused() -> None:
     with pytest.raises(TypeError, match="Plane.point: found 'up', expected numbers"):
-        sk.Plane(point="up")
+        sk.Plane(point="up")  # type: ignore[arg-type]
 
 
 class Turn:

@@ -60,6 +60,7 @@ from ._settings import (
     Surface,
     SurfaceMesh,
 )
+from ._sweep import sweep
 from ._world import (
     Attachment,
     Body,
@@ -167,4 +168,5 @@ __all__ = [
     "read_surface",
     "scene_schema",
     "solve",
+    "sweep",
 ]

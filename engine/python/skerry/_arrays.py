@@ -34,7 +34,7 @@ def shape_text(shape: Sequence[int | str]) -> str:
 def require_shape(array: NDArray[Any], name: str, shape: Sequence[int | str]) -> None:
     """Raises TypeError that names both shapes, unless the array has the given shape."""
     fits = array.ndim == len(shape) and all(
-        isinstance(expected, str) or expected == found for expected, found in zip(shape, array.shape)
+        isinstance(expected, str) or expected == found for expected, found in zip(shape, array.shape, strict=True)
     )
     if not fits:
         raise TypeError(f"{name}: found an array of the shape {shape_text(array.shape)}, expected {shape_text(shape)}")

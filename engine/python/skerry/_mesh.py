@@ -203,7 +203,7 @@ class Mesh:
         _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
         chosen = kinds == _VTK_TETRAHEDRON
         rows = [np.asarray(grid.cells_dict[_VTK_TETRAHEDRON])] if chosen.any() else []
-        labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data.keys()})
+        labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data})
         return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels)
 
     def to_pyvista(self) -> Any:
@@ -225,7 +225,9 @@ class Mesh:
         rows, groups, volumes, curved = [], [], [], 0
         for _, volume in model.getEntities(3):
             kinds, _, nodes = model.mesh.getElements(3, volume)
-            curved += sum(len(of_kind) for kind, of_kind in zip(kinds, nodes, strict=True) if kind in _CURVED_TETRAHEDRA)
+            curved += sum(
+                len(of_kind) for kind, of_kind in zip(kinds, nodes, strict=True) if kind in _CURVED_TETRAHEDRA
+            )
             for kind, of_kind in zip(kinds, nodes, strict=True):
                 if kind != _LINEAR_TETRAHEDRON:
                     continue
@@ -325,7 +327,9 @@ def _warn(notes: list[str]) -> None:
 
 def _require_linear(object: str, curved: int) -> None:
     if curved:
-        raise scene_error(object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order")
+        raise scene_error(
+            object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order"
+        )
 
 
 def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:

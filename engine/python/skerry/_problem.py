@@ -296,9 +296,7 @@ def contact_problems(core: Any, every: int) -> Iterator[list[StepProblem]]:
         core.watch_problems(None, 1)
 
 
-def _same_problem(
-    row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str
-) -> Problem:
+def _same_problem(row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str) -> Problem:
     return Problem(row_offset, column, block, q, mu, name=name, description=description)
 
 

@@ -7,16 +7,18 @@ import math
 import os
 import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Vector, VectorLike, real_array
+from ._arrays import Vector, VectorLike, index_array, real_array
+from ._settings import Field, held
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -93,8 +95,11 @@ class StressProbe:
 
     body: Body
     """The body."""
-    nodes: Sequence[int] = ()
+    nodes: Field[ArrayLike, tuple[int, ...]] = held(())
     """Numbers of the nodes; none: all nodes."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nodes", tuple(index_array(self.nodes, "StressProbe.nodes", ("j",)).tolist()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +170,7 @@ def _recorded(name: str, probe: Probe) -> Any:
         case EnergyProbe():
             return _core.energy_probe(name)
         case StressProbe():
-            return _core.stress_probe(name, probe.body._handle, [int(node) for node in probe.nodes])
+            return _core.stress_probe(name, probe.body._handle, list(probe.nodes))
         case VolumeProbe():
             return _core.volume_probe(name, probe.body._handle)
         case PoseProbe():
@@ -339,18 +344,20 @@ class Film:
 
     Frames are kept in the compressed form of the page."""
 
-    __slots__ = ("_count", "_folder", "_frames", "_page", "_world", "_writer")
+    __slots__ = ("__weakref__", "_count", "_file", "_frames", "_page", "_remove_folder", "_world", "_writer")
 
     def __init__(self, world: World, title: str, every: float) -> None:
         self._world = world
         self._page: str | None = None
         self._count = 0
-        self._folder = tempfile.mkdtemp(prefix="skerry")
+        folder = tempfile.mkdtemp(prefix="skerry")
+        self._remove_folder = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        self._file = os.path.join(folder, "page.html")
         try:
-            self._writer = _core.PageWriter(os.path.join(self._folder, "page.html"), title)
+            self._writer: Any = _core.PageWriter(self._file, title)
             self._frames = _Frames(world, every, self._add)
         except BaseException:
-            shutil.rmtree(self._folder)
+            self._remove_folder()
             raise
 
     def _add(self) -> None:
@@ -364,10 +371,10 @@ class Film:
         try:
             self._frames.end()
             self._writer.close(self._world._core)
-            with open(os.path.join(self._folder, "page.html"), encoding="utf-8") as file:
+            with open(self._file, encoding="utf-8") as file:
                 self._page = file.read()
         finally:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            self._remove_folder()
             self._writer = None
 
     def show(self, *, height: int = 560) -> Page:

@@ -106,14 +106,15 @@ class Scene:
             if csv is not None:
                 recorder.stream_csv(csv)
             outputs.enter_context(recorder)
-            for duration in self._calls(end):
+            for duration in self.calls(end):
                 world.run(duration, dt=duration, progress=progress)
         if film is not None and page is not None:
             film.save(page)
         return recorder
 
-    def _calls(self, end: float) -> Iterator[float]:
-        """Durations of the calls of advance(), of which each ends at a frame or at a row of the probes."""
+    def calls(self, end: float) -> Iterator[float]:
+        """Durations of the calls of World.advance() with which run() reaches the time `end` [s]. Each call ends at a
+        frame or at a row of the probes."""
         frame_step, row_step = self.frame_step, self.probe_step if self.probes or self.contact_probes else math.inf
         ratio = frame_step / row_step
         even = ratio == 0 or (round(ratio) > 0 and abs(ratio - round(ratio)) <= _SLACK * ratio)
@@ -171,7 +172,9 @@ def _json_text(value: Json, place: str) -> str:
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"{place}: found a value that JSON does not have ({error}), expected one that it has") from error
+        raise TypeError(
+            f"{place}: found a value that JSON does not have ({error}), expected one that it has"
+        ) from error
 
 
 def _plain(value: Any) -> Any:

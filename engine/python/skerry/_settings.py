@@ -44,7 +44,7 @@ VectorField: TypeAlias = Field[VectorLike, Vector]
 RotationField: TypeAlias = Field[RotationLike, Vector]
 
 
-def _held(default: Any) -> Any:
+def held(default: Any) -> Any:
     """A default value of a Field."""
     return default
 
@@ -76,7 +76,7 @@ def _make_keys(record: object, kind: type) -> None:
 class Settings:
     """Settings of a world and its step. The defaults suit most scenes."""
 
-    gravity: VectorField = _held((0.0, 0.0, -9.81))
+    gravity: VectorField = held((0.0, 0.0, -9.81))
     """Acceleration of all bodies, shape (3,) [m/s^2]. Change it when your vertical axis is not z."""
     step_size: float | None = None
     """Upper bound of the step length [s]; None: the stable step of the stiffest body, and at most 1/120 s if the world
@@ -172,9 +172,9 @@ class Surface:
 class Plane:
     """A half-space: the side that the normal points to is free."""
 
-    normal: VectorField = _held((0.0, 0.0, 1.0))
+    normal: VectorField = held((0.0, 0.0, 1.0))
     """Normal vector, shape (3,), of any length except zero."""
-    point: VectorField = _held((0.0, 0.0, 0.0))
+    point: VectorField = held((0.0, 0.0, 0.0))
     """A point of the plane, shape (3,) [m]."""
 
     def __post_init__(self) -> None:
@@ -193,7 +193,7 @@ class Sphere:
 class Box:
     """A box around the origin of its frame."""
 
-    size: VectorField = _held((1.0, 1.0, 1.0))
+    size: VectorField = held((1.0, 1.0, 1.0))
     """Edge lengths, shape (3,) [m]."""
 
     def __post_init__(self) -> None:
@@ -237,9 +237,9 @@ class SurfaceMesh:
     """A triangle surface. A collider with this shape is solid inside it; triangles are counter-clockwise as seen from
     outside. Its arrays are copies of those given, and cannot be changed."""
 
-    nodes: Field[ArrayLike, NDArray[np.float64]] = _held(())
+    nodes: Field[ArrayLike, NDArray[np.float64]] = held(())
     """Positions of the nodes, shape (n, 3) [m]."""
-    triangles: Field[ArrayLike, NDArray[np.int32]] = _held(())
+    triangles: Field[ArrayLike, NDArray[np.int32]] = held(())
     """Numbers of the nodes of each triangle, shape (k, 3)."""
 
     def __post_init__(self) -> None:
@@ -275,9 +275,9 @@ Shape: TypeAlias = Plane | Sphere | Box | Capsule | Cylinder | Bucket | SurfaceM
 class Pose:
     """Position and orientation."""
 
-    position: VectorField = _held((0.0, 0.0, 0.0))
+    position: VectorField = held((0.0, 0.0, 0.0))
     """Position, shape (3,) [m]."""
-    rotation: RotationField = _held((0.0, 0.0, 0.0))
+    rotation: RotationField = held((0.0, 0.0, 0.0))
     """Rotation axis times angle, shape (3,) [rad], or an object with the method as_rotvec()."""
 
     def __post_init__(self) -> None:
@@ -291,9 +291,9 @@ class MotionKey:
 
     time: float = 0.0
     """Time, which must increase from key to key [s]."""
-    position: VectorField = _held((0.0, 0.0, 0.0))
+    position: VectorField = held((0.0, 0.0, 0.0))
     """Position, shape (3,) [m]."""
-    rotation: RotationField = _held((0.0, 0.0, 0.0))
+    rotation: RotationField = held((0.0, 0.0, 0.0))
     """Rotation axis times angle, shape (3,) [rad], or an object with the method as_rotvec()."""
 
     def __post_init__(self) -> None:
@@ -305,11 +305,11 @@ class MotionKey:
 class Motion:
     """A scripted motion: constant velocities from now on, or keyframes at absolute times."""
 
-    velocity: VectorField = _held((0.0, 0.0, 0.0))
+    velocity: VectorField = held((0.0, 0.0, 0.0))
     """Velocity, shape (3,) [m/s]."""
-    angular_velocity: VectorField = _held((0.0, 0.0, 0.0))
+    angular_velocity: VectorField = held((0.0, 0.0, 0.0))
     """Angular velocity, shape (3,) [rad/s]."""
-    keys: Field[Iterable[MotionKey], tuple[MotionKey, ...]] = _held(())
+    keys: Field[Iterable[MotionKey], tuple[MotionKey, ...]] = held(())
     """Keyframes; both velocities must then be zero."""
 
     def __post_init__(self) -> None:
@@ -341,7 +341,7 @@ class Motor:
     """Largest moment (hinge) or force (slider), >= 0 [N m or N]."""
     fastest: float = math.inf
     """Largest speed at which the motor approaches `position`, > 0 [rad/s or m/s]."""
-    keys: Field[Iterable[MotorKey], tuple[MotorKey, ...]] = _held(())
+    keys: Field[Iterable[MotorKey], tuple[MotorKey, ...]] = held(())
     """Targets at ascending times, all of them speeds or all of them positions."""
 
     def __post_init__(self) -> None:

@@ -98,8 +98,8 @@ nb::dict values_of(const ForceReport& report) {
 nb::list force_pairs(World& world) {
     nb::list pairs;
     for (const PairForces& pair : world.forces().pairs())
-        pairs.append(nb::make_tuple(pair.first, object_of(pair.second), object_of(pair.collider),
-                                    values_of(pair.on_first)));
+        pairs.append(
+            nb::make_tuple(pair.first, object_of(pair.second), object_of(pair.collider), values_of(pair.on_first)));
     return pairs;
 }
 
