@@ -27,6 +27,7 @@ void bind_settings(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_problem(nb::module_& module);
 void bind_recorder(nb::module_& module);
+void bind_rollout(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_world(nb::module_& module);
 

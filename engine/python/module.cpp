@@ -42,5 +42,6 @@ NB_MODULE(_core, module) {
     bind_problem(module);
     bind_world(module);
     bind_recorder(module);
+    bind_rollout(module);
     bind_scene(module);
 }

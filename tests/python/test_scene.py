@@ -75,6 +75,20 @@ def test_a_run_records_the_probes_and_writes_its_outputs(tmp_path: Path) -> None
     assert len({frame.get("timestep") for frame in frames}) == 6
 
 
+def test_a_run_makes_the_calls_that_the_scene_asks_for() -> None:
+    scene, twin = sk.load_scene(SCENE), sk.load_scene(SCENE).world
+    scene.run()
+    for _ in range(10):
+        twin.advance(0.02 / 2)
+    assert scene.world.state_hash == twin.state_hash
+    plain = sk.load_scene(changed(probes=[]))
+    plain.run(0.05)
+    twin = sk.load_scene(SCENE).world
+    for duration in (0.02, 0.02, 0.05 - 2 * 0.02):
+        twin.advance(duration)
+    assert plain.world.state_hash == twin.state_hash
+
+
 def test_a_run_can_be_continued_and_ends_where_it_is_told() -> None:
     whole, parts = sk.load_scene(SCENE), sk.load_scene(SCENE)
     whole.run()

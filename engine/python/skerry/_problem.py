@@ -63,7 +63,14 @@ class Problem:
         return problem
 
     @staticmethod
-    def from_bsr(W: Any, q: ArrayLike, mu: ArrayLike, *, name: str = "", description: str = "") -> Problem:  # noqa: N803
+    def from_bsr(
+        W: Any,  # noqa: N803
+        q: ArrayLike,
+        mu: ArrayLike,
+        *,
+        name: str = "",
+        description: str = "",
+    ) -> Problem:
         """Problem of a sparse matrix of SciPy, such as scipy.sparse.bsr_array, of the shape (3 c, 3 c). q: shape (c, 3)
         or (3 c,) [m/s]. mu: shape (c,), or one for all."""
         blocks = W.tobsr(blocksize=(3, 3))
@@ -71,7 +78,14 @@ class Problem:
         return _problem_of_blocks(blocks.shape, rows, blocks.indices, blocks.data, q, mu, name, description)
 
     @staticmethod
-    def from_dense(W: ArrayLike, q: ArrayLike, mu: ArrayLike, *, name: str = "", description: str = "") -> Problem:  # noqa: N803
+    def from_dense(
+        W: ArrayLike,  # noqa: N803
+        q: ArrayLike,
+        mu: ArrayLike,
+        *,
+        name: str = "",
+        description: str = "",
+    ) -> Problem:
         """Problem of a matrix of the shape (3 c, 3 c). Blocks of zeros are left out. The other arguments are those of
         from_bsr()."""
         matrix = real_array(W, "W", ("3 c", "3 c"))
