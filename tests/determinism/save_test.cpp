@@ -93,7 +93,7 @@ void check_same_contacts(std::span<const Contact> a, std::span<const Contact> b)
 /// Saves at `moments` random calls of the course. Continues the first file to the end, and the others for `on` calls.
 void check_restarts(const Course& course, int moments, int on, std::uint64_t seed) {
     const TemporaryFolder folder;
-    const auto file = [&](int call) { return folder.path() / (std::to_string(call) + ".h5"); };
+    const auto file = [&](int call) { return folder.path() / (std::to_string(call) + ".skerry"); };
     Random random(seed);
     std::vector<char> saved_at(static_cast<std::size_t>(course.calls), 0);
     for (int i = 0; i < moments; ++i)
@@ -228,8 +228,8 @@ TEST_CASE("settings that users do not have are carried by clones and files", "[d
                         .small_regions_in_lanes = false};
     const TemporaryFolder folder;
     const World world = tuned_world({}, tuning);
-    world.save(folder.path() / "world.h5");
-    const World loaded = World::load(folder.path() / "world.h5"), copy = world.clone();
+    world.save(folder.path() / "world.skerry");
+    const World loaded = World::load(folder.path() / "world.skerry"), copy = world.clone();
     for (const World* other : {&loaded, &copy}) {
         const WorldState& state = WorldAccess::state_of(*other);
         CHECK(state.model.tuning == tuning);
@@ -246,8 +246,8 @@ TEST_CASE("handles, names, shapes and contacts are what they were after loading"
     const BodyHandle late = world.add_body(
         mesh::ball(0.05, 3), {.material = MaterialHandle{0, 0, all[0].world}, .position = {0, 0, 2}, .name = "late"});
     REQUIRE(world.advance(0.05).ok());
-    world.save(folder.path() / "world.h5");
-    World loaded = World::load(folder.path() / "world.h5");
+    world.save(folder.path() / "world.skerry");
+    World loaded = World::load(folder.path() / "world.skerry");
     CHECK(loaded.bodies() == world.bodies());
     CHECK(loaded.colliders() == world.colliders());
     CHECK_FALSE(loaded.alive(all[1]));
@@ -280,7 +280,7 @@ TEST_CASE("handles, names, shapes and contacts are what they were after loading"
 
 TEST_CASE("a world is saved before its first step, empty, and with nothing but a plane", "[determinism]") {
     const TemporaryFolder folder;
-    const auto file = folder.path() / "world.h5";
+    const auto file = folder.path() / "world.skerry";
     World empty;
     empty.save(file);
     CHECK(World::load(file).state_hash() == empty.state_hash());
@@ -306,8 +306,8 @@ TEST_CASE("equal meshes are saved once", "[determinism]") {
         const auto rubber = world.add_material({});
         world.add_body(mesh::ball(0.1, 8), {.material = rubber});
         world.add_body(mesh::ball(second_radius, 8), {.material = rubber, .position = {1, 0, 0}});
-        world.save(folder.path() / "world.h5");
-        return std::filesystem::file_size(folder.path() / "world.h5");
+        world.save(folder.path() / "world.skerry");
+        return std::filesystem::file_size(folder.path() / "world.skerry");
     };
     const Mesh ball = mesh::ball(0.1, 8);
     const std::size_t of_mesh = sizeof(ball.nodes[0]) * ball.nodes.size() + 16 * ball.tetrahedra.size();
@@ -337,8 +337,8 @@ TEST_CASE("a saved world knows which body has crossed itself", "[determinism]") 
     ring.close();
     REQUIRE(ring.world.advance(0.6).ok());
     ring.open();
-    ring.world.save(folder.path() / "ring.h5");
-    const WorldReport report = World::load(folder.path() / "ring.h5").report();
+    ring.world.save(folder.path() / "ring.skerry");
+    const WorldReport report = World::load(folder.path() / "ring.skerry").report();
     REQUIRE(report.self_crossings.size() == 1);
     CHECK(report.self_crossings[0].body == ring.body);
     check_same_report(report, ring.world.report());

@@ -24,7 +24,7 @@ struct FileReaderCase {
 };
 /// gmsh, vtk, vtu, obj, stl, tetgen (a .node and a .ele), body (a .vtk that is put into a world), collider (an .obj),
 /// scene, problem (FCLIB as bytes of HDF5), problem_values (FCLIB in valid HDF5 files with changed values), saved
-/// (World::load), saved_values (valid saved worlds with changed values, moved by a step).
+/// (World::from_bytes), saved_values (valid saved worlds with changed values, moved by a step).
 std::span<const FileReaderCase> all_readers();
 
 /// Ends the program if a value that was read is not valid.

@@ -205,8 +205,8 @@ TEST_CASE("a world that was cloned, or saved and loaded, knows how long its last
     REQUIRE(world.advance(0.05).ok());
     take(world, 7e-4);
     World twin = world.clone();
-    world.save(folder.path() / "world.hdf5");
-    World loaded = World::load(folder.path() / "world.hdf5");
+    world.save(folder.path() / "world.skerry");
+    World loaded = World::load(folder.path() / "world.skerry");
     for (World* each : {&world, &twin, &loaded}) take(*each, 3e-4);
     CHECK(kick_of(world) == Approx(5e-4));
     CHECK(twin.state_hash() == world.state_hash());

@@ -44,8 +44,8 @@ public:
     EditedPile clone() const { return {*this, world.clone()}; }
     EditedPile saved_and_loaded() const {
         const TemporaryFolder folder;
-        world.save(folder.path() / "world.h5");
-        return {*this, World::load(folder.path() / "world.h5")};
+        world.save(folder.path() / "world.skerry");
+        return {*this, World::load(folder.path() / "world.skerry")};
     }
 
     World world;
@@ -484,8 +484,8 @@ TEST_CASE("clusters go on when mesh colliders come and go", "[scene]") {
             world.remove(block);
         else
             world.add_collider(small_block(), {.position = {0, 0, 3}});
-        world.save(folder.path() / "world.h5");
-        World loaded = World::load(folder.path() / "world.h5");
+        world.save(folder.path() / "world.skerry");
+        World loaded = World::load(folder.path() / "world.skerry");
         for (World* other : {&world, &loaded, &untouched}) REQUIRE(other->advance(0.01).ok());
         CHECK(world.report().clusters == untouched.report().clusters);
         CHECK(loaded.state_hash() == world.state_hash());

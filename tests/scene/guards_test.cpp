@@ -80,8 +80,8 @@ TEST_CASE("a world with guards goes on with its bits when it is saved, on any nu
         REQUIRE(world.report().guards > 0);
         REQUIRE(world.advance(0.03).ok());
         const TemporaryFolder folder;
-        world.save(folder.path() / "world.h5");
-        World loaded = World::load(folder.path() / "world.h5"), copy = world.clone();
+        world.save(folder.path() / "world.skerry");
+        World loaded = World::load(folder.path() / "world.skerry"), copy = world.clone();
         for (World* each : {&world, &loaded, &copy}) {
             REQUIRE(each->advance(0.03).ok());
             CHECK(each->report().guards == world.report().guards);

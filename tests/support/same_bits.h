@@ -14,8 +14,8 @@ void check_same_bits(auto&& course, auto&& go_on) {
     CHECK(one.world.state_hash() == two.world.state_hash());
     World copy = one.world.clone();
     const TemporaryFolder folder;
-    one.world.save(folder.path() / "world.h5");
-    World loaded = World::load(folder.path() / "world.h5");
+    one.world.save(folder.path() / "world.skerry");
+    World loaded = World::load(folder.path() / "world.skerry");
     for (World* world : {&one.world, &two.world, &copy, &loaded}) {
         go_on(*world);
         CHECK(world->state_hash() == one.world.state_hash());

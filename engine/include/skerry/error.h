@@ -25,8 +25,8 @@ public:
     explicit SceneError(const std::string& text, Complaint complaint = {});
     explicit SceneError(const Complaint& complaint) : SceneError(complaint.text(), complaint) {}
 
-    /// Returns the parts of the message. All are empty if the error was made from a text alone. The text of what() can
-    /// name more places than the parts do, for example a scene file and a mesh file that it uses.
+    /// Returns the parts of the message. All are empty if the error was made from a text alone. The message can name
+    /// more places than the parts do, for example a scene file and a mesh file that it uses.
     const Complaint& complaint() const noexcept { return *complaint_; }
 
 private:

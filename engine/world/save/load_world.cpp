@@ -45,7 +45,7 @@ bool may_be_infinite(std::string_view path) {
     return std::find(paths.begin(), paths.end(), path) != paths.end();
 }
 
-std::string description(NumberType number, std::size_t width) {
+std::string kind_of_array(NumberType number, std::size_t width) {
     const bool reals = number == NumberType::real || number == NumberType::single;
     return (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") + (reals ? "reals" : "integers") +
            " of " + std::to_string(bytes_of(number)) + " bytes";
@@ -73,11 +73,11 @@ private:
     }
     const SavedArray& array(const std::string& path, const RowType& type) const {
         const auto found = unread_.find(path);
-        const std::string expected = description(type.number, type.width);
+        const std::string expected = kind_of_array(type.number, type.width);
         if (found == unread_.end()) file_.complain(path, "nothing", expected);
         const SavedArray& array = found->second;
         if (array.number != type.number || array.width != type.width)
-            file_.complain(path, description(array.number, array.width), expected);
+            file_.complain(path, kind_of_array(array.number, array.width), expected);
         return array;
     }
     /// Returns the number of rows of a column. For a column of structs it is that of the first member.
@@ -98,7 +98,7 @@ private:
             file_.complain(path, std::to_string(found.rows) + " rows",
                            rows == 1 ? "one row" : std::to_string(rows) + ", as many as the other members have");
         check(path, type, found.bytes.data(), rows);
-        copy_rows(found.bytes.data(), found.row_bytes(), to, stride, found.row_bytes(), rows);
+        copy_strided(found.bytes.data(), found.row_bytes(), to, stride, found.row_bytes(), rows);
         unread_.erase(path);
     }
     void check(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
@@ -206,7 +206,7 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
             refuse_file(name, "bytes that cannot be read", "check the disk, or save the world again");
     };
     read_on(0);
-    require_start(name, bytes, size);
+    require_file_start(name, bytes, size);
     const std::size_t begin = bytes.size();
     bytes.resize(size);
     read_on(begin);

@@ -18,21 +18,21 @@ namespace {
 
 constexpr std::size_t length_bytes = sizeof(std::uint64_t);  // size of the length of the header [bytes]
 constexpr std::size_t checksum_digits = 16;
-constexpr std::string_view title = "Skerry world, version ";
+constexpr std::string_view file_title = "Skerry world, version ";
 constexpr std::string_view metadata = "__metadata__";
 // names of the number types in the header, in the order of NumberType
 constexpr std::array<std::string_view, 7> type_names{"F64", "F32", "I32", "U8", "U16", "U32", "U64"};
 
 /// Returns the start of the header. The checksum follows, so its place does not depend on the contents of the file.
-const std::string& opening() {
-    static const std::string text = "{\"" + std::string(metadata) + "\":{\"format\":\"" + std::string(title) +
+const std::string& header_opening() {
+    static const std::string text = "{\"" + std::string(metadata) + "\":{\"format\":\"" + std::string(file_title) +
                                     std::to_string(world_file_version) + "\",\"checksum\":\"";
     return text;
 }
 constexpr std::string_view behind_checksum = "\",\"data_bytes\":\"";
 
 std::size_t checksum_begin() {
-    return length_bytes + opening().size();
+    return length_bytes + header_opening().size();
 }
 
 std::string_view text_in(std::span<const std::byte> bytes) {
@@ -164,8 +164,8 @@ std::string hash_text(std::uint64_t hash) {
     return text;
 }
 
-void copy_rows(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
-               std::size_t row_bytes, std::size_t rows) {
+void copy_strided(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
+                  std::size_t row_bytes, std::size_t rows) {
     if (rows == 0) return;
     if (from_stride == row_bytes && to_stride == row_bytes) {
         std::memcpy(to, from, rows * row_bytes);
@@ -191,7 +191,7 @@ std::vector<std::byte> saved_bytes(std::vector<ArraySource> arrays, const SavedT
     const auto size_of = [](const ArraySource& array) { return array.rows * array.width * bytes_of(array.number); };
     std::size_t data_bytes = 0;
     for (const ArraySource& array : arrays) data_bytes += size_of(array);
-    std::string header = opening() + std::string(checksum_digits, '0') + std::string(behind_checksum) +
+    std::string header = header_opening() + std::string(checksum_digits, '0') + std::string(behind_checksum) +
                          std::to_string(data_bytes) + "\",\"state_hash\":\"" + in_json(texts.state_hash) +
                          "\",\"note\":\"" + in_json(texts.note) + "\"}";
     std::size_t end = 0;
@@ -212,7 +212,7 @@ std::vector<std::byte> saved_bytes(std::vector<ArraySource> arrays, const SavedT
     std::byte* to = file.data() + length_bytes + header.size();
     for (const ArraySource& array : arrays) {
         const std::size_t row_bytes = array.width * bytes_of(array.number);
-        copy_rows(array.first, array.stride, to, row_bytes, row_bytes, array.rows);
+        copy_strided(array.first, array.stride, to, row_bytes, row_bytes, array.rows);
         to += size_of(array);
     }
     renew_checksum(file);
@@ -224,13 +224,13 @@ void renew_checksum(std::span<std::byte> file) {
     std::memcpy(file.data() + checksum_begin(), checksum.data(), checksum.size());
 }
 
-void require_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size) {
+void require_file_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size) {
     const std::string_view text = text_in(start);
     constexpr std::size_t most_before_title = 64;  // the title is at byte 0 in files of versions before 25
-    const std::size_t at = text.substr(0, most_before_title).find(title);
+    const std::size_t at = text.substr(0, most_before_title).find(file_title);
     if (at == std::string_view::npos) refuse_file(name, "a file of another kind", "check the path");
     int version = 0;
-    const char* const digits = text.data() + at + title.size();
+    const char* const digits = text.data() + at + file_title.size();
     if (std::from_chars(digits, text.data() + text.size(), version).ec == std::errc() && version != world_file_version)
         refuse_file(name, "version " + std::to_string(version),
                     "another version of Skerry wrote the file; load the file with that version",
@@ -239,7 +239,7 @@ void require_start(const std::string& name, std::span<const std::byte> start, st
     const std::string_view behind = text.substr(std::min(end, text.size()));
     std::uint64_t data_bytes = 0;
     constexpr std::uint64_t most = std::uint64_t{1} << 62;  // so that the sum below does not overflow
-    if (!text.substr(length_bytes).starts_with(opening()) || !behind.starts_with(behind_checksum) ||
+    if (!text.substr(length_bytes).starts_with(header_opening()) || !behind.starts_with(behind_checksum) ||
         std::from_chars(behind.data() + behind_checksum.size(), text.data() + text.size(), data_bytes).ec !=
             std::errc() ||
         header_length(start) > most || data_bytes > most)
@@ -253,7 +253,7 @@ void require_start(const std::string& name, std::span<const std::byte> start, st
 }
 
 SavedFile::SavedFile(std::string name, std::span<const std::byte> bytes) : name_(std::move(name)) {
-    require_start(name_, bytes.first(std::min(start_bytes, bytes.size())), bytes.size());
+    require_file_start(name_, bytes.first(std::min(start_bytes, bytes.size())), bytes.size());
     const std::string checksum = checksum_of(bytes);
     if (text_in(bytes).substr(checksum_begin(), checksum_digits) != checksum)
         refuse_file(name_, "bytes that do not match the checksum in the header",
@@ -261,7 +261,7 @@ SavedFile::SavedFile(std::string name, std::span<const std::byte> bytes) : name_
     const auto length = static_cast<std::size_t>(header_length(bytes));
     const std::span<const std::byte> data = bytes.subspan(length_bytes + length);
     HeaderReader header(name_, text_in(bytes.subspan(length_bytes, length)));
-    header.require(opening() + checksum + std::string(behind_checksum) + std::to_string(data.size()) +
+    header.require(header_opening() + checksum + std::string(behind_checksum) + std::to_string(data.size()) +
                    "\",\"state_hash\":\"");
     texts_.state_hash = header.text();
     header.require(",\"note\":\"");

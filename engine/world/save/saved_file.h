@@ -64,11 +64,11 @@ private:
     SavedTexts texts_;
 };
 
-/// Number of bytes that require_start() needs.
+/// Number of bytes that require_file_start() needs.
 inline constexpr std::size_t start_bytes = 512;
 /// Checks the first bytes of a file of `size` bytes. Throws SceneError unless they belong to a saved world of the
 /// present version and of this size.
-void require_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size);
+void require_file_start(const std::string& name, std::span<const std::byte> start, std::uint64_t size);
 
 /// Throws SceneError about a file that is not a saved world of the present version. If `expected` is empty, the message
 /// describes such a file.
@@ -78,7 +78,8 @@ void require_start(const std::string& name, std::span<const std::byte> start, st
 /// Returns the hash as 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 
-void copy_rows(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
-               std::size_t row_bytes, std::size_t rows);
+/// Copies rows of `row_bytes` bytes. Strides are distances between two rows [bytes].
+void copy_strided(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
+                  std::size_t row_bytes, std::size_t rows);
 
 }  // namespace skerry

@@ -238,8 +238,8 @@ TEST_CASE("handles of objects that were added after a clone become stale when th
     CHECK(cube.world.alive(cube.body));
     cube.world.remove(cube.body);
     const TemporaryFolder folder;
-    cube.world.save(folder.path() / "world.h5");
-    cube.world = World::load(folder.path() / "world.h5");
+    cube.world.save(folder.path() / "world.skerry");
+    cube.world = World::load(folder.path() / "world.skerry");
     add();
     CHECK_FALSE(cube.world.alive(cube.body));
     CHECK_FALSE(cube.world.alive(reused));

@@ -3,10 +3,12 @@
 Called as: checkpoint_test.py PROGRAM SOURCE_FOLDER
 """
 import json
+import math
 import random
 import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -56,6 +58,29 @@ class CheckpointTest(ProgramCase):
         self.assertGreater(found["restarted_at"], 0)
         self.same_run(found, expected)
         self.assertEqual([p.name for p in self.folder.glob("*.skerry*") if p.suffix != ".part"], ["run.skerry"])
+
+    def test_a_checkpoint_is_a_safetensors_file(self):
+        """Reads the file as the specification of the format says, without Skerry's own reader."""
+        checkpoint = self.folder / "run.skerry"
+        self.skerry("run", self.scene, "--quiet", "--seconds", 0.02, "--checkpoint", checkpoint)
+        content = checkpoint.read_bytes()
+        length = int.from_bytes(content[:8], "little")
+        header = json.loads(content[8:8 + length])
+        data = content[8 + length:]
+        texts = header.pop("__metadata__")
+        self.assertTrue(all(isinstance(text, str) for text in texts.values()))
+        self.assertEqual(json.loads(texts["note"])["scene"], str(self.scene))
+        sizes = {"F64": 8, "U64": 8, "F32": 4, "I32": 4, "U32": 4, "U16": 2, "U8": 1}
+        end = 0  # arrays follow each other without gaps
+        for name, array in sorted(header.items(), key=lambda item: item[1]["data_offsets"]):
+            self.assertEqual(array["data_offsets"][0], end, name)
+            end = array["data_offsets"][1]
+            self.assertEqual(end - array["data_offsets"][0], math.prod(array["shape"]) * sizes[array["dtype"]], name)
+        self.assertEqual(end, len(data))
+        nodes = header["nodes/position"]
+        positions = struct.unpack(f"<{math.prod(nodes['shape'])}d", data[slice(*nodes["data_offsets"])])
+        self.assertEqual(nodes["shape"][1], 3)
+        self.assertTrue(all(abs(x) < 10 for x in positions) and any(positions))
 
     def test_checkpoints_change_nothing_and_a_run_may_be_made_longer(self):
         expected = self.run_stats(self.scene, "--seconds", 0.31)

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "components/split_mix.h"
 #include "components/types.h"
@@ -93,6 +94,42 @@ TEST_CASE("a saved world of which any bit was turned over is refused", "[unit][l
     for (std::size_t at = 0; at < start_bytes; at += 3) turn_over(at, static_cast<int>(at % 8));
     for (int i = 0; i < 300; ++i) turn_over(random.next() % bytes.size(), static_cast<int>(random.next() % 8));
     CHECK(saved.refusal(bytes).empty());
+    Bytes small = World().to_bytes();
+    for (std::size_t at = 0; at < small.size(); ++at) {
+        const std::byte before = std::exchange(small[at], small[at] ^ std::byte{1} << at % 8);
+        CAPTURE(at);
+        CHECK_THROWS_AS(World::from_bytes(small), SceneError);
+        small[at] = before;
+    }
+}
+
+TEST_CASE("a saved world with any bytes in its header is refused, or is the same world, if its checksum is right",
+          "[unit]") {
+    const World world;
+    const Bytes bytes = world.to_bytes();
+    std::uint64_t length = 0;  // of the header [bytes]
+    std::memcpy(&length, bytes.data(), sizeof length);
+    SplitMix random(4);
+    int taken = 0;
+    constexpr int tries = 5000;
+    for (int i = 0; i < tries; ++i) {
+        Bytes changed = bytes;
+        for (std::uint64_t left = 1 + random.next() % 3; left > 0; --left) {
+            // half of the changes are digits, so that shapes and offsets stay readable
+            const std::size_t at = random.next() % (sizeof length + length);
+            const std::uint64_t digit = '0' + random.next() % 10;
+            changed[at] = static_cast<std::byte>(random.next() % 2 ? digit : random.next() % 256);
+        }
+        renew_checksum(changed);
+        CAPTURE(i);
+        try {
+            const std::uint64_t hash = World::from_bytes(changed).state_hash();
+            CHECK(hash == world.state_hash());
+            ++taken;
+        } catch (const SceneError&) {
+        }
+    }
+    CHECK(taken < tries / 10);
 }
 
 TEST_CASE("a file of another kind, or of another version, is refused by what it is", "[unit]") {
@@ -154,6 +191,18 @@ TEST_CASE("a saved world whose header is not that of a saved world is refused, a
     CHECK_THAT(refusal(position + offsets + range, gap), Contains("header: found other text"));
     CHECK_THAT(refusal("\"note\":\"\"}", "\"note\":\"}\""), Contains("header: found other text at byte"));
     CHECK_THAT(refusal("\"note\"", "\"npte\""), Contains("expected ,\"note\":\""));
+}
+
+TEST_CASE("a saved world with an array that no column has is refused", "[unit]") {
+    const Bytes bytes = World().to_bytes();
+    const SavedFile file("file", bytes);
+    std::vector<ArraySource> arrays;
+    for (const auto& [name, array] : file.arrays())
+        arrays.push_back({name, array.number, array.rows, array.width, array.bytes.data(), array.row_bytes()});
+    CHECK(World::from_bytes(saved_bytes(arrays, file.texts())).state_hash() == World().state_hash());
+    arrays.push_back({"nodes/colour", NumberType::uint8, 0, 3, nullptr, 3});
+    CHECK_THROWS_WITH(World::from_bytes(saved_bytes(arrays, file.texts())),
+                      Contains("nodes: colour: found an array, expected no array of this name"));
 }
 
 TEST_CASE("a world in memory has the bytes of its file, and is read like a file", "[unit]") {
@@ -233,7 +282,7 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
         renew_checksum(bytes);
         return saved.refusal(bytes);
     };
-    constexpr unsigned huge = 7, none = 7, infinite = 8, minus_one = 8;
+    constexpr unsigned denormal = 6, huge = 7, none = 7, infinite = 8, minus_one = 8;
     CHECK_THAT(refusal("nodes/position", 4, none), Contains("nodes: position: found nan at row 1, expected finite"));
     CHECK_THAT(refusal("nodes/velocity", 0, infinite), Contains("nodes: velocity: found inf at row 0"));
     CHECK_THAT(refusal("elements/material", 3, huge), Contains("elements: material: found 2147483647 at row 3"));
@@ -245,6 +294,8 @@ TEST_CASE("a saved world in which values do not fit together is refused by name"
     CHECK_THAT(refusal("pairs/candidates/first", 0, huge), Contains("pairs/candidates: first: found"));
     CHECK_THAT(refusal("last_step/contacts/stencil/node", 0, huge),
                Contains("last_step/contacts/stencil: node: found"));
+    CHECK_THAT(refusal("warm_start/step", 0, denormal),
+               Contains("warm_start: step: found 0.000000, expected a time > 0"));
     CHECK_THAT(refusal("records/body_built", 0, none), Contains("records: body_built"));
     CHECK_THAT(refusal("settings/method", 0, 5), Contains("settings: method: found 255"));
     CHECK_THAT(refusal("settings/tolerance", 0, 1), Contains("tolerance: found -1"));
