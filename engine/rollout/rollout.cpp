@@ -97,9 +97,9 @@ public:
         run_tasks(
             world_count, threads, [&](Index number) { run_world(static_cast<std::size_t>(number), threads_of_world); },
             watch_period, [&] { watch(); });
-        for (std::optional<World>& world : final_)
-            if (world) result_.worlds.push_back(std::move(*world));
-        if (result_.worlds.size() != sources_.size()) result_.worlds.clear();
+        const auto is_stopped = [](const RolloutStatus& s) { return s.report.status == StepStatus::stopped; };
+        if (std::ranges::none_of(result_.status, is_stopped))
+            for (std::optional<World>& world : final_) result_.worlds.push_back(std::move(*world));
         return std::move(result_);
     }
 

@@ -7,6 +7,7 @@
 
 #include "engine/world/tuning.h"
 #include "jobs/executor.h"
+#include "skerry/rollout.h"
 #include "tests/support/worlds.h"
 
 extern "C" void* __libc_malloc(std::size_t);
@@ -96,6 +97,40 @@ TEST_CASE("a resting pile allocates nothing in a fifth of a second of steps", "[
             if (backend == Backend::serial) break;
         }
     }
+}
+
+TEST_CASE("further intervals of a rollout allocate nothing", "[determinism]") {
+    Settings settings;
+    settings.sleep = false;
+    World world = resting_balls(Backend::serial, 1, settings);
+    const ColliderHandle plate = world.add_collider(Box{{0.1, 0.1, 0.01}}, {.position = {2, 0, 0.1}});
+    REQUIRE(world.advance(1.5).ok());
+    const BodyHandle ball = world.bodies().front();
+    const auto allocated = [&](std::size_t intervals) {
+        std::vector<Real> pose, force, weight;
+        for (std::size_t i = 0; i < intervals; ++i) {
+            pose.insert(pose.end(), {2 + 1e-3 * static_cast<Real>(i), 0, 0.1, 0, 0, 0});
+            force.insert(force.end(), {1e-6 * static_cast<Real>(i), 0, 0});
+            weight.insert(weight.end(), {0, 0, -9.81});
+        }
+        const RolloutSettings run{
+            .intervals = intervals,
+            .dt = 2e-3,
+            .controls = {{PoseControl{plate}, pose}, {BodyForceControl{ball}, force}, {GravityControl{}, weight}},
+            .record = {{"ball", BodyProbe{ball}},
+                       {"plate", PoseProbe{plate}},
+                       {"force", BodyForceProbe{ball}},
+                       {"energy", EnergyProbe{}},
+                       {"nodes", NodesProbe{ball}}},
+            .threads = 1};
+        allocations = 0;
+        counting = true;
+        const RolloutResult result = rollout(world, 2, run);
+        counting = false;
+        REQUIRE(result.status[1].ok());
+        return allocations.load();
+    };
+    CHECK(allocated(100) == allocated(50));
 }
 
 TEST_CASE("leapfrog allocates nothing, either", "[determinism]") {
