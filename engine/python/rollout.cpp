@@ -64,8 +64,7 @@ nb::dict dict_of(RolloutResult&& result) {
         for (const SeriesColumn& column : recorded.columns) quantities.append(column.quantity);
         series.append(nb::make_tuple(quantities, array_of<Real>(std::span<const Real>(recorded.values))));
     }
-    for (const RolloutStatus& world : result.status)
-        status.append(nb::make_tuple(world.message(), world.distrust));
+    for (const RolloutStatus& world : result.status) status.append(nb::make_tuple(world.message(), world.distrust));
     for (World& world : result.worlds)
         worlds.append(nb::cast(new WorldObject(std::move(world)), nb::rv_policy::take_ownership));
     values["series"] = series;
@@ -77,8 +76,8 @@ nb::dict dict_of(RolloutResult&& result) {
 /// Rolls out the given worlds, of which several may be the same. `progress` is None or is called about every 20 ms with
 /// the numbers of completed intervals and of all intervals.
 nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector<Control>& controls,
-                     std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads,
-                     bool keep_worlds, const nb::object& progress) {
+                     std::vector<RecordedProbe> record, Real dt, std::size_t intervals, int threads, bool keep_worlds,
+                     const nb::object& progress) {
     std::deque<Use> used;  // a deque never moves its elements
     std::vector<const World*> worlds;
     for (WorldObject* object : objects) {

@@ -70,8 +70,8 @@ def rollout(
 
     steps: number T of intervals; needed only without controls.
 
-    record: probes by name, as for World.recorder(). Their values are those at the end of each interval; forces are means
-    over it.
+    record: probes by name, as for World.recorder(). Their values are those at the end of each interval; mean forces are
+    those of the interval.
 
     threads: number of threads; 0: all cores. keep_worlds: True: `worlds` of the result holds the worlds at the end.
     progress: writes the share that is done to the standard error output.
