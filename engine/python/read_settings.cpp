@@ -185,6 +185,9 @@ void read(nb::handle from, BodySettings& to) {
 void read(nb::handle from, ColliderSettings& to) {
     read_members(from, to);
 }
+void read(nb::handle from, LoadSettings& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, SurfaceSettings& to) {
     read_members(from, to);
 }

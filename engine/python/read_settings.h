@@ -15,6 +15,7 @@ void read(nb::handle from, Settings& to);
 void read(nb::handle from, MaterialSettings& to);
 void read(nb::handle from, BodySettings& to);
 void read(nb::handle from, ColliderSettings& to);
+void read(nb::handle from, LoadSettings& to);
 void read(nb::handle from, SurfaceSettings& to);
 void read(nb::handle from, Pose& to);
 void read(nb::handle from, Motion& to);

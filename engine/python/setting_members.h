@@ -77,6 +77,11 @@ void for_each_setting(Is<ColliderSettings> auto& s, auto&& visit) {
     visit("name", s.name);
 }
 
+void for_each_setting(Is<LoadSettings> auto& s, auto&& visit) {
+    visit("backend", s.backend);
+    visit("threads", s.threads);
+}
+
 void for_each_setting(Is<SurfaceSettings> auto& s, auto&& visit) {
     visit("friction", s.friction);
     visit("static_friction", s.static_friction);
@@ -174,6 +179,8 @@ template <>
 inline constexpr const char* class_name<Settings> = "Settings";
 template <>
 inline constexpr const char* class_name<MaterialSettings> = "Material";
+template <>
+inline constexpr const char* class_name<LoadSettings> = "LoadSettings";
 template <>
 inline constexpr const char* class_name<SurfaceSettings> = "Surface";
 template <>

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
 

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
 

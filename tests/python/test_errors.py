@@ -5,6 +5,7 @@ import traceback
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
 
@@ -110,5 +111,32 @@ def test_bytes_that_hold_no_world_are_refused() -> None:
 
 
 def test_surfaces_that_pass_through_each_other_raise_a_doubt() -> None:
-    doubt = sk.Doubt("text")
-    assert isinstance(doubt, UserWarning)
+    # One sweep of the solver cannot stop a falling stack of bodies, each almost twice as heavy as the one below.
+    world = sk.World(threads=1, max_iterations=1, tolerance=1e-10)
+    world.add_collider(sk.Plane())
+    mesh = sk.Mesh.box((0.1, 0.1, 0.1), 1)
+    for i in range(8):
+        material = sk.Material(density=1000 * 10 ** (i / 4), friction=0.9)
+        place = (0.01 * i, 0, 0.0501 + 0.1 * i)
+        world.add_body(mesh, material, position=place, dynamics="rigid", velocity=(0, 0, -1))
+    with pytest.warns(sk.Doubt, match="surfaces passed through each other") as caught:
+        report = world.advance(0.3)
+    assert len(caught) == 1 and caught[0].filename == __file__
+    assert report.crossed > 0 and str(caught[0].message) == world.report().distrust
+
+
+def test_a_run_in_which_a_surface_crosses_itself_raises_a_doubt() -> None:
+    ball = sk.Mesh.ball(0.05, 4)
+    n = len(ball.nodes)
+    two = sk.Mesh(
+        np.concatenate([ball.nodes, ball.nodes + (0.12, 0, 0)]), np.concatenate([ball.tetrahedra, ball.tetrahedra + n])
+    )
+    world = sk.World(threads=1, gravity=(0, 0, 0))
+    pair = world.add_body(two, RUBBER, dynamics="explicit", name="pair")
+    velocities = pair.velocities
+    velocities[:n, 0] = 1
+    pair.velocities = velocities
+    with pytest.warns(sk.Doubt, match="the surface of body 'pair' crosses itself"):
+        world.run(0.05)
+    (crossing,) = world.report().self_crossings
+    assert crossing.body == pair and crossing.last_places > 0

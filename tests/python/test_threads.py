@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from skerry import _core
 from worlds import RUBBER, ball_world, run_program
@@ -26,7 +27,6 @@ READS = {
     "views": lambda world, ball: ball.views().__enter__(),
     "copy": lambda world, ball: world.copy(),
     "to_bytes": lambda world, ball: world.to_bytes(),
-    "repr": lambda world, ball: repr(world),
     "advance": lambda world, ball: world.advance(1e-4),
     "set_gravity": lambda world, ball: world.set_gravity((0, 0, -9.81)),
     "joints": lambda world, ball: world.joints,
@@ -61,6 +61,14 @@ def test_a_world_that_another_thread_advances_is_busy(read: str) -> None:
     with busy(world), pytest.raises(sk.BusyError, match="in use by another thread"):
         READS[read](world, ball)
     READS[read](world, ball)
+
+
+def test_texts_of_busy_objects_say_so() -> None:
+    world, ball, floor = ball_world()
+    with busy(world):
+        assert repr(world) == "<skerry.World in use by another thread>"
+        assert repr(ball) == "<skerry.Body: body 'ball', in use by another thread>"
+        assert repr(floor) == "<skerry.Collider: collider 'floor', in use by another thread>"
 
 
 def test_every_method_of_the_extension_module_can_be_busy() -> None:
@@ -105,7 +113,7 @@ def test_reads_of_a_second_thread_are_right_or_refused() -> None:
     thread = threading.Thread(target=advance)
     thread.start()
     for _ in range(100):
-        for read in ("time", "positions", "mass", "bodies", "report", "state_hash", "stress", "copy", "repr"):
+        for read in ("time", "positions", "mass", "bodies", "report", "state_hash", "stress", "copy"):
             try:
                 READS[read](world, ball)
                 counts["right"] += 1
@@ -113,7 +121,7 @@ def test_reads_of_a_second_thread_are_right_or_refused() -> None:
                 counts["busy"] += 1
     advanced.set()
     thread.join()
-    assert counts["right"] + counts["busy"] >= 900
+    assert counts["right"] + counts["busy"] >= 800
     for _ in range(round(world.time / 2e-3)):
         twin.advance(2e-3)
     assert twin.state_hash == world.state_hash
@@ -122,20 +130,23 @@ def test_reads_of_a_second_thread_are_right_or_refused() -> None:
 def test_other_threads_run_while_a_world_advances() -> None:
     world, _, _ = ball_world()
     started, ended = threading.Event(), threading.Event()
-    counted = 0
+    busy = 0
 
     def advance() -> None:
         started.set()
-        world.advance(0.5)
+        world.advance(2.0)
         ended.set()
 
     thread = threading.Thread(target=advance)
     thread.start()
     assert started.wait(60)
     while not ended.is_set():
-        counted += 1
+        try:
+            assert world.time >= 0
+        except sk.BusyError:
+            busy += 1
     thread.join()
-    assert counted > 1000
+    assert busy > 100
 
 
 def test_worlds_advance_at_the_same_time_in_several_threads() -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
 
@@ -24,6 +25,38 @@ def test_views_show_the_present_state(dynamics: Any) -> None:
         ball.reset()
         world.reset()
         assert np.array_equal(x, ball.positions) and np.array_equal(v, ball.velocities)
+
+
+def test_changes_of_other_data_leave_the_memory_in_place() -> None:
+    world = sk.World(threads=1, sleep_time=0.05)
+    floor = world.add_collider(sk.Plane())
+    material = world.add_material(RUBBER)
+    mesh = sk.Mesh.ball(0.05, 4)
+    ball = world.add_body(mesh, material, position=(0, 0, 0.05), name="ball")
+    rod = world.add_body(mesh, material, position=(1, 0, 1), dynamics="rigid", name="rod")
+    held = ball.attach(ball.select(above=0.09))
+    with ball.views() as (x, v), rod.views() as (y, w):
+        changes = [
+            lambda: material.change(density=2000, young_modulus=1e6),
+            lambda: world.add_material(density=3),
+            lambda: world.add_joint("hinge", rod, point=(1, 0, 1)),
+            lambda: ball.set_surface(friction=0.1),
+            lambda: world.set_collision(ball, floor, False),
+            lambda: held.move_to(sk.Pose(position=(0, 0, 0.01)), 0.1),
+            lambda: ball.set_loads((0, 0, 1e-4)),
+            lambda: rod.set_velocity((0, 0, 1)),
+            lambda: world.joints[0].remove(),
+            lambda: world.report(),
+            lambda: world.advance(0.3),
+            lambda: (world.copy(), world.to_bytes()),
+        ]
+        for change in changes:
+            change()
+            world.advance(0.01)
+            with ball.views() as (x_now, v_now), rod.views() as (y_now, w_now):
+                for old, new in ((x, x_now), (v, v_now), (y, y_now), (w, w_now)):
+                    assert old.ctypes.data == new.ctypes.data
+            assert np.array_equal(x, ball.positions) and np.array_equal(w, rod.velocities)
 
 
 def test_views_are_read_only_and_no_copies() -> None:

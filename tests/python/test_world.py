@@ -10,8 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import skerry as sk
 from worlds import RUBBER, ball_world
+
+KEYS: list[dict[str, Any]] = [{"time": 0, "position": [0, 0, 0.13]}, {"time": 0.05, "position": [0, 0, 0.11]}]
 
 
 def test_keywords_change_single_settings() -> None:
@@ -89,6 +92,59 @@ def test_bodies_that_share_a_name_are_found_by_number() -> None:
     assert first == ball and second == world.bodies[1] != ball
 
 
+def test_a_world_built_in_python_has_the_bits_of_the_same_scene_from_a_file(tmp_path: pathlib.Path) -> None:
+    scene = {
+        "seconds": 0.1,
+        "settings": {"threads": 2, "tolerance": 1e-5},
+        "materials": {"rubber": {"young_modulus": 2e5, "friction": 0.3, "loss_factor": 0.1}},
+        "bodies": [
+            {
+                "name": "ball",
+                "mesh": {"ball": {"radius": 0.05, "resolution": 4}},
+                "material": "rubber",
+                "position": [0, 0, 0.05],
+                "rotation": {"axis": [0, 0, 1], "degrees": 90},
+            },
+            {
+                "name": "box",
+                "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [2, 2, 2]}},
+                "material": "rubber",
+                "position": [0.11, 0, 0.051],
+                "velocity": [-0.5, 0, 0],
+                "angular_velocity": [0, 1, 0],
+                "dynamics": "rigid",
+            },
+        ],
+        "colliders": [
+            {"name": "floor", "shape": {"plane": {"normal": [0, 0, 1]}}, "friction": 0.4},
+            {"name": "finger", "shape": {"sphere": {"radius": 0.02}}, "motion": {"keys": KEYS}},
+        ],
+    }
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    loaded = sk.load_scene(tmp_path / "scene.json").world
+    world = sk.World(threads=1, tolerance=1e-5)
+    rubber = sk.Material(young_modulus=2e5, friction=0.3, loss_factor=0.1)
+    ball = world.add_body(sk.Mesh.ball(0.05, 4), rubber, position=(0, 0, 0.05), rotation=(0, 0, np.pi / 2), name="ball")
+    world.add_body(
+        sk.Mesh.box((0.1, 0.1, 0.1), 2),
+        rubber,
+        position=(0.11, 0, 0.051),
+        velocity=(-0.5, 0, 0),
+        angular_velocity=(0, 1, 0),
+        dynamics="rigid",
+        name="box",
+    )
+    world.add_collider(sk.Plane(), friction=0.4, name="floor")
+    keys = [sk.MotionKey(time=key["time"], position=key["position"]) for key in KEYS]
+    world.add_collider(sk.Sphere(radius=0.02), motion=sk.Motion(keys=keys), name="finger")
+    assert world.state_hash == loaded.state_hash
+    for each in (world, loaded):
+        each.advance(0.1)
+    assert world.report().max_contacts > 3
+    assert world.state_hash == loaded.state_hash
+    assert np.array_equal(ball.positions, loaded.bodies["ball"].positions)
+
+
 @pytest.mark.parametrize("copied", [sk.World.copy, copy.copy, copy.deepcopy, lambda w: pickle.loads(pickle.dumps(w))])
 def test_a_copy_continues_with_the_same_bits(copied: Any) -> None:
     world, ball, _ = ball_world()
@@ -107,8 +163,8 @@ def test_a_copy_continues_with_the_same_bits(copied: Any) -> None:
 def test_a_copy_may_have_another_number_of_threads() -> None:
     world, _, _ = ball_world()
     world.advance(0.06)
-    other = world.copy(threads=2)
-    assert other.settings.threads == 2
+    other = world.copy(threads=2, backend="threads")
+    assert (other.settings.threads, other.settings.backend) == (2, "threads")
     other.advance(0.05)
     world.advance(0.05)
     assert other.state_hash == world.state_hash
@@ -128,6 +184,10 @@ def test_a_saved_world_continues_with_the_same_bits(tmp_path: pathlib.Path) -> N
     world.advance(0.06)
     world.save(tmp_path / "a.skerry")
     other = sk.World.load(tmp_path / "a.skerry", threads=2)
+    assert other.settings == dataclasses.replace(world.settings, threads=2)
+    assert sk.World.load(tmp_path / "a.skerry", backend="serial").settings.backend == "serial"
+    with pytest.raises(sk.SceneError, match="LoadSettings: backend: found 'mpi', expected one of 'tbb'"):
+        sk.World.load(tmp_path / "a.skerry", backend="mpi")  # type: ignore[arg-type]
     for each in (world, other):
         each.advance(0.05)
     assert other.state_hash == world.state_hash

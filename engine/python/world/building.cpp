@@ -70,8 +70,10 @@ void remove(WorldObject& object, const HandleType& handle) {
     object.world.remove(handle);
 }
 
-LoadSettings load_settings(std::optional<int> threads) {
-    return {.backend = {}, .threads = threads};
+LoadSettings load_settings(nb::handle given) {
+    LoadSettings settings;
+    read(given, settings);
+    return settings;
 }
 
 }  // namespace
@@ -84,39 +86,37 @@ void bind_building(WorldClass& type) {
                  read(given, settings);
                  new (self) WorldObject(World(settings));
              })
-        .def(
-            "clone",
-            [](WorldObject& object, std::optional<int> threads) {
-                Use use(object);
-                return object_with(without_gil([&] { return object.world.clone(load_settings(threads)); }));
-            },
-            nb::arg("threads").none())
+        .def("clone",
+             [](WorldObject& object, nb::handle given) {
+                 Use use(object);
+                 const LoadSettings settings = load_settings(given);
+                 return object_with(without_gil([&] { return object.world.clone(settings); }));
+             })
         .def("to_bytes",
              [](WorldObject& object) {
                  Use use(object);
                  const auto bytes = without_gil([&] { return object.world.to_bytes(); });
                  return nb::bytes(bytes.data(), bytes.size());
              })
-        .def_static(
-            "from_bytes",
-            [](const nb::bytes& bytes, std::optional<int> threads) {
-                Use::require_threads();
-                const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()), bytes.size());
-                return object_with(without_gil([&] { return World::from_bytes(data, load_settings(threads)); }));
-            },
-            nb::arg("bytes"), nb::arg("threads").none())
+        .def_static("from_bytes",
+                    [](const nb::bytes& bytes, nb::handle given) {
+                        Use::require_threads();
+                        const LoadSettings settings = load_settings(given);
+                        const std::span<const std::byte> data(static_cast<const std::byte*>(bytes.data()),
+                                                              bytes.size());
+                        return object_with(without_gil([&] { return World::from_bytes(data, settings); }));
+                    })
         .def("save",
              [](WorldObject& object, const std::string& file) {
                  Use use(object);
                  without_gil([&] { object.world.save(file); });
              })
-        .def_static(
-            "load",
-            [](const std::string& file, std::optional<int> threads) {
-                Use::require_threads();
-                return object_with(without_gil([&] { return World::load(file, load_settings(threads)); }));
-            },
-            nb::arg("file"), nb::arg("threads").none())
+        .def_static("load",
+                    [](const std::string& file, nb::handle given) {
+                        Use::require_threads();
+                        const LoadSettings settings = load_settings(given);
+                        return object_with(without_gil([&] { return World::load(file, settings); }));
+                    })
         .def("add_material",
              [](WorldObject& object, nb::handle given) {
                  Use use(object);

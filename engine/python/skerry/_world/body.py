@@ -258,13 +258,10 @@ class Body(TouchingObject):
         values: Reals = array
         return values
 
-    def __repr__(self) -> str:
-        if not self.alive:
-            return super().__repr__()
+    def _description(self) -> str:
         kind = "rigid" if self.dynamics == "rigid" else "deformable"
         return (
-            f"<skerry.Body '{self.name}' {kind}, {self.node_count:,} nodes, {len(self.tetrahedra):,} tetrahedra, "
-            f"{self.mass:.3g} kg>"
+            f" '{self.name}' {kind}, {self.node_count:,} nodes, {len(self.tetrahedra):,} tetrahedra, {self.mass:.3g} kg"
         )
 
 
@@ -287,10 +284,8 @@ class Attachment(MovedObject):
     def __reduce__(self) -> tuple[Any, ...]:
         return (Attachment, (self._world, self._given_handle, self._body, self._node_count))
 
-    def __repr__(self) -> str:
-        if not self.alive:
-            return super().__repr__()
-        return f"<skerry.Attachment of body '{self._body.name}', {self._node_count:,} nodes>"
+    def _description(self) -> str:
+        return f" of body '{self._body.name}', {self._node_count:,} nodes"
 
 
 def _nodes(at: str) -> bool:

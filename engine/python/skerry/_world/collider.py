@@ -27,7 +27,5 @@ class Collider(TouchingObject, MovedObject):
         shape: Shape = self._core.shape(self._handle)
         return shape
 
-    def __repr__(self) -> str:
-        if not self.alive:
-            return super().__repr__()
-        return f"<skerry.Collider '{self.name}' {type(self.shape).__name__}>"
+    def _description(self) -> str:
+        return f" '{self.name}' {type(self.shape).__name__}"

@@ -47,5 +47,5 @@ class MaterialHandle(WorldObject):
     def __reduce__(self) -> tuple[Any, ...]:
         return (MaterialHandle, (self._world, self._given_handle))
 
-    def __repr__(self) -> str:
-        return f"<skerry.MaterialHandle {self.settings!r}>" if self.alive else super().__repr__()
+    def _description(self) -> str:
+        return f" {self.settings!r}"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, SupportsIndex, TypeVar, Unpack
 
 from .._arrays import VectorLike, real_array
-from .._errors import SceneError
+from .._errors import BusyError, SceneError
 from .._settings import Pose, Surface
 from .changes import SurfaceChanges
 
@@ -56,8 +57,16 @@ class WorldObject:
     def __hash__(self) -> int:
         return hash(self._given_handle)
 
+    def _description(self) -> str:
+        """Text of a living object for repr()."""
+        return f": {self._label}"
+
     def __repr__(self) -> str:
-        return f"<skerry.{type(self).__name__}: {self._label}{'' if self.alive else ', removed'}>"
+        try:
+            text = self._description() if self.alive else f": {self._label}, removed"
+        except BusyError:
+            text = f": {self._label}, in use by another thread"
+        return f"<skerry.{type(self).__name__}{text}>"
 
 
 class PosedObject(WorldObject):
@@ -160,7 +169,7 @@ class Objects(Mapping[str, Item], Generic[Item]):
         """Handles of all objects of this name."""
         return list(getattr(self._core, f"{self._kind}_named")(name))
 
-    def __getitem__(self, key: str | int | Item) -> Item:
+    def __getitem__(self, key: str | SupportsIndex | Item) -> Item:
         if isinstance(key, str):
             return self._make(self._only(key))
         handles = self._all()
@@ -196,7 +205,7 @@ class Objects(Mapping[str, Item], Generic[Item]):
             return bool(self._named(key))
         if isinstance(key, WorldObject):
             return key._given_handle in self._all()
-        return isinstance(key, int) and -len(self) <= key < len(self)
+        return isinstance(key, SupportsIndex) and -len(self) <= operator.index(key) < len(self)
 
     def items(self) -> ItemsView[str, Item]:
         """Pairs of a name and an object, in the order of the world."""

@@ -9,14 +9,15 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import SimpleNamespace
 from typing import Any, Unpack
 
 from .. import _core
 from .._arrays import VectorLike, real_array
-from .._errors import Doubt, SceneError, StepError
+from .._errors import BusyError, Doubt, SceneError, StepError
 from .._recorder import WorldOutput
 from .._results import WorldResults
-from .._settings import Settings
+from .._settings import Backend, Settings
 from .body import Body
 from .building import Building
 from .changes import SettingsChanges
@@ -31,6 +32,10 @@ if hasattr(os, "register_at_fork"):
 
 _LARGEST_TRUSTED_ERROR = 0.5
 """Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""
+
+
+class LoadSettings(SimpleNamespace):
+    """Threads of a copy for the extension module."""
 
 
 class World(Building, WorldResults, WorldOutput):
@@ -56,10 +61,10 @@ class World(Building, WorldResults, WorldOutput):
 
     # Copies and files.
 
-    def copy(self, *, threads: int | None = None) -> World:
-        """A copy that continues with the same bits, by default with as many threads. copy.bodies[body] is the copy of a
-        body."""
-        return World._of(self._core.clone(threads))
+    def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> World:
+        """A copy that continues with the same bits on any threads, which are by default those of this world.
+        copy.bodies[body] is the copy of a body."""
+        return World._of(self._core.clone(LoadSettings(threads=threads, backend=backend)))
 
     def to_bytes(self) -> bytes:
         """The bytes that save() writes."""
@@ -67,18 +72,18 @@ class World(Building, WorldResults, WorldOutput):
         return data
 
     @staticmethod
-    def from_bytes(data: bytes, *, threads: int | None = None) -> World:
+    def from_bytes(data: bytes, *, threads: int | None = None, backend: Backend | None = None) -> World:
         """Makes a world of the bytes of to_bytes()."""
-        return World._of(_core.World.from_bytes(data, threads))
+        return World._of(_core.World.from_bytes(data, LoadSettings(threads=threads, backend=backend)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Saves the world. An existing file is replaced completely or not at all."""
         self._core.save(os.fspath(path))
 
     @staticmethod
-    def load(path: str | os.PathLike[str], *, threads: int | None = None) -> World:
-        """Reads a world that save() wrote. It continues with the same bits on any number of threads."""
-        return World._of(_core.World.load(os.fspath(path), threads))
+    def load(path: str | os.PathLike[str], *, threads: int | None = None, backend: Backend | None = None) -> World:
+        """Reads a world that save() wrote. It continues with the same bits on any threads."""
+        return World._of(_core.World.load(os.fspath(path), LoadSettings(threads=threads, backend=backend)))
 
     def __copy__(self) -> World:
         return self.copy()
@@ -260,10 +265,13 @@ class World(Building, WorldResults, WorldOutput):
             warnings.warn(text, Doubt, stacklevel=_frames_of_package())
 
     def __repr__(self) -> str:
-        return (
-            f"<skerry.World at {self.time:.6g} s, {len(self.bodies):,} bodies, {len(self.colliders):,} colliders, "
-            f"{len(self._core.joints()):,} joints>"
-        )
+        try:
+            return (
+                f"<skerry.World at {self.time:.6g} s, {len(self.bodies):,} bodies, {len(self.colliders):,} colliders, "
+                f"{len(self._core.joints()):,} joints>"
+            )
+        except BusyError:
+            return "<skerry.World in use by another thread>"
 
     def _repr_html_(self) -> str:
         return world_table(self)
