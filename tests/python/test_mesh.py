@@ -2,8 +2,6 @@
 
 import os
 import pickle
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -158,12 +156,6 @@ def test_a_mesh_report_reads_well() -> None:
     lines = repr(sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9]).inspect()).splitlines()
     assert lines[0] == "MeshReport"
     assert "  nodes: 5" in lines and "  labels: 7: 1, 9: 1" in lines and "  upper: (1, 1, 1)" in lines
-
-
-def test_other_packages_are_not_imported_at_the_start() -> None:
-    code = "import sys, skerry; print([n for n in ('meshio', 'pyvista', 'gmsh', 'scipy', 'h5py') if n in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
 
 
 def test_a_meshio_mesh_comes_and_goes(tmp_path: Path) -> None:

@@ -71,6 +71,37 @@ def test_every_contact_is_in_one_region() -> None:
         assert len(set(contacts["first"][members])) == 1
 
 
+def test_contacts_of_sleeping_bodies_are_in_no_region() -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.Plane())
+    block = world.add_body(sk.Mesh.box((0.1, 0.1, 0.1), 1), RUBBER, position=(0, 0, 0.05), dynamics="rigid")
+    while not block.asleep and world.time < 5:
+        world.advance(0.5)
+    assert block.asleep and set(world.contacts["region"]) == {-1} and world.regions == []
+    world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 0.06), name="other")
+    world.run(0.05)
+    [members] = world.regions
+    assert block.asleep and set(world.contacts["first"][members]) == {1}
+
+
+def test_the_slip_is_the_velocity_along_the_surface() -> None:
+    world = sk.World(threads=1)
+    world.add_collider(sk.Plane(), friction=0.1)
+    block = world.add_body(
+        sk.Mesh.box((0.1, 0.1, 0.05), 1),
+        RUBBER,
+        position=(0, 0, 0.0251),
+        velocity=(2, 0, 0),
+        dynamics="rigid",
+        name="block",
+    )
+    world.run(0.1)
+    contacts = world.contacts
+    assert len(contacts) > 0 and set(contacts["motion"]) == {sk.SLIDE}
+    np.testing.assert_allclose(contacts["slip"], np.tile(block.velocities[0], (len(contacts), 1)), atol=1e-3)
+    assert np.all(contacts["impulse"][:, 0] < 0) and np.all(contacts["impulse"][:, 2] > 0)
+
+
 def test_there_are_no_regions_without_contacts() -> None:
     assert ball_world()[0].regions == []
 
