@@ -290,6 +290,7 @@ TEST_CASE("`go_on` runs on the calling thread, counts up, and ends a rollout wit
 
     settings.intervals = 1;
     settings.dt = 1e5;
+    settings.threads = 3;
     done = 0;
     CHECK(check_stopped() == 0);
 
