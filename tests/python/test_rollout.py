@@ -169,6 +169,23 @@ def test_a_continued_rollout_has_the_bits_of_a_longer_one() -> None:
     )
 
 
+def test_a_world_that_was_reset_rolls_out_as_before() -> None:
+    bench = Bench()
+    saved, record = bench.world.copy(), {"ball": sk.NodesProbe(bench.ball)}
+    first = sk.rollout(bench.world, {"finger": poses()}, dt=DT, record=record)
+    bench.world.advance(0.05)
+    bench.world.reset(saved)
+    second = sk.rollout(bench.world, {"finger": poses()}, dt=DT, record=record)
+    assert np.array_equal(first["ball.position"], second["ball.position"])
+
+
+def test_a_rollout_shows_its_progress(capfd: pytest.CaptureFixture[str]) -> None:
+    bench = Bench()
+    sk.rollout([bench.world] * 4, dt=0.05, steps=4, progress=True)
+    shown = capfd.readouterr().err
+    assert shown.startswith("\r") and shown.endswith(" %\r100 %\n")
+
+
 def test_a_world_that_stops_warns_and_has_nan() -> None:
     bench = Bench()
     force = np.zeros((2, 3, 3))
@@ -183,7 +200,7 @@ def test_a_world_that_stops_warns_and_has_nan() -> None:
 
 def test_arrays_of_the_wrong_shape_are_refused_with_both_shapes() -> None:
     bench = Bench()
-    with pytest.raises(TypeError, match=r"found an array of the shape \(4, 5\), expected \(B, T, 6\) or \(T, 6\)"):
+    with pytest.raises(TypeError, match=r"pose of collider 'finger': .*shape \(4, 5\), expected \(T, 6\)"):
         sk.rollout(bench.world, {"finger": np.zeros((4, 5))}, dt=DT)
     with pytest.raises(TypeError, match=r"shape \(4, 2, 3\) with the number of intervals 2, expected 3"):
         sk.rollout(bench.world, {"finger": np.zeros((4, 3, 6)), (bench.ball, "force"): np.zeros((4, 2, 3))}, dt=DT)
@@ -193,14 +210,21 @@ def test_arrays_of_the_wrong_shape_are_refused_with_both_shapes() -> None:
 
 def test_wrong_names_quantities_and_settings_are_refused() -> None:
     bench = Bench()
-    with pytest.raises(KeyError, match="'thumb'"):
+    with pytest.raises(KeyError, match="'thumb'; the names are 'floor', 'finger', 'ball', 'bar', 'lever'"):
         sk.rollout(bench.world, {"thumb": np.zeros((3, 6))}, dt=DT)
     with pytest.raises(sk.SceneError, match="quantity: found 'colour', expected one of 'force', 'loads'"):
         sk.rollout(bench.world, {(bench.ball, "colour"): np.zeros((3, 3))}, dt=DT)
     with pytest.raises(TypeError, match="probe 'ball': found <skerry.Body"):
         sk.rollout(bench.world, dt=DT, steps=1, record={"ball": bench.ball})  # type: ignore[dict-item]
-    with pytest.raises(sk.SceneError, match="rollout: steps: found None"):
-        sk.rollout(bench.world, dt=DT)
+    for steps in (None, 0, -1):
+        with pytest.raises(sk.SceneError, match=f"rollout: steps: found {steps}, expected a number"):
+            sk.rollout(bench.world, dt=DT, steps=steps)
+    with pytest.raises(sk.SceneError, match="worlds: found an empty list"):
+        sk.rollout([], dt=DT, steps=1)
+    with pytest.raises(TypeError, match="worlds: found 3, expected a World"):
+        sk.rollout([bench.world, 3], dt=DT, steps=1)  # type: ignore[list-item]
+    with pytest.raises(TypeError, match="pose of collider 'finger': found 'left'"):
+        sk.rollout(bench.world, {"finger": "left"}, dt=DT)
     with pytest.raises(sk.SceneError, match="dt"):
         sk.rollout(bench.world, dt=0.0, steps=1)
     with pytest.raises(sk.SceneError, match="finger"):  # a NaN in a control

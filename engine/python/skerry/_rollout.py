@@ -5,13 +5,14 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from operator import index
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import shape_text
+from ._arrays import real_array, shape_text
 from ._errors import Doubt, scene_error
 from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
@@ -88,18 +89,23 @@ def rollout(
 
     TypeError: an array has the wrong shape. SceneError: an object, a quantity or a value is wrong; no world has run
     then. BusyError: another thread uses one of the worlds."""
-    first = worlds if isinstance(worlds, World) else _first_of(worlds)
-    given = {key: _Values(first, key, values) for key, values in (controls or {}).items()}
-    common = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(worlds))
-    count = 1 if common is None else common
-    intervals = _common(given, "number of intervals", 1, steps)
-    if intervals is None:
-        raise scene_error("rollout", "steps", "None", "the number of intervals, because there are no controls")
-    copies = [worlds] * count if isinstance(worlds, World) else list(worlds)
+    copies = [worlds] if isinstance(worlds, World) else list(worlds)
+    if not copies:
+        raise scene_error("rollout", "worlds", "an empty list", "at least one world")
+    for world in copies:
+        if not isinstance(world, World):
+            raise TypeError(f"rollout: worlds: found {world!r}, expected a World")
+    given = [_Values(copies[0], key, values) for key, values in (controls or {}).items()]
+    count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(copies))
+    intervals = _common(given, "number of intervals", 1, None if steps is None else index(steps))
+    if intervals is None or intervals < 1:
+        raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control that has it")
+    if isinstance(worlds, World):
+        copies *= 1 if count is None else count
     probes = record or {}
     values = _core.rollout(
         [world._core for world in copies],
-        [(control.quantity, control.handle, control.array.ravel()) for control in given.values()],
+        [(control.quantity, control.handle, control.array.ravel()) for control in given],
         recorded_probes(probes),
         float(dt),
         intervals,
@@ -107,9 +113,12 @@ def rollout(
         keep_worlds,
         _show if progress else None,
     )
-    result = RolloutResult(time=values["time"].reshape((count, intervals)))
+    if progress:
+        print("\r100 %", file=sys.stderr)
+    shape = (len(copies), intervals)
+    result = RolloutResult(time=values["time"].reshape(shape))
     for (name, probe), (columns, series) in zip(probes.items(), values["series"], strict=True):
-        result.update(_arrays_of(name, probe, columns, series.reshape((count, intervals, -1))))
+        result.update(_arrays_of(name, probe, columns, series.reshape((*shape, -1))))
     messages, distrust = zip(*values["status"], strict=True)
     result["message"], result["distrust"] = np.array(messages, dtype=np.str_), np.array(distrust, dtype=np.str_)
     result["ok"] = result["message"] == ""
@@ -117,12 +126,6 @@ def rollout(
     _warn("stopped", messages)
     _warn("cannot be trusted", distrust)
     return result
-
-
-def _first_of(worlds: Sequence[World]) -> World:
-    if not worlds:
-        raise scene_error("rollout", "worlds", "an empty list", "at least one world")
-    return worlds[0]
 
 
 def _warn(state: str, reasons: Sequence[str]) -> None:
@@ -134,13 +137,13 @@ def _warn(state: str, reasons: Sequence[str]) -> None:
 
 
 def _show(done: int, total: int) -> None:
-    print(f"\r{100 * done / total:.0f} %", end="\n" if done == total else "", file=sys.stderr, flush=True)
+    print(f"\r{100 * done / total:.0f} %", end="", file=sys.stderr, flush=True)
 
 
-def _common(controls: Mapping[Any, _Values], what: str, place: int, given: int | None) -> int | None:
+def _common(controls: Sequence[_Values], what: str, place: int, given: int | None) -> int | None:
     """Number of worlds or intervals on which all controls agree."""
     common = given
-    for control in controls.values():
+    for control in controls:
         length = control.lengths[place]
         if length is None:
             continue
@@ -158,28 +161,23 @@ class _Values:
 
     def __init__(self, world: World, key: Any, values: ArrayLike) -> None:
         named, quantity = key if isinstance(key, tuple) else (key, None)
-        place = f"controls[{named!r}]"
-        target = _object_named(world, place, named) if isinstance(named, str) else named
+        target = _object_named(world, named) if isinstance(named, str) else named
         shapes = next((_CONTROLS[kind] for kind in _CONTROLS if isinstance(target, kind)), None)
         if shapes is None:
             classes = ", ".join(kind.__name__ for kind in _CONTROLS)
-            raise TypeError(f"{place}: found {named!r}, expected a name or an object of one of {classes}")
+            raise TypeError(f"controls: found {named!r}, expected a name or an object of one of {classes}")
+        label = "world" if isinstance(target, World) else target._label
         self.quantity = next(iter(shapes)) if quantity is None else quantity
         if self.quantity not in shapes:
             expected = "one of " + ", ".join(f"'{known}'" for known in shapes)
-            raise scene_error(place, "quantity", repr(quantity), expected)
-        self.name = f"{place} ({self.quantity})"
+            raise scene_error(f"controls: {label}", "quantity", repr(quantity), expected)
+        self.name = f"controls: {self.quantity} of {label}"
         self.handle = None if isinstance(target, World) else target._handle
         nodes = target.node_count if isinstance(target, Body) else 0
         shape = tuple(nodes if length < 0 else length for length in shapes[self.quantity])
-        self.array = np.ascontiguousarray(values, dtype=np.float64)
-        extra = self.array.ndim - len(shape)
-        if extra not in (1, 2) or self.array.shape[extra:] != shape:
-            raise TypeError(
-                f"{self.name}: found an array of the shape {shape_text(self.array.shape)}, expected "
-                f"{shape_text(('B', 'T', *shape))} or {shape_text(('T', *shape))}"
-            )
-        self.lengths = (self.array.shape[0] if extra == 2 else None, self.array.shape[extra - 1])
+        leading = ("B", "T") if np.ndim(values) == len(shape) + 2 else ("T",)
+        self.array = real_array(values, self.name, (*leading, *shape))
+        self.lengths = (self.array.shape[0] if len(leading) == 2 else None, self.array.shape[len(leading) - 1])
 
 
 def _arrays_of(name: str, probe: Probe, columns: list[str], series: Reals) -> dict[str, Reals]:
@@ -198,7 +196,14 @@ def _arrays_of(name: str, probe: Probe, columns: list[str], series: Reals) -> di
     return arrays
 
 
-def _object_named(world: World, place: str, name: str) -> Body | Collider:
-    if name in world.colliders and name in world.bodies:
-        raise scene_error(place, "", f"a body and a collider of the name '{name}'", "the object itself")
-    return world.colliders[name] if name in world.colliders else world.bodies[name]
+def _object_named(world: World, name: str) -> Body | Collider:
+    """The collider or the body of this name."""
+    found = [objects[name] for objects in (world.colliders, world.bodies) if name in objects]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise scene_error(
+            "controls", "", f"a body and a collider of the name '{name}'", "the object in place of the name"
+        )
+    names = ", ".join(f"'{known}'" for known in [*world.colliders, *world.bodies])
+    raise KeyError(f"controls: no collider or body has the name '{name}'; the names are {names}")
