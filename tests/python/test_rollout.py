@@ -183,7 +183,7 @@ def test_a_rollout_shows_its_progress(capfd: pytest.CaptureFixture[str]) -> None
     bench = Bench()
     sk.rollout([bench.world] * 4, dt=0.05, steps=4, progress=True)
     shown = capfd.readouterr().err
-    assert shown.startswith("\r") and shown.endswith(" %\r100 %\n")
+    assert shown.startswith("\r") and shown.endswith("\r100 %\n")
 
 
 def test_a_world_that_stops_warns_and_has_nan() -> None:
