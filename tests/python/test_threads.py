@@ -1,8 +1,8 @@
 """Threads, signals, processes and memory."""
 
-import os
 import concurrent.futures
 import multiprocessing
+import os
 import sys
 import threading
 from collections.abc import Iterator
