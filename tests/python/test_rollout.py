@@ -148,6 +148,36 @@ def test_a_motor_follows_the_speeds_of_a_control() -> None:
     assert np.diff(out["hinge.angle"][0]) == pytest.approx(speeds[1:] * DT, rel=sk.Settings().tolerance)
 
 
+def test_a_motor_reaches_the_coordinates_of_a_control() -> None:
+    bench = Bench()
+    bench.hinge.set_motor(sk.Motor(position=0, strength=5, fastest=20))
+    angles = np.linspace(0.01, 0.1, STEPS)
+    out = sk.rollout(bench.world, {bench.hinge: angles}, dt=DT, record={"hinge": sk.JointProbe(bench.hinge)})
+    assert out["hinge.angle"][0] == pytest.approx(angles, rel=sk.Settings().tolerance)
+
+
+def test_every_control_moves_its_object() -> None:
+    bench = Bench()
+    twist, shift = np.zeros((STEPS, 6)), np.zeros((STEPS, 6))
+    twist[:, 2], shift[:, 2] = 0.5, np.linspace(0.001, 0.01, STEPS)
+    pull = np.zeros((STEPS, 3))
+    pull[:, 0] = 1e-2
+    out = sk.rollout(
+        bench.world,
+        {(bench.finger, "velocity"): twist, bench.clamp: shift, bench.ball: pull},
+        dt=DT,
+        record={
+            "finger": sk.PoseProbe(bench.finger),
+            "clamp": sk.PoseProbe(bench.clamp),
+            "ball": sk.BodyProbe(bench.ball),
+        },
+    )
+    assert out["finger.position"][0, :, 2] == pytest.approx(0.05 + 0.5 * DT * np.arange(1, STEPS + 1))
+    assert out["clamp.position"][0, :, 2] == pytest.approx(shift[:, 2])
+    # The ball hangs in the air for some steps, so its first acceleration is that of the force.
+    assert out["ball.velocity"][0, 1, 0] == pytest.approx(1e-2 / bench.ball.mass * 2 * DT, rel=0.3)
+
+
 def test_worlds_of_a_list_differ_and_keep_their_order() -> None:
     bench = Bench()
     worlds = [bench.world.copy() for _ in range(3)]
