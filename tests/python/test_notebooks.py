@@ -9,8 +9,6 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("matplotlib")
-
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "examples/notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
@@ -22,6 +20,7 @@ def cells_of(notebook: pathlib.Path) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(notebook: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("matplotlib")
     # Cells without IPython commands are one Python program.
     cells = ["".join(cell["source"]) for cell in cells_of(notebook) if cell["cell_type"] == "code"]
     program = "\n\n".join(["import warnings, skerry", "warnings.simplefilter('error', skerry.Doubt)", *cells])
