@@ -1,5 +1,6 @@
 # Targets that check sources:
-#     format, format_check      layout; needs clang-format, whose layout differs between versions: 14 counts
+#     format, format_check      layout; needs clang-format, whose layout differs between versions: 14 counts; with
+#                               SKERRY_PYTHON=ON also layout and lint of the Python package (ruff)
 #     lint, lint_changed        clang-tidy over all sources, or over those that changed lately
 #     check_includes, check_includes_changed    each file compiles alone, so that a missing include is found
 #     check_profiling           the profiling programs compile, for syntax only
@@ -31,6 +32,18 @@ if(SKERRY_CLANG_FORMAT)
     set(run ${CMAKE_COMMAND} -D CLANG_FORMAT=${SKERRY_CLANG_FORMAT} -D SOURCE_DIR=${PROJECT_SOURCE_DIR})
     add_custom_target(format COMMAND ${run} -D CHECK=OFF -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
     add_custom_target(format_check COMMAND ${run} -D CHECK=ON -P ${CMAKE_CURRENT_LIST_FILE} VERBATIM)
+endif()
+if(SKERRY_PYTHON AND SKERRY_CLANG_FORMAT)
+    cmake_path(GET Python_EXECUTABLE PARENT_PATH python_programs)
+    find_program(SKERRY_RUFF ruff HINTS ${python_programs})
+    mark_as_advanced(SKERRY_RUFF)
+    if(SKERRY_RUFF)
+        set(folders engine/python examples/python tests/python)
+        add_custom_command(TARGET format POST_BUILD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM
+            COMMAND ${SKERRY_RUFF} check --quiet --fix-only ${folders} COMMAND ${SKERRY_RUFF} format ${folders})
+        add_custom_command(TARGET format_check POST_BUILD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM
+            COMMAND ${SKERRY_RUFF} format --check ${folders} COMMAND ${SKERRY_RUFF} check ${folders})
+    endif()
 endif()
 set(checks ${PROJECT_SOURCE_DIR}/scripts/lib)
 if(SKERRY_CLANG_TIDY)

@@ -1,19 +1,30 @@
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# Missing packages are collected, so that one message names all of them.
+set(skerry_missing "")
+
+# skerry_need(PACKAGE VERSION DEBIAN [option of find_package...]): DEBIAN is the name of the package of Debian.
+macro(skerry_need package version debian)
+    find_package(${package} ${version} QUIET ${ARGN})
+    if(NOT ${package}_FOUND)
+        string(APPEND skerry_missing "\n    ${package} ${version} (Debian: ${debian})")
+    endif()
+endmacro()
+
+skerry_need(Eigen3 3.4 libeigen3-dev NO_MODULE)
 find_package(Threads REQUIRED)
 if("openmp" IN_LIST SKERRY_BACKENDS)
-    find_package(OpenMP REQUIRED COMPONENTS CXX)
+    skerry_need(OpenMP 4.5 g++ COMPONENTS CXX)
 endif()
 if("tbb" IN_LIST SKERRY_BACKENDS)
-    find_package(TBB 2021 REQUIRED)
+    skerry_need(TBB 2021 libtbb-dev)
 endif()
 if(SKERRY_HDF5)
-    find_package(HDF5 REQUIRED COMPONENTS C)
+    skerry_need(HDF5 1.8 libhdf5-dev COMPONENTS C)
 endif()
 if(SKERRY_PAGES)
-    find_package(ZLIB REQUIRED)
+    skerry_need(ZLIB 1.2 zlib1g-dev)
 endif()
 if(SKERRY_SCENES OR SKERRY_PAGES)
-    find_package(nlohmann_json 3.9 REQUIRED)
+    skerry_need(nlohmann_json 3.9 nlohmann-json3-dev)
 endif()
 set(skerry_whole "")  # what is built beside the library and wants all of it
 foreach(part IN ITEMS PROGRAM TESTS PROFILING)
@@ -22,7 +33,7 @@ foreach(part IN ITEMS PROGRAM TESTS PROFILING)
     endif()
 endforeach()
 if(skerry_whole)
-    find_package(CLI11 2.1 REQUIRED)
+    skerry_need(CLI11 2.1 libcli11-dev)
     foreach(part IN ITEMS HDF5 SCENES PAGES)
         if(NOT SKERRY_${part})
             list(JOIN skerry_whole ", " skerry_whole)
@@ -31,5 +42,23 @@ if(skerry_whole)
     endforeach()
 endif()
 # Compiled in: nothing of it is needed where the library is used.
-find_path(XXHASH_INCLUDE xxhash.h REQUIRED DOC "Folder of xxhash.h (0.8 or later; Debian: libxxhash-dev)")
+find_path(XXHASH_INCLUDE xxhash.h DOC "Folder of xxhash.h (0.8 or later; Debian: libxxhash-dev)")
 mark_as_advanced(XXHASH_INCLUDE)
+if(NOT XXHASH_INCLUDE)
+    string(APPEND skerry_missing "\n    xxhash 0.8 (Debian: libxxhash-dev)")
+endif()
+
+# The library carries three.js, so an installed one needs no data files.
+if(SKERRY_PAGES)
+    find_file(SKERRY_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/share/nodejs/three/build
+        NO_DEFAULT_PATH DOC "three.min.js (r111 or near; Debian: libjs-three) that PageWriter inlines")
+    if(NOT SKERRY_THREE_JS AND SKBUILD)  # a wheel has all parts that it was asked for
+        string(APPEND skerry_missing "\n    three.min.js r111 (Debian: libjs-three); set SKERRY_THREE_JS to its path")
+    endif()
+endif()
+
+if(skerry_missing)
+    message(FATAL_ERROR "Packages that Skerry needs were not found:${skerry_missing}\n"
+        "Install them, with apt-get or another package manager, or name their folder in CMAKE_PREFIX_PATH. "
+        "SKERRY_HDF5=OFF, SKERRY_SCENES=OFF, SKERRY_PAGES=OFF and SKERRY_BACKENDS=threads need fewer of them.\n")
+endif()

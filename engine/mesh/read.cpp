@@ -77,11 +77,11 @@ bool any_overlap(const Mesh& mesh) {
     return false;
 }
 
-/// Reverses the orientation of inverted tetrahedra, unless they would then overlap other tetrahedra. Some programs list
-/// the nodes of all or some tetrahedra in the opposite order. In another kind of faulty file, a node lies in a wrong
-/// place: tetrahedra at this node are inverted, too, but share each face with a tetrahedron on its other side. These
-/// are left as they are.
-void turn_inverted(const std::string& path, Mesh& mesh, std::vector<std::string>* notes) {
+/// Reverses the orientation of the inverted tetrahedra of a mesh whose node numbers are valid, unless they would then
+/// overlap other tetrahedra. Some programs list the nodes of all or some tetrahedra in the opposite order. In another
+/// kind of faulty file, a node lies in a wrong place: tetrahedra at this node are inverted, too, but share each face
+/// with a tetrahedron on its other side. These are left as they are.
+void turn_valid(const std::string& name, Mesh& mesh, std::vector<std::string>* notes) {
     std::vector<std::size_t> inverted;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         if (orientation(mesh, mesh.tetrahedra[t]) == Orientation::inverted) inverted.push_back(t);
@@ -96,7 +96,7 @@ void turn_inverted(const std::string& path, Mesh& mesh, std::vector<std::string>
         return;
     }
     if (notes)
-        notes->push_back(path + ": " + std::to_string(count) + " of " + std::to_string(all) +
+        notes->push_back(name + ": " + std::to_string(count) + " of " + std::to_string(all) +
                          " tetrahedra list their nodes in the opposite order (negative volume) and were turned");
 }
 
@@ -107,11 +107,16 @@ Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::str
     if (mesh.nodes.size() < raw.nodes.size()) mesh.file_number = std::move(used.number);
     mesh.tetrahedra = std::move(raw.tetrahedra);
     mesh.label = std::move(raw.label);
-    turn_inverted(path, mesh, notes);
+    turn_valid(path, mesh, notes);
     return mesh;
 }
 
 }  // namespace
+
+void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes) {
+    require_valid(mesh, name);
+    turn_valid(name, mesh, notes);
+}
 
 Mesh read(const std::string& path, std::vector<std::string>* notes) {
     RawMesh raw = read_raw(path, false);

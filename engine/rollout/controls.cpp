@@ -146,32 +146,40 @@ std::size_t number_count(const World& world, const RolloutControl& control) {
     return nodes ? count * world.positions(nodes->body).size() : count;
 }
 
-void check_controls(std::span<const World* const> worlds, std::size_t world_count, const RolloutSettings& settings) {
+std::size_t agreed_count(std::span<const World* const> worlds, const std::string& title,
+                         FunctionRef<std::size_t(const World&)> count_in) {
+    std::size_t count = 0;
+    for (std::size_t w = 0; w < worlds.size(); ++w) {
+        if (w > 0 && worlds[w] == worlds[w - 1]) continue;
+        std::size_t in_world = 0;
+        try {
+            in_world = count_in(*worlds[w]);
+        } catch (const SceneError& error) {
+            throw SceneError(title + ": world " + std::to_string(w) + ": " + error.what());
+        }
+        if (w == 0) count = in_world;
+        if (in_world != count)
+            refuse_control(title, "world " + std::to_string(w), std::to_string(in_world),
+                           std::to_string(count) + " as in world 0, of which all worlds must be copies");
+    }
+    return count;
+}
+
+void check_controls(std::span<const World* const> worlds, const RolloutSettings& settings) {
     for (std::size_t c = 0; c < settings.controls.size(); ++c) {
         const RolloutControl& control = settings.controls[c];
         const std::string place = numbered("controls", c);
-        std::size_t count = 0;
-        for (std::size_t w = 0; w < worlds.size(); ++w) {
-            std::size_t of_world = 0;
-            try {
-                of_world = number_count(*worlds[w], control);
-            } catch (const SceneError& error) {
-                throw SceneError(place + ": " + (w > 0 ? "a later world" : "the first world") + ": " + error.what());
-            }
-            if (w == 0) count = of_world;
-            if (of_world != count)
-                refuse_control(place, "worlds", "an object with another number of nodes than in the first world",
-                               "worlds that are copies of one world");
-        }
+        const std::size_t count = agreed_count(worlds, place + ": number of values per interval",
+                                               [&](const World& world) { return number_count(world, control); });
         const std::string title = place + " (" + title_of(*worlds[0], control) + ")";
         for (std::size_t earlier = 0; earlier < c; ++earlier)
             if (object_of(settings.controls[earlier]) == object_of(control))
                 refuse_control(title, {}, "an object that " + numbered("controls", earlier) + " also controls",
                                "one control for each object");
-        const std::size_t of_one = settings.intervals * count, of_all = world_count * of_one;
+        const std::size_t of_one = settings.intervals * count, of_all = worlds.size() * of_one;
         if (control.values.size() != of_one && control.values.size() != of_all)
             refuse_control(title, "values", std::to_string(control.values.size()) + " values",
-                           std::to_string(of_all) + " (worlds " + std::to_string(world_count) + ", intervals " +
+                           std::to_string(of_all) + " (worlds " + std::to_string(worlds.size()) + ", intervals " +
                                std::to_string(settings.intervals) + ", numbers " + std::to_string(count) + ") or " +
                                std::to_string(of_one) + " for all worlds");
         for (std::size_t i = 0; i < control.values.size(); ++i)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/function_ref.h"
 #include "skerry/rollout.h"
 
 namespace skerry {
@@ -13,9 +14,12 @@ namespace skerry {
 /// Number of values that a control has per interval. Throws SceneError if the world lacks the controlled object, or if
 /// the object is a joint without motor.
 std::size_t number_count(const World& world, const RolloutControl& control);
-/// Checks number and values of all controls, and that no object has two controls. `worlds`: the worlds without
-/// duplicates, at least one.
-void check_controls(std::span<const World* const> worlds, std::size_t world_count, const RolloutSettings& settings);
+/// Returns the number that `count_in` finds in each world. Throws SceneError that names the world if the numbers differ
+/// or if `count_in` throws one. `title`: name of the number in messages.
+std::size_t agreed_count(std::span<const World* const> worlds, const std::string& title,
+                         FunctionRef<std::size_t(const World&)> count_in);
+/// Checks number and values of all controls, and that no object has two controls. `worlds`: at least one world.
+void check_controls(std::span<const World* const> worlds, const RolloutSettings& settings);
 /// The values of a control for one interval of one world. `count`: number of values per interval.
 std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
                                 std::size_t world, std::size_t interval);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -24,13 +25,6 @@ constexpr std::chrono::milliseconds watch_period{20};
         .raise();
 }
 
-/// Returns the worlds without neighbouring duplicates.
-std::vector<const World*> different_worlds(std::span<const World* const> worlds) {
-    std::vector<const World*> different(worlds.begin(), worlds.end());
-    different.erase(std::unique(different.begin(), different.end()), different.end());
-    return different;
-}
-
 void check_settings(std::size_t world_count, const RolloutSettings& settings) {
     constexpr auto most = static_cast<std::size_t>(std::numeric_limits<Index>::max());
     if (world_count == 0) refuse_setting("worlds", "no world", "at least one world");
@@ -46,21 +40,16 @@ void check_settings(std::size_t world_count, const RolloutSettings& settings) {
                        "a number of threads >= 0 (0: the number of cores)");
 }
 
-/// Makes the arrays of one probe. Throws SceneError if the worlds do not agree on the columns.
-RolloutSeries empty_series(std::span<const World* const> worlds, const RecordedProbe& probe) {
-    RolloutSeries series{.name = probe.name, .columns = {}, .values = {}};
-    add_columns(*worlds[0], probe, series.columns);
+/// Checks a probe in all worlds and returns its columns.
+std::vector<SeriesColumn> columns_of(std::span<const World* const> worlds, const RecordedProbe& probe) {
     std::vector<SeriesColumn> columns;
-    for (const World* other : worlds.subspan(1)) {
+    agreed_count(worlds, "record: number of columns of a probe", [&](const World& world) {
+        check_probes(world, {&probe, 1});
         columns.clear();
-        add_columns(*other, probe, columns);
-        if (columns.size() != series.columns.size())
-            refuse_setting(
-                "record",
-                "probe \"" + probe.name + "\" with " + std::to_string(columns.size()) + " columns in a later world",
-                std::to_string(series.columns.size()) + " columns, as in the first world");
-    }
-    return series;
+        add_columns(world, probe, columns);
+        return columns.size();
+    });
+    return columns;
 }
 
 /// A rollout that is running. Each world writes only its own part of the arrays of the result.
@@ -73,16 +62,16 @@ public:
             sources_.push_back(&WorldAccess::state_of(*world));
             sources_.back()->require_between_steps("rollout");
         }
-        const std::vector<const World*> different = different_worlds(worlds);
-        for (const World* world : different) check_probes(*world, settings.record);
-        check_controls(different, worlds.size(), settings);
+        check_controls(worlds, settings);
+        check_probes(*worlds[0], settings.record);
         for (const RolloutControl& control : settings.controls)
             number_count_.push_back(number_count(*worlds[0], control));
         constexpr Real none = std::numeric_limits<Real>::quiet_NaN();
         const std::size_t rows = worlds.size() * settings.intervals;
         for (const RecordedProbe& probe : settings.record) {
-            result_.series.push_back(empty_series(different, probe));
-            result_.series.back().values.assign(rows * result_.series.back().columns.size(), none);
+            std::vector<SeriesColumn> columns = columns_of(worlds, probe);
+            std::vector<Real> values(rows * columns.size(), none);
+            result_.series.push_back({probe.name, std::move(columns), std::move(values)});
         }
         result_.time.assign(rows, none);
         result_.status.resize(worlds.size());

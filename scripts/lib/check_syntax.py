@@ -37,7 +37,7 @@ def main():
         names = sources.in_folders(chosen[1:])
     else:
         command = [all_commands[0][0], *flags]
-        names = sources.of_library(chosen == ["--all"])
+        names = sources.without_absent_parts(sources.of_library(chosen == ["--all"]), all_commands)
         if chosen and chosen != ["--all"]:
             names = chosen
 

@@ -48,8 +48,10 @@ def units_of(root, names):
 
 def main():
     tidy, build = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
-    names = [name for name in sources.of_library("--all" in sys.argv) if not PASSED_OVER.fullmatch(name)]
-    flags = sources.common_flags(sources.commands(build))
+    all_commands = sources.commands(build)
+    names = sources.without_absent_parts(sources.of_library("--all" in sys.argv), all_commands)
+    names = [name for name in names if not PASSED_OVER.fullmatch(name)]
+    flags = sources.common_flags(all_commands)
     folder = build / "lint"
     folder.mkdir(exist_ok=True)
 

@@ -109,6 +109,11 @@ Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 /// `notes` as for `read`. Throws SceneError.
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
+/// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `name` stands for the file in
+/// `notes` and in errors. Throws SceneError if a tetrahedron uses a node twice or a node that does not exist, or if a
+/// position is not finite.
+void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);
+
 /// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns an equal mesh. The file name must end in
 /// .msh. An existing file is replaced completely or not at all. Throws SceneError.
 void write(const std::string& path, const Mesh& mesh);

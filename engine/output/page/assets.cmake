@@ -1,6 +1,4 @@
-# three.js is inlined into every page; the library carries it, so an installed one needs no data files.
-find_file(SKERRY_THREE_JS three.min.js PATHS /usr/share/javascript/three /usr/share/nodejs/three/build NO_DEFAULT_PATH
-    DOC "three.min.js (r111 or near; Debian: libjs-three) that PageWriter inlines")
+# three.js is inlined into every page.
 if(SKERRY_THREE_JS)
     set(three_js ${SKERRY_THREE_JS})
 else()

@@ -177,7 +177,7 @@ std::size_t append_as(WorldState& world, std::size_t body, BodyDynamics next) {
     return after;
 }
 
-void copy_rows(Column<Vec3>& column, Range from, Range to) {
+void copy_node_rows(Column<Vec3>& column, Range from, Range to) {
     std::ranges::copy(rows_of(column, from), rows_of(column, to).begin());
 }
 
@@ -207,8 +207,8 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
     const WholeMotion whole = motion_of(model, before);
     model.bodies.surface[after] = model.bodies.surface[before];
-    copy_rows(model.nodes.load, from, to);
-    copy_rows(model.nodes.applied_before, from, to);
+    copy_node_rows(model.nodes.load, from, to);
+    copy_node_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);
     note_forces(model);
     model.body_records[after].settled = model.body_records[before].settled;
@@ -216,9 +216,9 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
         set_momenta(model, after, whole.momentum, whole.angular_momentum);
         return;
     }
-    copy_rows(model.nodes.position, from, to);
-    copy_rows(model.nodes.displacement_origin, from, to);
-    copy_rows(model.nodes.velocity, from, to);
+    copy_node_rows(model.nodes.position, from, to);
+    copy_node_rows(model.nodes.displacement_origin, from, to);
+    copy_node_rows(model.nodes.velocity, from, to);
     if (!model.has_frame(after)) {
         give_nodes_momenta(model, after, whole);
         relax_fully(model, after);

@@ -212,6 +212,18 @@ TEST_CASE("inverted tetrahedra of a file are turned, and a note counts them", "[
     CHECK_THAT(notes.back(), Contains("b.msh: 1 of " + count));
 }
 
+TEST_CASE("inverted tetrahedra of a mesh from elsewhere are turned, and wrong ones are refused", "[unit]") {
+    std::vector<std::string> notes;
+    Mesh mesh = sample();
+    std::swap(mesh.tetrahedra[3][0], mesh.tetrahedra[3][1]);
+    mesh::turn_inverted(mesh, "made", &notes);
+    CHECK(inspect(mesh).inverted == 0);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Contains("made: 1 of "));
+    mesh.tetrahedra[3][0] = 1000;
+    CHECK_THROWS_WITH(mesh::turn_inverted(mesh, "made"), Contains("made: tetrahedron 3: node: found 1000"));
+}
+
 TEST_CASE("a file with a node in a wrong place is read as it is", "[unit]") {
     Mesh mesh{.nodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, 0, 0.5)},
               .tetrahedra = {{0, 1, 2, 3}, {0, 2, 1, 4}}};  // turned, the second would lie in the first

@@ -104,7 +104,7 @@ TEST_CASE("settings and controls of a rollout are refused with the control, the 
                   {"15 values", "numbers " + std::to_string(3 * yard.world.positions(yard.cube).size())});
     check_refused(yard, calls(5, {{GravityControl{}, forces}, {GravityControl{}, forces}}),
                   {"controls[1] (gravity)", "controls[0]"});
-    check_refused(yard, calls(5, {{PoseControl{ColliderHandle{}}, poses}}), {"controls[0]", "first world", "collider"});
+    check_refused(yard, calls(5, {{PoseControl{ColliderHandle{}}, poses}}), {"controls[0]", "world 0", "collider"});
     check_refused(yard, calls(5, {}, {{"gone", BodyForceProbe{yard.cube, ColliderHandle{}}}}), {"\"gone\""});
     check_refused(yard, calls(5, {}, {{"one", EnergyProbe{}}, {"one", EnergyProbe{}}}), {"\"one\"", "different name"});
     check_refused(yard, calls(5, {}, {{"far", StressProbe{yard.cube, {999}}}}), {"\"far\"", "node 999"});
@@ -124,10 +124,14 @@ TEST_CASE("worlds of a rollout must be copies of one world", "[unit]") {
                             const std::string& part) {
         CHECK_THROWS_WITH(rollout(worlds, settings), Catch::Contains(part));
     };
-    refused({&yard.world, &other.world}, calls(1, {{PoseControl{yard.floor}, poses}}), "controls[0]: a later world");
-    refused({&yard.world, &removed}, calls(1, {{PoseControl{yard.clamp}, poses}}), "controls[0]: a later world");
-    refused({&added, &more}, calls(1, {{NodeForceControl{small}, forces}}), "another number of nodes");
-    refused({&added, &more}, calls(1, {}, {{"nodes", NodesProbe{small}}}), "probe \"nodes\"");
+    refused({&yard.world, &other.world}, calls(1, {{PoseControl{yard.floor}, poses}}),
+            "controls[0]: number of values per interval: world 1: ");
+    refused({&yard.world, &removed}, calls(1, {{PoseControl{yard.clamp}, poses}}),
+            "controls[0]: number of values per interval: world 1: ");
+    refused({&added, &more}, calls(1, {{NodeForceControl{small}, forces}}),
+            "world 1: found 192, expected 24 as in world 0");
+    refused({&added, &more}, calls(1, {}, {{"nodes", NodesProbe{small}}}),
+            "world 1: found 192, expected 24 as in world 0");
     refused({&yard.world, nullptr}, calls(1, {}), "null pointer");
 }
 
@@ -290,6 +294,7 @@ TEST_CASE("`go_on` runs on the calling thread, counts up, and ends a rollout wit
 
     settings.intervals = 1;
     settings.dt = 1e5;
+    settings.threads = 3;
     done = 0;
     CHECK(check_stopped() == 0);
 

@@ -1,0 +1,77 @@
+// The parts of the extension module _core, and helpers that all parts use. Users import the package skerry, whose
+// Python files check and document the arguments, and pass NumPy arrays and handles on to _core.
+#pragma once
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "components/types.h"
+
+namespace skerry::python {
+
+namespace nb = nanobind;
+
+// Each function adds one part to the module.
+void bind_errors(nb::module_& module);
+void bind_settings(nb::module_& module);
+void bind_mesh(nb::module_& module);
+void bind_problem(nb::module_& module);
+void bind_recorder(nb::module_& module);
+void bind_rollout(nb::module_& module);
+void bind_scene(nb::module_& module);
+void bind_world(nb::module_& module);
+
+/// Arrays that Python passes in: C-contiguous, of exactly this type.
+using Vectors = nb::ndarray<const Real, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Reals = nb::ndarray<const Real, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const Index, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+template <Py_ssize_t width>
+using IndexRows = nb::ndarray<const Index, nb::shape<-1, width>, nb::c_contig, nb::device::cpu>;
+
+inline std::span<const Vec3> span_of(const Vectors& rows) {
+    return {reinterpret_cast<const Vec3*>(rows.data()), rows.shape(0)};
+}
+inline std::span<const Index> span_of(const Indices& values) {
+    return {values.data(), values.shape(0)};
+}
+template <Py_ssize_t width>
+std::span<const std::array<Index, static_cast<std::size_t>(width)>> span_of(const IndexRows<width>& rows) {
+    return {reinterpret_cast<const std::array<Index, static_cast<std::size_t>(width)>*>(rows.data()), rows.shape(0)};
+}
+
+/// A new NumPy array of the given shape with a copy of the numbers in `rows`, row by row.
+template <class Number, class Row>
+nb::ndarray<nb::numpy, Number> array_of(std::span<const Row> rows, std::initializer_list<std::size_t> row_shape = {}) {
+    static_assert(sizeof(Row) % sizeof(Number) == 0 && std::is_trivially_destructible_v<Row>);
+    auto* data = new Number[rows.size() * sizeof(Row) / sizeof(Number)];
+    if (!rows.empty()) std::memcpy(static_cast<void*>(data), rows.data(), rows.size_bytes());
+    nb::capsule owner(data, [](void* owned) noexcept { delete[] static_cast<Number*>(owned); });
+    std::vector<std::size_t> shape{rows.size()};
+    shape.insert(shape.end(), row_shape.begin(), row_shape.end());
+    return {data, shape.size(), shape.data(), owner};
+}
+inline nb::ndarray<nb::numpy, Real> array_of(std::span<const Vec3> rows) {
+    return array_of<Real>(rows, {3});
+}
+inline nb::ndarray<nb::numpy, Real> array_of(const std::vector<Vec3>& rows) {
+    return array_of(std::span<const Vec3>(rows));
+}
+
+/// Calls a function without the GIL.
+template <class Function>
+auto without_gil(Function&& function) {
+    nb::gil_scoped_release released;
+    return function();
+}
+
+}  // namespace skerry::python

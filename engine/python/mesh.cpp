@@ -1,0 +1,130 @@
+// Tetrahedral meshes and surfaces.
+#include "skerry/mesh.h"
+
+#include <string>
+#include <utility>
+
+#include "engine/python/bind.h"
+
+namespace skerry::python {
+
+namespace {
+
+using Notes = std::vector<std::string>;
+
+/// A mesh with exactly these arrays.
+Mesh same_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels,
+               const std::optional<Indices>& file_number) {
+    const auto points = span_of(nodes);
+    const auto rows = span_of(tetrahedra);
+    Mesh mesh{.nodes{points.begin(), points.end()}, .tetrahedra{rows.begin(), rows.end()}};
+    if (labels) mesh.label.assign(span_of(*labels).begin(), span_of(*labels).end());
+    if (file_number) mesh.file_number.assign(span_of(*file_number).begin(), span_of(*file_number).end());
+    return mesh;
+}
+
+/// A mesh whose inverted tetrahedra are turned, and notes about this.
+nb::tuple new_mesh(const Vectors& nodes, const IndexRows<4>& tetrahedra, const std::optional<Indices>& labels) {
+    Mesh mesh = same_mesh(nodes, tetrahedra, labels, {});
+    Notes notes;
+    mesh::turn_inverted(mesh, "mesh", &notes);
+    return nb::make_tuple(std::move(mesh), notes);
+}
+
+nb::tuple arrays_of(const SurfaceMesh& surface) {
+    return nb::make_tuple(array_of(surface.nodes),
+                          array_of<Index>(std::span<const std::array<Index, 3>>(surface.triangles), {3}));
+}
+
+nb::tuple read(const std::string& path) {
+    Notes notes;
+    Mesh mesh = without_gil([&] { return mesh::read(path, &notes); });
+    return nb::make_tuple(std::move(mesh), notes);
+}
+
+nb::tuple read_surface(const std::string& path) {
+    Notes notes;
+    const SurfaceMesh surface = without_gil([&] { return mesh::read_surface(path, &notes); });
+    return nb::make_tuple(arrays_of(surface), notes);
+}
+
+Mesh table(Real length, Real width, Real height, Real thickness, Real leg, int cells_per_leg) {
+    return mesh::table({.length = length,
+                        .width = width,
+                        .height = height,
+                        .thickness = thickness,
+                        .leg = leg,
+                        .cells_per_leg = cells_per_leg});
+}
+
+Mesh lathe(const nb::ndarray<const Real, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>& profile, int resolution) {
+    const auto* points = reinterpret_cast<const std::array<Real, 2>*>(profile.data());
+    return mesh::lathe({points, profile.shape(0)}, resolution);
+}
+
+nb::dict inspect_mesh(const Mesh& mesh) {
+    const MeshReport report = without_gil([&] { return inspect(mesh); });
+    nb::dict values;
+    const auto tuple_of = [](const Vec3& v) { return nb::make_tuple(v.x(), v.y(), v.z()); };
+    values["nodes"] = report.nodes;
+    values["tetrahedra"] = report.tetrahedra;
+    values["boundary_triangles"] = report.boundary_triangles;
+    values["components"] = report.components;
+    values["lower"] = tuple_of(report.lower);
+    values["upper"] = tuple_of(report.upper);
+    values["volume"] = report.volume;
+    values["mean_edge"] = report.mean_edge;
+    values["min_edge"] = report.min_edge;
+    values["max_edge"] = report.max_edge;
+    values["min_altitude"] = report.min_altitude;
+    values["min_quality"] = report.min_quality;
+    values["mean_quality"] = report.mean_quality;
+    values["inverted"] = report.inverted;
+    values["flat"] = report.flat;
+    values["slivers"] = report.slivers;
+    values["closed_manifold"] = report.closed_manifold;
+    values["boundary_fault"] = report.boundary_fault;
+    nb::dict labels;
+    for (const auto& [label, count] : report.labels) labels[nb::cast(label)] = count;
+    values["labels"] = labels;
+    return values;
+}
+
+}  // namespace
+
+void bind_mesh(nb::module_& module) {
+    nb::class_<Mesh>(module, "Mesh")
+        .def("nodes", [](const Mesh& mesh) { return array_of(mesh.nodes); })
+        .def("tetrahedra",
+             [](const Mesh& mesh) {
+                 return array_of<Index>(std::span<const std::array<Index, 4>>(mesh.tetrahedra), {4});
+             })
+        .def("labels",
+             [](const Mesh& mesh) -> nb::object {
+                 if (mesh.label.empty()) return nb::none();
+                 return nb::cast(array_of<Index>(std::span<const int>(mesh.label)));
+             })
+        .def("file_number", [](const Mesh& mesh) -> nb::object {
+            if (mesh.file_number.empty()) return nb::none();
+            return nb::cast(array_of<Index>(std::span<const Index>(mesh.file_number)));
+        });
+    module.def("new_mesh", &new_mesh, nb::arg(), nb::arg(), nb::arg().none());
+    module.def("same_mesh", &same_mesh, nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none());
+    module.def("read_mesh", &read);
+    module.def("read_surface", &read_surface);
+    module.def("box", [](const Vec3& size, const std::array<int, 3>& cells) { return mesh::box(size, cells); });
+    module.def("ball", &mesh::ball);
+    module.def("cylinder", &mesh::cylinder);
+    module.def("lathe", &lathe);
+    module.def("skittle", &mesh::skittle);
+    module.def("table", &table);
+    module.def("write_mesh",
+               [](const std::string& path, const Mesh& mesh) { without_gil([&] { mesh::write(path, mesh); }); });
+    module.def("boundary", [](const Mesh& mesh) {
+        const SurfaceMesh surface = without_gil([&] { return mesh::boundary(mesh); });
+        return arrays_of(surface);
+    });
+    module.def("inspect", &inspect_mesh);
+}
+
+}  // namespace skerry::python

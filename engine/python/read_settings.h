@@ -1,0 +1,37 @@
+// Settings from Python: the dataclasses of skerry/_settings.py have the names of the members of the C++ structs.
+#pragma once
+
+#include "engine/python/bind.h"
+#include "skerry/joint.h"
+#include "skerry/problem.h"
+#include "skerry/world.h"
+
+namespace skerry::python {
+
+/// Reads the attributes of a Python object into a struct of settings. A missing attribute leaves the default. Throws
+/// SceneError that names object and field if a value has the wrong type. Handles of materials and bodies are not read:
+/// Python passes them as arguments.
+void read(nb::handle from, Settings& to);
+void read(nb::handle from, MaterialSettings& to);
+void read(nb::handle from, BodySettings& to);
+void read(nb::handle from, ColliderSettings& to);
+void read(nb::handle from, LoadSettings& to);
+void read(nb::handle from, SurfaceSettings& to);
+void read(nb::handle from, Pose& to);
+void read(nb::handle from, Motion& to);
+void read(nb::handle from, JointSettings& to);
+void read(nb::handle from, JointMotor& to);
+void read(nb::handle from, ProblemSettings& to);
+
+/// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.
+Shape read_shape(nb::handle from);
+
+/// The values of a struct by name, as Python values.
+nb::dict values_of(const Settings& settings);
+nb::dict values_of(const MaterialSettings& settings);
+
+/// The Python object of a shape, a pose or a motion: an instance of its dataclass.
+nb::object object_of(const Shape& shape);
+nb::object object_of(const Pose& pose);
+
+}  // namespace skerry::python

@@ -1,0 +1,76 @@
+// Scenes, and the writers of pages and of files for ParaView.
+#include "skerry/scene.h"
+
+#include <string>
+#include <utility>
+
+#include "engine/python/world/parts.h"
+#include "skerry/output.h"
+
+namespace skerry::python {
+
+namespace {
+
+nb::dict values_of(Scene&& scene) {
+    nb::list probes;
+    for (const Probe& probe : scene.probes) probes.append(nb::make_tuple(probe.name, probe.body, probe.nodes));
+    nb::dict values;
+    values["name"] = scene.name;
+    values["description"] = scene.description;
+    values["materials"] = scene.materials;
+    values["seconds"] = scene.seconds;
+    values["frame_step"] = scene.frame_step;
+    values["probe_step"] = scene.probe_step;
+    values["contact_probes"] = probes;
+    values["recorded"] = scene.recorded;
+    values["world"] = nb::cast(new WorldObject(std::move(scene.world)), nb::rv_policy::take_ownership);
+    return values;
+}
+
+SceneOverrides overrides_of(const std::vector<std::string>& assignments, std::optional<int> threads) {
+    SceneOverrides overrides{.threads = threads};
+    overrides.assignments = assignments;
+    return overrides;
+}
+
+nb::dict load(const std::string& file, const std::vector<std::string>& assignments, std::optional<int> threads) {
+    return values_of(without_gil([&] { return load_scene(file, overrides_of(assignments, threads)); }));
+}
+
+nb::dict load_text(const std::string& json, const std::string& folder, const std::vector<std::string>& assignments,
+                   std::optional<int> threads) {
+    return values_of(without_gil([&] { return load_scene_text(json, folder, overrides_of(assignments, threads)); }));
+}
+
+}  // namespace
+
+void bind_scene(nb::module_& module) {
+    module.def("load_scene", &load, nb::arg(), nb::arg(), nb::arg().none());
+    module.def("load_scene_text", &load_text, nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+    module.def("scene_schema", &scene_schema);
+
+    nb::class_<VtkWriter>(module, "VtkWriter")
+        .def("__init__", [](VtkWriter* self, const std::string& folder,
+                            const std::string& name) { new (self) VtkWriter(folder, name); })
+        .def("name_materials", &VtkWriter::name_materials)
+        .def("add_frame",
+             [](VtkWriter& writer, WorldObject& object) {
+                 Use use(object);
+                 without_gil([&] { writer.write_frame(object.world); });
+             })
+        .def("close", &VtkWriter::close);
+    nb::class_<PageWriter>(module, "PageWriter")
+        .def("__init__", [](PageWriter* self, const std::string& file,
+                            const std::string& title) { new (self) PageWriter(file, title); })
+        .def("add_frame",
+             [](PageWriter& writer, WorldObject& object) {
+                 Use use(object);
+                 without_gil([&] { writer.add_frame(object.world); });
+             })
+        .def("close", [](PageWriter& writer, WorldObject& object) {
+            Use use(object);
+            without_gil([&] { writer.close(object.world); });
+        });
+}
+
+}  // namespace skerry::python

@@ -1,0 +1,213 @@
+// The members of each struct of settings, by the names that Python and scene files use. for_each_setting(settings,
+// visit) calls visit(name, member) for each of them.
+#pragma once
+
+#include <type_traits>
+
+#include "skerry/joint.h"
+#include "skerry/problem.h"
+#include "skerry/settings.h"
+#include "skerry/world.h"
+
+namespace skerry::python {
+
+template <class Struct, class Expected>
+concept Is = std::is_same_v<std::remove_const_t<Struct>, Expected>;
+
+void for_each_setting(Is<Settings> auto& s, auto&& visit) {
+    visit("gravity", s.gravity);
+    visit("step_size", s.step_size);
+    visit("theta", s.theta);
+    visit("implicit_step", s.implicit_step);
+    visit("integrator", s.integrator);
+    visit("clusters", s.clusters);
+    visit("backend", s.backend);
+    visit("threads", s.threads);
+    visit("contact_regions", s.contact_regions);
+    visit("method", s.method);
+    visit("friction", s.friction);
+    visit("tolerance", s.tolerance);
+    visit("max_iterations", s.max_iterations);
+    visit("recovery_speed", s.recovery_speed);
+    visit("start_overlaps", s.start_overlaps);
+    visit("sleep", s.sleep);
+    visit("sleep_time", s.sleep_time);
+    visit("continuous_collision", s.continuous_collision);
+}
+
+void for_each_setting(Is<MaterialSettings> auto& s, auto&& visit) {
+    visit("young_modulus", s.young_modulus);
+    visit("poisson_ratio", s.poisson_ratio);
+    visit("density", s.density);
+    visit("friction", s.friction);
+    visit("static_friction", s.static_friction);
+    visit("dynamic_friction", s.dynamic_friction);
+    visit("restitution", s.restitution);
+    visit("damping", s.damping);
+    visit("loss_factor", s.loss_factor);
+    visit("bulk_viscosity", s.bulk_viscosity);
+    visit("model", s.model);
+}
+
+void for_each_setting(Is<BodySettings> auto& s, auto&& visit) {
+    visit("position", s.position);
+    visit("rotation", s.rotation);
+    visit("velocity", s.velocity);
+    visit("angular_velocity", s.angular_velocity);
+    visit("contact_distance", s.contact_distance);
+    visit("self_contact", s.self_contact);
+    visit("dynamics", s.dynamics);
+    visit("collision_group", s.collision_group);
+    visit("collision_mask", s.collision_mask);
+    visit("element", s.element);
+    visit("name", s.name);
+}
+
+void for_each_setting(Is<ColliderSettings> auto& s, auto&& visit) {
+    visit("position", s.position);
+    visit("rotation", s.rotation);
+    visit("motion", s.motion);
+    visit("friction", s.friction);
+    visit("static_friction", s.static_friction);
+    visit("dynamic_friction", s.dynamic_friction);
+    visit("restitution", s.restitution);
+    visit("contact_distance", s.contact_distance);
+    visit("collision_group", s.collision_group);
+    visit("collision_mask", s.collision_mask);
+    visit("name", s.name);
+}
+
+void for_each_setting(Is<LoadSettings> auto& s, auto&& visit) {
+    visit("backend", s.backend);
+    visit("threads", s.threads);
+}
+
+void for_each_setting(Is<SurfaceSettings> auto& s, auto&& visit) {
+    visit("friction", s.friction);
+    visit("static_friction", s.static_friction);
+    visit("dynamic_friction", s.dynamic_friction);
+    visit("restitution", s.restitution);
+}
+
+void for_each_setting(Is<Pose> auto& s, auto&& visit) {
+    visit("position", s.position);
+    visit("rotation", s.rotation);
+}
+
+void for_each_setting(Is<MotionKey> auto& s, auto&& visit) {
+    visit("time", s.time);
+    visit("position", s.position);
+    visit("rotation", s.rotation);
+}
+
+void for_each_setting(Is<Motion> auto& s, auto&& visit) {
+    visit("velocity", s.velocity);
+    visit("angular_velocity", s.angular_velocity);
+    visit("keys", s.keys);
+}
+
+void for_each_setting(Is<JointSettings> auto& s, auto&& visit) {
+    visit("kind", s.kind);
+    visit("point", s.point);
+    visit("axis", s.axis);
+    visit("lower", s.lower);
+    visit("upper", s.upper);
+    visit("motor", s.motor);
+    visit("bodies_touch", s.bodies_touch);
+}
+
+void for_each_setting(Is<MotorKey> auto& s, auto&& visit) {
+    visit("time", s.time);
+    visit("speed", s.speed);
+    visit("position", s.position);
+}
+
+void for_each_setting(Is<JointMotor> auto& s, auto&& visit) {
+    visit("speed", s.speed);
+    visit("position", s.position);
+    visit("strength", s.strength);
+    visit("fastest", s.fastest);
+    visit("keys", s.keys);
+}
+
+void for_each_setting(Is<ProblemSettings> auto& s, auto&& visit) {
+    visit("method", s.method);
+    visit("friction", s.friction);
+    visit("tolerance", s.tolerance);
+    visit("max_iterations", s.max_iterations);
+    visit("relaxation", s.relaxation);
+}
+
+void for_each_setting(Is<Plane> auto& s, auto&& visit) {
+    visit("normal", s.normal);
+    visit("point", s.point);
+}
+void for_each_setting(Is<Sphere> auto& s, auto&& visit) {
+    visit("radius", s.radius);
+}
+void for_each_setting(Is<Box> auto& s, auto&& visit) {
+    visit("size", s.size);
+}
+void for_each_setting(Is<Capsule> auto& s, auto&& visit) {
+    visit("radius", s.radius);
+    visit("length", s.length);
+}
+void for_each_setting(Is<Cylinder> auto& s, auto&& visit) {
+    visit("radius", s.radius);
+    visit("height", s.height);
+}
+void for_each_setting(Is<Bucket> auto& s, auto&& visit) {
+    visit("radius", s.radius);
+    visit("height", s.height);
+    visit("thickness", s.thickness);
+}
+void for_each_setting(Is<SurfaceMesh> auto& s, auto&& visit) {
+    visit("nodes", s.nodes);
+    visit("triangles", s.triangles);
+}
+
+/// True for the structs that have members listed here.
+template <class T>
+concept HasSettings = requires(T& settings) {
+    for_each_setting(settings, [](const char*, auto&) {});
+};
+
+/// Name of the Python class of a struct.
+template <class T>
+inline constexpr const char* class_name = nullptr;
+template <>
+inline constexpr const char* class_name<Settings> = "Settings";
+template <>
+inline constexpr const char* class_name<MaterialSettings> = "Material";
+template <>
+inline constexpr const char* class_name<LoadSettings> = "LoadSettings";
+template <>
+inline constexpr const char* class_name<SurfaceSettings> = "Surface";
+template <>
+inline constexpr const char* class_name<Pose> = "Pose";
+template <>
+inline constexpr const char* class_name<MotionKey> = "MotionKey";
+template <>
+inline constexpr const char* class_name<Motion> = "Motion";
+template <>
+inline constexpr const char* class_name<MotorKey> = "MotorKey";
+template <>
+inline constexpr const char* class_name<JointMotor> = "Motor";
+template <>
+inline constexpr const char* class_name<ProblemSettings> = "ProblemSettings";
+template <>
+inline constexpr const char* class_name<Plane> = "Plane";
+template <>
+inline constexpr const char* class_name<Sphere> = "Sphere";
+template <>
+inline constexpr const char* class_name<Box> = "Box";
+template <>
+inline constexpr const char* class_name<Capsule> = "Capsule";
+template <>
+inline constexpr const char* class_name<Cylinder> = "Cylinder";
+template <>
+inline constexpr const char* class_name<Bucket> = "Bucket";
+template <>
+inline constexpr const char* class_name<SurfaceMesh> = "SurfaceMesh";
+
+}  // namespace skerry::python

@@ -1,0 +1,353 @@
+"""Tetrahedral meshes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._arrays import Vector, index_array, read_only, real_array
+from ._errors import Doubt, import_package, scene_error
+from ._settings import SurfaceMesh
+
+Path: TypeAlias = str | os.PathLike[str]
+
+_LABEL_NAMES = ("region", "gmsh:physical", "medit:ref", "CellEntityIds")
+"""Names of cell data that hold labels, as in files."""
+_LINEAR_TETRAHEDRON, _CURVED_TETRAHEDRA = 4, (11, 29, 30, 31)  # element types of Gmsh
+_VTK_TETRAHEDRON, _VTK_CURVED = 10, (24, 71)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshReport:
+    """Statistics of a mesh, as `skerry inspect` prints them."""
+
+    nodes: int
+    """Number of nodes."""
+    tetrahedra: int
+    """Number of tetrahedra."""
+    boundary_triangles: int
+    """Number of triangles of the boundary."""
+    components: int
+    """Number of connected parts."""
+    lower: Vector
+    """Lower corner of the bounding box [m]."""
+    upper: Vector
+    """Upper corner of the bounding box [m]."""
+    volume: float
+    """Volume [m^3]."""
+    mean_edge: float
+    """Mean edge length [m]."""
+    min_edge: float
+    """Smallest edge length [m]."""
+    max_edge: float
+    """Largest edge length [m]."""
+    min_altitude: float
+    """Smallest altitude of a tetrahedron, which limits the step length [m]."""
+    min_quality: float
+    """Smallest quality of a tetrahedron: 1 for a regular one, below 0 for an inverted one."""
+    mean_quality: float
+    """Mean quality of the tetrahedra."""
+    inverted: int
+    """Number of tetrahedra of negative volume."""
+    flat: int
+    """Number of tetrahedra of zero volume."""
+    slivers: int
+    """Number of tetrahedra of positive volume with a quality below 0.1."""
+    closed_manifold: bool
+    """True if every boundary edge has two triangles, and the triangles at every node form one ring."""
+    boundary_fault: str
+    """First fault of the boundary, and number of faults; empty if there are none."""
+    labels: Mapping[int, int]
+    """Number of tetrahedra with each label; empty if the mesh has no labels."""
+
+    def __repr__(self) -> str:
+        lines = [f"{field.name}: {_value_text(getattr(self, field.name))}" for field in fields(self)]
+        return "\n".join(["MeshReport", *(f"  {line}" for line in lines)])
+
+
+def _value_text(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, tuple):
+        return "(" + ", ".join(map(_value_text, value)) + ")"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{label}: {count:,}" for label, count in value.items()) or "none"
+    return f"{value:,}" if isinstance(value, int) and not isinstance(value, bool) else str(value) or "none"
+
+
+class Mesh:
+    """A tetrahedral mesh in its own frame. It cannot be changed, and its arrays are read-only.
+
+    nodes: positions of the nodes, shape (n, 3) [m].
+    tetrahedra: numbers of the nodes of each tetrahedron, shape (m, 4).
+    labels: label of each tetrahedron, shape (m,), such as the number of its material; None: no labels.
+
+    TypeError: an array has the wrong shape or type. SceneError: a tetrahedron names a node that does not exist, or the
+    same node twice. Inverted tetrahedra are turned as by read(), with a warning Doubt."""
+
+    __slots__ = ("_arrays", "_core")
+
+    def __init__(self, nodes: ArrayLike, tetrahedra: ArrayLike, *, labels: ArrayLike | None = None) -> None:
+        points = real_array(nodes, "nodes", ("n", 3))
+        rows = index_array(tetrahedra, "tetrahedra", ("m", 4))
+        given = None if labels is None else index_array(labels, "labels", (len(rows),))
+        core, notes = _core.new_mesh(points, rows, given)
+        self._hold(core)
+        _warn(notes)
+
+    def _hold(self, core: Any) -> None:
+        self._core = core
+        self._arrays: dict[str, Any] = {}
+
+    @classmethod
+    def _of(cls, core: Any) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._hold(core)
+        return mesh
+
+    # Files.
+
+    @staticmethod
+    def read(path: Path) -> Mesh:
+        """Reads a mesh from Gmsh .msh (1, 2.2, 4.1), VTK .vtk or .vtu, or TetGen .node and .ele.
+
+        Only linear tetrahedra are used, and unused nodes are dropped. Labels are physical groups (Gmsh), the cell data
+        region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Inverted tetrahedra are
+        turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
+        core, notes = _core.read_mesh(os.fspath(path))
+        _warn(notes)
+        return Mesh._of(core)
+
+    def write(self, path: Path) -> None:
+        """Writes the mesh as Gmsh 2.2 text with all digits, so that read() returns an equal mesh. The name must end in
+        .msh. An existing file is replaced completely or not at all."""
+        _core.write_mesh(os.fspath(path), self._core)
+
+    # Shapes.
+
+    @staticmethod
+    def box(size: ArrayLike, cells: int | Iterable[int]) -> Mesh:
+        """A box around the origin with edge lengths `size` (3,) [m], divided into `cells` cells along x, y and z (one
+        number for each, or one for all) with six tetrahedra each."""
+        counts = np.asarray(cells if isinstance(cells, int) else list(cells))
+        numbers = index_array(np.broadcast_to(counts, (3,)) if counts.ndim == 0 else counts, "cells", (3,))
+        return Mesh._of(_core.box(real_array(size, "size", (3,)), numbers.tolist()))
+
+    @staticmethod
+    def ball(radius: float, resolution: int) -> Mesh:
+        """A ball around the origin with `resolution` elements across the diameter; radius in [m]."""
+        return Mesh._of(_core.ball(radius, resolution))
+
+    @staticmethod
+    def cylinder(radius: float, height: float, resolution: int) -> Mesh:
+        """A cylinder around the origin, along z, with `resolution` elements across the diameter; lengths in [m]."""
+        return Mesh._of(_core.cylinder(radius, height, resolution))
+
+    @staticmethod
+    def lathe(profile: ArrayLike, resolution: int) -> Mesh:
+        """A solid of revolution about z. `profile`, shape (k, 2), lists radius and z [m] from bottom to top. There are
+        `resolution` elements across the largest diameter."""
+        return Mesh._of(_core.lathe(real_array(profile, "profile", ("k", 2)), resolution))
+
+    @staticmethod
+    def skittle(height: float, resolution: int) -> Mesh:
+        """A ninepin that stands on z = 0; height in [m]."""
+        return Mesh._of(_core.skittle(height, resolution))
+
+    @staticmethod
+    def table(
+        *,
+        length: float = 0.5,
+        width: float = 0.3,
+        height: float = 0.3,
+        thickness: float = 0.05,
+        leg: float = 0.05,
+        cells_per_leg: int = 1,
+    ) -> Mesh:
+        """A table that stands on z = 0: a top of length (x), width (y) and thickness (z) on four square legs with the
+        edge length `leg`, divided into `cells_per_leg` cells. `height` includes the top. All lengths in [m]."""
+        return Mesh._of(_core.table(length, width, height, thickness, leg, cells_per_leg))
+
+    # Other packages.
+
+    @staticmethod
+    def from_meshio(mesh: Any) -> Mesh:
+        """Mesh of a meshio.Mesh. Labels are the first cell data named region, gmsh:physical, medit:ref or
+        CellEntityIds that hold whole numbers. Cells that are not tetrahedra and unused nodes are dropped."""
+        blocks = [number for number, block in enumerate(mesh.cells) if block.type == "tetra"]
+        curved = sum(len(block.data) for block in mesh.cells if block.type in ("tetra10", "tetra20", "tetra35"))
+        _require_linear("meshio mesh", curved)
+        rows = [np.asarray(mesh.cells[number].data) for number in blocks]
+        data = {name: [np.asarray(mesh.cell_data[name][number]) for number in blocks] for name in mesh.cell_data}
+        labels = _first_labels({name: np.concatenate(values) for name, values in data.items() if values})
+        return _mesh_of_used_nodes("meshio mesh", mesh.points, rows, labels)
+
+    def to_meshio(self) -> Any:
+        """The mesh as a meshio.Mesh. Labels become the cell data gmsh:physical. Needs the package meshio."""
+        meshio = import_package("meshio")
+        data = {} if self.labels is None else {"gmsh:physical": [self.labels], "gmsh:geometrical": [self.labels]}
+        return meshio.Mesh(self.nodes, [("tetra", self.tetrahedra)], cell_data=data)
+
+    @staticmethod
+    def from_pyvista(grid: Any) -> Mesh:
+        """Mesh of a pyvista.UnstructuredGrid. Labels are found as by from_meshio(). Cells that are not tetrahedra and
+        unused nodes are dropped."""
+        kinds = np.asarray(grid.celltypes)
+        _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
+        chosen = kinds == _VTK_TETRAHEDRON
+        rows = [np.asarray(grid.cells_dict[_VTK_TETRAHEDRON])] if chosen.any() else []
+        labels = _first_labels({name: np.asarray(grid.cell_data[name])[chosen] for name in grid.cell_data})
+        return _mesh_of_used_nodes("PyVista grid", grid.points, rows, labels)
+
+    def to_pyvista(self) -> Any:
+        """The mesh as a pyvista.UnstructuredGrid. Labels become the cell data region. Needs the package pyvista."""
+        pyvista = import_package("pyvista")
+        grid = pyvista.UnstructuredGrid({_VTK_TETRAHEDRON: self.tetrahedra}, self.nodes)
+        if self.labels is not None:
+            grid.cell_data["region"] = self.labels
+        return grid
+
+    @staticmethod
+    def from_gmsh(model: Any) -> Mesh:
+        """Mesh of the current model of Gmsh: Mesh.from_gmsh(gmsh.model). The label of a tetrahedron is the number of
+        its physical group (the first, if its volume is in several), and 0 outside of all groups; if no tetrahedron is
+        in a group, it is the number of its volume."""
+        tags, positions, _ = model.mesh.getNodes()
+        place = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
+        place[np.asarray(tags, dtype=np.int64)] = np.arange(len(tags))
+        rows, groups, volumes, curved = [], [], [], 0
+        for _, volume in model.getEntities(3):
+            kinds, _, nodes = model.mesh.getElements(3, volume)
+            curved += sum(
+                len(of_kind) for kind, of_kind in zip(kinds, nodes, strict=True) if kind in _CURVED_TETRAHEDRA
+            )
+            for kind, of_kind in zip(kinds, nodes, strict=True):
+                if kind != _LINEAR_TETRAHEDRON:
+                    continue
+                rows.append(place[np.asarray(of_kind, dtype=np.int64)].reshape(-1, 4))
+                group = next(iter(model.getPhysicalGroupsForEntity(3, volume)), 0)
+                groups.append(np.full(len(rows[-1]), group))
+                volumes.append(np.full(len(rows[-1]), volume))
+        _require_linear("Gmsh model", curved)
+        labels = groups if any(np.any(group) for group in groups) else volumes
+        return _mesh_of_used_nodes(
+            "Gmsh model", np.reshape(positions, (-1, 3)), rows, np.concatenate(labels) if labels else None
+        )
+
+    # Contents.
+
+    @property
+    def nodes(self) -> NDArray[np.float64]:
+        """Positions of the nodes, shape (n, 3), read-only [m]."""
+        array: NDArray[np.float64] = self._array("nodes")
+        return array
+
+    @property
+    def tetrahedra(self) -> NDArray[np.int32]:
+        """Numbers of the nodes of each tetrahedron, shape (m, 4), read-only."""
+        array: NDArray[np.int32] = self._array("tetrahedra")
+        return array
+
+    @property
+    def labels(self) -> NDArray[np.int32] | None:
+        """Label of each tetrahedron, shape (m,), read-only; None if the mesh has no labels."""
+        array: NDArray[np.int32] | None = self._array("labels")
+        return array
+
+    @property
+    def file_number(self) -> NDArray[np.int32] | None:
+        """Number of each node in the file that was read, counted from 0, shape (n,), read-only; None if it is the
+        number in `nodes`."""
+        array: NDArray[np.int32] | None = self._array("file_number")
+        return array
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        corners = self.nodes[self.tetrahedra]
+        return float(np.linalg.det(corners[:, 1:] - corners[:, :1]).sum() / 6)
+
+    def boundary(self) -> SurfaceMesh:
+        """The triangles of the boundary, counter-clockwise as seen from outside."""
+        nodes, triangles = _core.boundary(self._core)
+        return SurfaceMesh(nodes=nodes, triangles=triangles)
+
+    def inspect(self) -> MeshReport:
+        """Statistics of size, quality and faults."""
+        return MeshReport(**_core.inspect(self._core))
+
+    def _array(self, name: str) -> Any:
+        if name not in self._arrays:
+            array = getattr(self._core, name)()
+            self._arrays[name] = None if array is None else read_only(array)
+        return self._arrays[name]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return all(np.array_equal(a, b) for a, b in zip(self._contents(), other._contents(), strict=True))
+
+    def __hash__(self) -> int:
+        return hash((self.nodes.tobytes(), self.tetrahedra.tobytes()))
+
+    def _contents(self) -> tuple[Any, ...]:
+        return (self.nodes, self.tetrahedra, self.labels, self.file_number)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_same_mesh, self._contents())
+
+    def __repr__(self) -> str:
+        labels = "" if self.labels is None else f", {len(np.unique(self.labels)):,} labels"
+        return f"<skerry.Mesh {len(self.nodes):,} nodes, {len(self.tetrahedra):,} tetrahedra{labels}>"
+
+
+def read_surface(path: Path) -> SurfaceMesh:
+    """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from Wavefront .obj or .stl. The
+    surface of a tetrahedral mesh is its boundary."""
+    (nodes, triangles), notes = _core.read_surface(os.fspath(path))
+    _warn(notes)
+    return SurfaceMesh(nodes=nodes, triangles=triangles)
+
+
+def _same_mesh(nodes: Any, tetrahedra: Any, labels: Any, file_number: Any) -> Mesh:
+    return Mesh._of(_core.same_mesh(nodes, tetrahedra, labels, file_number))
+
+
+def _warn(notes: list[str]) -> None:
+    for note in notes:
+        warnings.warn(note, Doubt, stacklevel=3)
+
+
+def _require_linear(object: str, curved: int) -> None:
+    if curved:
+        raise scene_error(
+            object, "cells", f"{curved} curved tetrahedra", "linear ones", "make a mesh of the first order"
+        )
+
+
+def _first_labels(data: Mapping[str, NDArray[Any]]) -> NDArray[np.int32] | None:
+    """The first array of cell data that holds labels."""
+    for name in _LABEL_NAMES:
+        values = data.get(name)
+        if values is not None and values.ndim == 1 and np.array_equal(values, values.astype(np.int32)):
+            return values.astype(np.int32)
+    return None
+
+
+def _mesh_of_used_nodes(object: str, points: ArrayLike, rows: list[NDArray[Any]], labels: ArrayLike | None) -> Mesh:
+    """Mesh without the nodes that no tetrahedron uses."""
+    if not any(len(block) for block in rows):
+        raise scene_error(object, "cells", "no tetrahedra", "at least one tetrahedron")
+    nodes = real_array(points, f"{object}: points", ("n", 3))
+    tetrahedra = index_array(np.concatenate(rows), f"{object}: cells", ("m", 4))
+    if tetrahedra.min() < 0 or tetrahedra.max() >= len(nodes):
+        raise scene_error(object, "cells", f"node {tetrahedra.max()}", f"nodes from 0 to {len(nodes) - 1}")
+    used, place = np.unique(tetrahedra, return_inverse=True)
+    return Mesh(nodes[used], place.reshape(-1, 4).astype(np.int32), labels=labels)

@@ -1,0 +1,407 @@
+"""Frictional contact problems without a world."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._arrays import index_array, read_only, real_array
+from ._errors import import_package, scene_error
+from ._settings import Friction, ProblemSettings, SolverMethod
+
+Path: TypeAlias = str | os.PathLike[str]
+Reals: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.int32]
+
+
+class Problem:
+    """A local contact problem u = W r + q with relative velocities u and impulses r, which have the components (normal,
+    tangent 1, tangent 2) for each contact. W is stored in compressed rows of blocks. A problem cannot be changed.
+
+    row_offset: number of the first block of each row, and the number of all blocks, shape (c + 1,).
+    column: column of each block, shape (z,).
+    block: blocks of W, shape (z, 3, 3) [1/kg].
+    q: relative velocities without impulses, shape (c, 3) [m/s].
+    mu: friction coefficient of each contact, shape (c,), or one for all.
+
+    TypeError: an array has the wrong shape or type. SceneError: the arrays do not fit together."""
+
+    __slots__ = ("_arrays", "_core")
+
+    def __init__(
+        self,
+        row_offset: ArrayLike,
+        column: ArrayLike,
+        block: ArrayLike,
+        q: ArrayLike,
+        mu: ArrayLike,
+        *,
+        name: str = "",
+        description: str = "",
+    ) -> None:
+        offsets = index_array(row_offset, "row_offset", ("c + 1",))
+        velocities = real_array(q, "q", ("c", 3))
+        friction = real_array(np.full(len(velocities), mu) if np.ndim(mu) == 0 else mu, "mu", (len(velocities),))
+        columns, blocks = index_array(column, "column", ("z",)), real_array(block, "block", ("z", 3, 3))
+        self._hold(_core.new_problem(name, description, offsets, columns, blocks, velocities, friction))
+
+    def _hold(self, core: Any) -> None:
+        self._core = core
+        self._arrays: dict[str, Any] = {}
+
+    @classmethod
+    def _of(cls, core: Any) -> Problem:
+        problem = cls.__new__(cls)
+        problem._hold(core)
+        return problem
+
+    @staticmethod
+    def from_bsr(
+        W: Any,  # noqa: N803
+        q: ArrayLike,
+        mu: ArrayLike,
+        *,
+        name: str = "",
+        description: str = "",
+    ) -> Problem:
+        """Problem of a sparse matrix of SciPy, such as scipy.sparse.bsr_array, of the shape (3 c, 3 c). q: shape (c, 3)
+        or (3 c,) [m/s]. mu: shape (c,), or one for all."""
+        blocks = W.tobsr(blocksize=(3, 3))
+        rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
+        return _problem_of_blocks(blocks.shape, rows, blocks.indices, blocks.data, q, mu, name, description)
+
+    @staticmethod
+    def from_dense(
+        W: ArrayLike,  # noqa: N803
+        q: ArrayLike,
+        mu: ArrayLike,
+        *,
+        name: str = "",
+        description: str = "",
+    ) -> Problem:
+        """Problem of a matrix of the shape (3 c, 3 c). Blocks of zeros are left out. The other arguments are those of
+        from_bsr()."""
+        matrix = real_array(W, "W", ("3 c", "3 c"))
+        _require_square(matrix.shape)
+        count = len(matrix) // 3
+        blocks = matrix.reshape(count, 3, count, 3).transpose(0, 2, 1, 3)
+        rows, columns = np.nonzero(np.any(blocks != 0, axis=(2, 3)))
+        return _problem_of_blocks(matrix.shape, rows, columns, blocks[rows, columns], q, mu, name, description)
+
+    # Files.
+
+    @staticmethod
+    def read(path: Path) -> Problem:
+        """Reads a problem from an FCLIB file (HDF5). A global problem is condensed to its contacts. If Skerry was built
+        without HDF5, the package h5py reads local problems."""
+        if _core.has_hdf5:
+            return Problem._of(_core.read_problem(os.fspath(path)))
+        return _read_with_h5py(os.fspath(path))
+
+    def write(self, path: Path, reaction: ArrayLike | None = None) -> None:
+        """Writes the problem as an FCLIB file, with a solution if `reaction` (c, 3) [N s] is given. If Skerry was built
+        without HDF5, the package h5py writes the file."""
+        given = None if reaction is None else self._reaction(reaction)
+        if _core.has_hdf5:
+            _core.write_problem(self._core, os.fspath(path), given)
+        else:
+            _write_with_h5py(self, os.fspath(path), given)
+
+    # Contents.
+
+    @property
+    def name(self) -> str:
+        """Name of the problem; of a file, its name without the extension."""
+        return str(self._core.name)
+
+    @property
+    def description(self) -> str:
+        """Description in the file."""
+        return str(self._core.description)
+
+    @property
+    def row_offset(self) -> Indices:
+        """Number of the first block of each row, and the number of all blocks, shape (c + 1,), read-only."""
+        array: Indices = self._array("row_offset")
+        return array
+
+    @property
+    def column(self) -> Indices:
+        """Column of each block, shape (z,), read-only."""
+        array: Indices = self._array("column")
+        return array
+
+    @property
+    def block(self) -> Reals:
+        """Blocks of W, shape (z, 3, 3), read-only [1/kg]."""
+        array: Reals = self._array("block")
+        return array
+
+    @property
+    def q(self) -> Reals:
+        """Relative velocities without impulses, shape (c, 3), read-only [m/s]."""
+        array: Reals = self._array("q")
+        return array
+
+    @property
+    def mu(self) -> Reals:
+        """Friction coefficients, shape (c,), read-only."""
+        array: Reals = self._array("mu")
+        return array
+
+    def to_bsr(self) -> Any:
+        """W as a scipy.sparse.bsr_array of the shape (3 c, 3 c). Needs the package scipy."""
+        sparse = import_package("scipy.sparse")
+        return sparse.bsr_array((self.block, self.column, self.row_offset), shape=(3 * len(self), 3 * len(self)))
+
+    def part_of(self, contacts: ArrayLike) -> Problem:
+        """The problem of some contacts, in ascending order (j,), in which all other impulses are zero."""
+        return Problem._of(_core.part_of(self._core, index_array(contacts, "contacts", ("j",))))
+
+    def velocity(self, reaction: ArrayLike) -> Reals:
+        """Relative velocities u = W r + q of impulses r (c, 3) [N s], shape (c, 3) [m/s]."""
+        impulse = self._reaction(reaction)
+        result = self.q.copy()
+        rows = np.repeat(np.arange(len(self)), np.diff(self.row_offset))
+        np.add.at(result, rows, np.einsum("zij,zj->zi", self.block, impulse[self.column]))
+        return result
+
+    def _reaction(self, reaction: ArrayLike) -> Reals:
+        return real_array(reaction, "reaction", (len(self), 3))
+
+    def _array(self, name: str) -> Any:
+        if name not in self._arrays:
+            self._arrays[name] = read_only(getattr(self._core, name)())
+        return self._arrays[name]
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Problem):
+            return NotImplemented
+        return all(np.array_equal(a, b) for a, b in zip(self._contents(), other._contents(), strict=True))
+
+    def __hash__(self) -> int:
+        return hash((self.q.tobytes(), self.block.tobytes()))
+
+    def _contents(self) -> tuple[Any, ...]:
+        return (self.row_offset, self.column, self.block, self.q, self.mu)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_same_problem, (*self._contents(), self.name, self.description))
+
+    def __repr__(self) -> str:
+        return f"<skerry.Problem {self.name!r}, {len(self):,} contacts, {len(self.column):,} blocks>"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Solution:
+    """Solution of a contact problem."""
+
+    reaction: Reals
+    """Impulses of the contacts, shape (c, 3) [N s]."""
+    converged: bool
+    """True if `error` is at most the tolerance."""
+    iterations: int
+    """Iterations of the region that needed most."""
+    error: float
+    """Relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|) with the natural map residual e."""
+    error_absolute: float
+    """Norm |e| of the natural map residual."""
+    error_over_q: float
+    """Relative error |e| / |q|."""
+    energy_gap: float
+    """Violation of Coulomb's law, summed over all contacts; 0 for an exact solution [J]."""
+    regions: int
+    """Number of independent regions."""
+    largest_region: int
+    """Number of contacts of the largest region."""
+    unconverged: int
+    """Number of regions that reached the iteration limit."""
+    seconds: float
+    """Computing time of the solve; a short solve is repeated [s]."""
+
+    def __repr__(self) -> str:
+        state = "converged" if self.converged else "not converged"
+        return f"<skerry.Solution {state}, error {self.error:.3g}, {self.iterations:,} iterations>"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProblemError:
+    """Errors of given impulses."""
+
+    absolute: float
+    """Norm |e| of the natural map residual e."""
+    relative: float
+    """Relative error |e| / max(|q|, |r|, |u|)."""
+    over_q: float
+    """Relative error |e| / |q|."""
+    energy_gap: float
+    """Violation of Coulomb's law, summed over all contacts [J]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class StepProblem:
+    """The contact problem of one step of a world, as the solver received it."""
+
+    step: int
+    """Number of the step, counted from 1."""
+    time: float
+    """Time at the start of the step [s]."""
+    step_size: float
+    """Length of the step [s]."""
+    problem: Problem
+    """The problem, without contacts that no impulse can move."""
+    impulse: Reals
+    """Impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s]."""
+    contact: Indices
+    """Number of each contact in World.contacts, shape (c,)."""
+    region: Indices
+    """Region of each contact, shape (c,)."""
+
+
+def solve(
+    problem: Problem,
+    *,
+    method: SolverMethod = "automatic",
+    friction: Friction = "cone",
+    tolerance: float = 1e-6,
+    max_iterations: int = 100_000,
+    relaxation: float = 1.0,
+) -> Solution:
+    """Separates a problem into independent regions and solves each region, starting from zero impulses.
+
+    method: "automatic", "ags", "pgs", "pcg_pgs", "newton", "pcg_fr" or "pcg_pr". friction: Coulomb's "cone", or its
+    four-sided approximation "pyramid", to which the errors then refer. tolerance: upper bound on Solution.error.
+    max_iterations: limit for each region. relaxation: factor of methods that sweep, > 0 and < 2.
+
+    SceneError: a setting is out of its range. Solution.converged tells whether the tolerance was reached."""
+    settings = ProblemSettings(
+        method=method, friction=friction, tolerance=tolerance, max_iterations=max_iterations, relaxation=relaxation
+    )
+    return Solution(**_core.solve(problem._core, settings))
+
+
+def problem_error(problem: Problem, reaction: ArrayLike) -> ProblemError:
+    """Errors of given impulses (c, 3) [N s], as in FCLIB and Siconos."""
+    return ProblemError(**_core.problem_error(problem._core, problem._reaction(reaction)))
+
+
+@contextmanager
+def contact_problems(core: Any, every: int) -> Iterator[list[StepProblem]]:
+    """Collects the problems of the steps of a world of the extension module."""
+    problems: list[StepProblem] = []
+
+    def take(values: dict[str, Any]) -> None:
+        problems.append(StepProblem(**{**values, "problem": Problem._of(values["problem"])}))
+
+    core.watch_problems(take, every)
+    try:
+        yield problems
+    finally:
+        core.watch_problems(None, 1)
+
+
+def _same_problem(row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str) -> Problem:
+    return Problem(row_offset, column, block, q, mu, name=name, description=description)
+
+
+def _require_square(shape: tuple[int, ...]) -> None:
+    if shape[0] != shape[1] or shape[0] % 3:
+        raise scene_error("problem", "W", f"the shape {shape}", "a square matrix with three rows a contact")
+
+
+def _problem_of_blocks(
+    shape: tuple[int, ...],
+    rows: NDArray[Any],
+    columns: NDArray[Any],
+    blocks: NDArray[Any],
+    q: ArrayLike,
+    mu: ArrayLike,
+    name: str,
+    description: str,
+) -> Problem:
+    """Problem of blocks in any order, of which several may have the same place. Missing diagonal blocks become zero."""
+    _require_square(shape)
+    count = shape[0] // 3
+    place = np.concatenate([rows.astype(np.int64) * count + columns, np.arange(count) * (count + 1)])
+    places, number = np.unique(place, return_inverse=True)
+    total = np.zeros((len(places), 3, 3))
+    np.add.at(total, number[: len(blocks)], blocks)
+    offsets = np.searchsorted(places, np.arange(count + 1) * count)
+    velocities = real_array(q, "q", ("c", 3) if np.ndim(q) != 1 else ("3 c",)).reshape(-1, 3)
+    return Problem(offsets, places % max(count, 1), total, velocities, mu, name=name, description=description)
+
+
+# FCLIB files without the HDF5 library of the engine.
+
+
+def _read_with_h5py(path: str) -> Problem:
+    h5py = import_package("h5py")
+    with h5py.File(path, "r") as file:
+        if "fclib_local" not in file:
+            raise scene_error(
+                "", "", "no group fclib_local", "a local problem", "a build with HDF5 reads global problems", file=path
+            )
+        local = file["fclib_local"]
+        matrix = {field: np.asarray(local["W"][field]) for field in ("m", "n", "nz", "p", "i", "x")}
+        kind, shape = int(matrix["nz"].item()), (int(matrix["m"].item()), int(matrix["n"].item()))
+        _require_square(shape)
+        inner, outer, value = matrix["i"], matrix["p"], matrix["x"]
+        if kind >= 0:
+            inner, outer, value = inner[:kind], outer[:kind], value[:kind]
+        else:
+            outer = np.repeat(np.arange(len(outer) - 1), np.diff(outer))
+        rows, columns = (outer, inner) if kind == -2 else (inner, outer)
+        if len(rows) != len(columns) or len(rows) != len(value):
+            raise scene_error("W", "p", f"{len(outer)} entries", f"{len(inner)} (values of i)", file=path)
+        blocks = np.zeros((len(value), 3, 3))
+        blocks[np.arange(len(value)), rows % 3, columns % 3] = value
+        about = local.get("info/description")
+        return _problem_of_blocks(
+            shape,
+            rows // 3,
+            columns // 3,
+            blocks,
+            np.asarray(local["vectors/q"]).ravel(),
+            np.asarray(local["vectors/mu"]).ravel(),
+            os.path.splitext(os.path.basename(path))[0],
+            "" if about is None else np.asarray(about).reshape(-1)[0].decode(),
+        )
+
+
+def _write_with_h5py(problem: Problem, path: str, reaction: Reals | None) -> None:
+    h5py = import_package("h5py")
+    size = 3 * len(problem)
+    rows = np.repeat(np.arange(len(problem)), np.diff(problem.row_offset))
+    block_row = (3 * rows[:, None, None] + np.arange(3)[:, None] + np.zeros(3, dtype=np.int64)).ravel()
+    block_column = (3 * problem.column[:, None, None] + np.zeros((3, 1), dtype=np.int64) + np.arange(3)).ravel()
+    value = problem.block.ravel()
+    order = np.lexsort((block_row, block_column))
+    order = order[value[order] != 0]
+    begin = np.searchsorted(block_column[order], np.arange(size + 1))
+    part = path + ".part"
+    with h5py.File(part, "w") as file:
+        local = file.create_group("fclib_local")
+        local["spacedim"] = np.array([3], dtype=np.int32)
+        for field, number in (("nzmax", len(order)), ("m", size), ("n", size), ("nz", -1)):
+            local[f"W/{field}"] = np.array([number], dtype=np.int32)
+        local["W/p"] = begin.astype(np.int32)
+        local["W/i"] = block_row[order].astype(np.int32)
+        local["W/x"] = value[order]
+        local["vectors/q"] = problem.q.ravel()
+        local["vectors/mu"] = problem.mu
+        local["info/title"] = np.bytes_(problem.name)
+        local["info/description"] = np.bytes_(problem.description)
+        if reaction is not None:
+            file["solution/u"] = problem.velocity(reaction).ravel()
+            file["solution/r"] = reaction.ravel()
+    os.replace(part, path)

@@ -1,0 +1,193 @@
+"""Scenes: JSON files, or mappings of the same form, that describe a world and a run."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._recorder import Probe, Recorder, probe_of
+from ._world import Body, World
+
+Path: TypeAlias = str | os.PathLike[str]
+Json: TypeAlias = Any
+"""A value of JSON: None, bool, int, float, str, a list or a mapping; NumPy arrays and numbers count as lists and
+numbers."""
+
+_SLACK = 1e-9  # rounding error when a run is divided into frames, as a fraction of a frame
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContactProbe:
+    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table."""
+
+    name: str
+    """Name."""
+    body: Body
+    """Body."""
+    nodes: NDArray[np.int32]
+    """Numbers of the nodes, shape (j,)."""
+
+
+class Scene:
+    """The content of a scene, with its world. load_scene() makes it."""
+
+    __slots__ = (
+        "contact_probes",
+        "description",
+        "frame_step",
+        "materials",
+        "name",
+        "probe_step",
+        "probes",
+        "seconds",
+        "world",
+    )
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        self.world: World = World._of(values["world"])
+        """World with all objects of the scene."""
+        self.name: str = values["name"]
+        """Name."""
+        self.description: str = values["description"]
+        """Description."""
+        self.materials: tuple[str, ...] = tuple(values["materials"])
+        """Names of the materials, in the order added."""
+        self.seconds: float = values["seconds"]
+        """Duration of a run [s]."""
+        self.frame_step: float = values["frame_step"]
+        """Time between two frames of output [s]."""
+        self.probe_step: float = values["probe_step"]
+        """Time between two rows of the probes [s]."""
+        self.probes: dict[str, Probe] = {probe.name: probe_of(self.world, probe) for probe in values["recorded"]}
+        """Probes that run() records, by name."""
+        self.contact_probes: tuple[ContactProbe, ...] = tuple(
+            ContactProbe(name=name, body=self.world._body(body), nodes=np.array(nodes, dtype=np.int32))
+            for name, body, nodes in values["contact_probes"]
+        )
+        """Nodes whose contacts `skerry run` reports."""
+
+    def run(
+        self,
+        seconds: float | None = None,
+        *,
+        csv: Path | None = None,
+        page: Path | None = None,
+        vtk: Path | None = None,
+        progress: bool = False,
+    ) -> Recorder:
+        """Runs the scene and returns the recorder of its probes. The world takes the steps of `skerry run`, and
+        continues from its present time.
+
+        seconds: time at which the run ends, default: that of the scene [s]. csv: file of the time series, written row
+        by row. page: file of a page that plays the run. vtk: folder of frames for ParaView. progress: writes the time
+        to the standard error output.
+
+        StepError: a step could not be completed; all outputs then end there."""
+        world, end = self.world, self.seconds if seconds is None else seconds
+        if not (end >= 0 and math.isfinite(end)):
+            raise ValueError(f"seconds: found {end}, expected a time >= 0 (s)")
+        with ExitStack() as outputs:
+            film = outputs.enter_context(world.record(title=self.name, every=self.frame_step)) if page else None
+            if vtk is not None:
+                name = os.path.basename(os.path.normpath(vtk))
+                outputs.enter_context(
+                    world.vtk(vtk, name=self.name or name, every=self.frame_step, materials=self.materials)
+                )
+            recorder = Recorder(world, self.probes, self.probe_step)
+            if csv is not None:
+                recorder.stream_csv(csv)
+            outputs.enter_context(recorder)
+            for duration in self.calls(end):
+                world.run(duration, dt=duration, progress=progress)
+        if film is not None and page is not None:
+            film.save(page)
+        return recorder
+
+    def calls(self, end: float) -> Iterator[float]:
+        """Durations of the calls of World.advance() with which run() reaches the time `end` [s]. Each call ends at a
+        frame or at a row of the probes."""
+        frame_step, row_step = self.frame_step, self.probe_step if self.probes or self.contact_probes else math.inf
+        ratio = frame_step / row_step
+        even = ratio == 0 or (round(ratio) > 0 and abs(ratio - round(ratio)) <= _SLACK * ratio)
+        frame = math.floor(self.world.time / frame_step + _SLACK)
+        while self.world.time < end - _SLACK * frame_step:
+            left = end - frame * frame_step
+            length = frame_step if left > (1 - _SLACK) * frame_step else left
+            begin = frame * frame_step
+            at_begin = abs(self.world.time - begin) <= _SLACK * frame_step
+            if even and at_begin and (length == frame_step or ratio == 0):
+                calls = max(1, round(ratio))
+                for _ in range(calls):
+                    yield length / calls
+            else:
+                rows = [] if ratio == 0 else _multiples(row_step, self.world.time, begin + length)
+                for stop in [*rows, begin + length]:
+                    if stop > self.world.time + _SLACK * frame_step:
+                        yield stop - self.world.time
+            frame += 1
+
+    def __repr__(self) -> str:
+        return f"<skerry.Scene '{self.name}', {len(self.world.bodies):,} bodies, {self.seconds:g} s>"
+
+
+def load_scene(
+    scene: Path | Mapping[str, Json],
+    *,
+    overrides: Mapping[str, Json] | None = None,
+    threads: int | None = None,
+    folder: Path | None = None,
+) -> Scene:
+    """Reads a scene and builds its world.
+
+    scene: path of a JSON file, or a mapping with the content of one. overrides: values that replace others, by their
+    places: {"bodies[0].position": [0, 0, 1]}. threads: number of threads of the world. folder: folder of the mesh files
+    that a mapping names, default: the present one.
+
+    SceneError: names the place, the value found and the value expected; for an unknown key the nearest known one."""
+    assignments = [f"{place}={_json_text(value, place)}" for place, value in (overrides or {}).items()]
+    if isinstance(scene, Mapping):
+        base = os.fspath(os.getcwd() if folder is None else folder)
+        return Scene(_core.load_scene_text(_json_text(scene, "scene"), base, assignments, threads))
+    if folder is not None:
+        raise TypeError("folder: found a folder together with a file, whose folder is used; expected none")
+    return Scene(_core.load_scene(os.fspath(scene), assignments, threads))
+
+
+def scene_schema() -> dict[str, Any]:
+    """JSON schema of scenes."""
+    schema: dict[str, Any] = json.loads(_core.scene_schema())
+    return schema
+
+
+def _json_text(value: Json, place: str) -> str:
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise TypeError(
+            f"{place}: found a value that JSON does not have ({error}), expected one that it has"
+        ) from error
+
+
+def _plain(value: Any) -> Any:
+    """A NumPy array or number as a list or a number, and a path as a text."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return dict(value)
+    return os.fspath(value)
+
+
+def _multiples(step: float, after: float, before: float) -> list[float]:
+    """Multiples of `step` between two times."""
+    first = math.floor(after / step + _SLACK) + 1
+    count = max(0, math.ceil(before / step - _SLACK) - first)
+    return [(first + number) * step for number in range(count)]

@@ -1,0 +1,269 @@
+"""Adding, finding and removing the objects of a world."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, Unpack, cast
+
+from .._arrays import RotationLike, VectorLike, read_only, vector
+from .._arrays import rotation as rotation_vector
+from .._errors import SceneError
+from .._mesh import Mesh
+from .._settings import (
+    Capsule,
+    Cylinder,
+    Dynamics,
+    ElementKind,
+    JointKind,
+    Material,
+    Motion,
+    Motor,
+    Shape,
+    Sphere,
+)
+from .body import Body, Indices
+from .changes import MaterialChanges
+from .collider import Collider
+from .joint import Joint, joint_label
+from .material import MaterialHandle
+from .objects import Objects, PosedObject
+from .reports import StepReport
+
+if TYPE_CHECKING:
+    from .world import World
+
+
+class BodySettings(SimpleNamespace):
+    """Arguments of add_body() for the extension module."""
+
+
+class ColliderSettings(SimpleNamespace):
+    """Arguments of add_collider() for the extension module."""
+
+
+class JointSettings(SimpleNamespace):
+    """Arguments of add_joint() for the extension module."""
+
+
+class Building:
+    """The part of World that adds, finds and removes objects."""
+
+    __slots__ = ("__weakref__", "_core", "_doubts", "_followers", "_materials", "_mesh_arrays", "_watch")
+
+    @property
+    def _self(self) -> World:
+        """The world, which is the only subclass."""
+        return cast("World", self)
+
+    def _hold(self, core: Any) -> None:
+        self._core = core
+        self._watch: Callable[[StepReport], object] | None = None
+        self._followers: list[Callable[[], None]] = []  # called after each call of advance()
+        self._doubts: set[tuple[str, ...]] = set()
+        self._materials: dict[Material, Any] = {}
+        self._mesh_arrays: dict[Any, tuple[Indices, Indices]] = {}
+
+    def add_material(self, material: Material | None = None, /, **changes: Unpack[MaterialChanges]) -> MaterialHandle:
+        """Adds a material: add_material(Material(density=900)) or add_material(density=900). SceneError: a value is out
+        of range."""
+        return MaterialHandle(
+            self._self, self._core.add_material(dataclasses.replace(material or Material(), **changes))
+        )
+
+    def add_body(
+        self,
+        mesh: Mesh | Sphere | Capsule | Cylinder,
+        material: Material | MaterialHandle,
+        *,
+        materials: Mapping[int, Material | MaterialHandle] | None = None,
+        position: VectorLike = (0.0, 0.0, 0.0),
+        rotation: RotationLike = (0.0, 0.0, 0.0),
+        velocity: VectorLike = (0.0, 0.0, 0.0),
+        angular_velocity: VectorLike = (0.0, 0.0, 0.0),
+        dynamics: Dynamics = "automatic",
+        element: ElementKind = "smoothed",
+        self_contact: bool = False,
+        contact_distance: float | None = None,
+        collision_group: int = 1,
+        collision_mask: int = 0xFFFFFFFF,
+        name: str | None = None,
+    ) -> Body:
+        """Adds a body and returns it.
+
+        mesh: a Mesh; or a Sphere, a Capsule or a Cylinder, which are rigid and touch others with their exact shape.
+        material: a handle, or a record; equal records become one material. materials: materials of the tetrahedra with
+        a label. position, rotation: pose of the mesh (3,) [m, rad]. velocity, angular_velocity: of the body about its
+        centre of mass (3,) [m/s, rad/s]. dynamics: "explicit", "implicit", "rigid" or "automatic", which chooses
+        explicit or implicit by their costs. element: kind of the elements. self_contact: True: the body can touch
+        itself. contact_distance: default 2 % of the mean edge length of the surface [m]. collision_group,
+        collision_mask: see Body.set_collision_groups(). name: unique in the world, default "body N".
+
+        SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use."""
+        given = BodySettings(
+            position=vector(position, "position"),
+            rotation=rotation_vector(rotation, "rotation"),
+            velocity=vector(velocity, "velocity"),
+            angular_velocity=vector(angular_velocity, "angular_velocity"),
+            dynamics=dynamics,
+            element=element,
+            self_contact=self_contact,
+            contact_distance=contact_distance,
+            collision_group=collision_group,
+            collision_mask=collision_mask,
+            name=self._new_name(name, "body", self.bodies),
+        )
+        if isinstance(mesh, (Sphere, Capsule, Cylinder)):
+            if dynamics == "automatic":
+                given.dynamics = "rigid"
+            handle = self._core.add_round_body(mesh, self._material(material), given)
+        elif isinstance(mesh, Mesh):
+            by_label = {label: self._material(of_label) for label, of_label in (materials or {}).items()}
+            handle = self._core.add_body(mesh._core, self._material(material), by_label, given)
+        else:
+            raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, a Sphere, a Capsule or a Cylinder")
+        return Body(self._self, handle, given.name)
+
+    def add_collider(
+        self,
+        shape: Shape,
+        *,
+        position: VectorLike = (0.0, 0.0, 0.0),
+        rotation: RotationLike = (0.0, 0.0, 0.0),
+        motion: Motion | None = None,
+        friction: float | None = None,
+        static_friction: float | None = None,
+        dynamic_friction: float | None = None,
+        restitution: float | None = None,
+        contact_distance: float = 0.0,
+        collision_group: int = 1,
+        collision_mask: int = 0xFFFFFFFF,
+        name: str | None = None,
+    ) -> Collider:
+        """Adds a collider and returns it.
+
+        shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh. position, rotation: pose (3,) [m, rad].
+        motion: velocities, or keys, which are poses at absolute times. friction, static_friction, dynamic_friction: a
+        contact uses the geometric mean of this value and that of the body, or that of the body if not given.
+        restitution: a contact uses the larger value. contact_distance: thickness of the contact shell of a SurfaceMesh
+        [m]. collision_group, collision_mask: see Collider.set_collision_groups(). name: unique in the world, default
+        "collider N".
+
+        SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
+        given = ColliderSettings(
+            position=vector(position, "position"),
+            rotation=rotation_vector(rotation, "rotation"),
+            motion=motion or Motion(),
+            friction=friction,
+            static_friction=static_friction,
+            dynamic_friction=dynamic_friction,
+            restitution=restitution,
+            contact_distance=contact_distance,
+            collision_group=collision_group,
+            collision_mask=collision_mask,
+            name=self._new_name(name, "collider", self.colliders),
+        )
+        return Collider(self._self, self._core.add_collider(shape, given), given.name)
+
+    def add_joint(
+        self,
+        kind: JointKind,
+        first: Body,
+        second: Body | None = None,
+        *,
+        point: VectorLike = (0.0, 0.0, 0.0),
+        axis: VectorLike = (0.0, 0.0, 1.0),
+        lower: float | None = None,
+        upper: float | None = None,
+        motor: Motor | None = None,
+        bodies_touch: bool = False,
+    ) -> Joint:
+        """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
+
+        kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
+        slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
+        bodies_touch: True: the two bodies may collide. SceneError: a body is not rigid, or a value is out of range."""
+        given = JointSettings(
+            kind=kind,
+            point=vector(point, "point"),
+            axis=vector(axis, "axis"),
+            lower=lower,
+            upper=upper,
+            motor=motor,
+            bodies_touch=bodies_touch,
+        )
+        handle = self._core.add_joint(first._handle, None if second is None else second._handle, given)
+        return self._joint(handle)
+
+    def remove(self, removed: PosedObject | Joint) -> None:
+        """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
+        handle = removed._handle
+        self._core.remove(handle)
+        self._mesh_arrays.pop(handle, None)
+
+    @property
+    def bodies(self) -> Objects[Body]:
+        """The bodies by name or number, in the order added."""
+        return Objects(self._core, "bodies", self._body)
+
+    @property
+    def colliders(self) -> Objects[Collider]:
+        """The colliders by name or number, in the order added."""
+        return Objects(self._core, "colliders", self._collider)
+
+    @property
+    def joints(self) -> list[Joint]:
+        """The joints in the order added."""
+        return [self._joint(handle) for handle in self._core.joints()]
+
+    def _body(self, handle: Any, name: str | None = None) -> Body:
+        return Body(self._self, handle, self._core.name(handle) if name is None else name)
+
+    def _collider(self, handle: Any, name: str | None = None) -> Collider:
+        return Collider(self._self, handle, self._core.name(handle) if name is None else name)
+
+    def _joint(self, handle: Any) -> Joint:
+        state = self._core.joint_state(handle)
+        second = state["second"]
+        label = joint_label(
+            state["kind"], self._core.name(state["first"]), None if second is None else self._core.name(second)
+        )
+        return Joint(self._self, handle, label)
+
+    def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
+        """Surface and tetrahedra of a body, which never change."""
+        arrays = self._mesh_arrays.get(body)
+        if arrays is None:
+            arrays = (read_only(self._core.surface(body)), read_only(self._core.tetrahedra(body)))
+            self._mesh_arrays[body] = arrays
+        return arrays
+
+    def _material(self, material: Material | MaterialHandle) -> Any:
+        if isinstance(material, MaterialHandle):
+            return material._handle
+        if not isinstance(material, Material):
+            raise TypeError(f"material: found {material!r}, expected a Material or a MaterialHandle")
+        if material not in self._materials:
+            self._materials[material] = self.add_material(material)._handle
+        return self._materials[material]
+
+    def _forget_material(self, changed: Any) -> None:
+        """Must be called after a material was changed: its record no longer stands for it."""
+        self._materials = {record: handle for record, handle in self._materials.items() if handle != changed}
+
+    def _new_name(self, name: str | None, kind: str, objects: Objects[Any]) -> str:
+        if name is None:
+            number = len(objects)
+            while (free := f"{kind} {number}") in objects:
+                number += 1
+            return free
+        if name in objects:
+            raise SceneError(
+                f"{kind} '{name}': name: found the name of another {kind}, expected a new name",
+                object=f"{kind} '{name}'",
+                field="name",
+                found=f"the name of another {kind}",
+                expected="a new name",
+            )
+        return name

@@ -1,0 +1,31 @@
+"""Colliders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .._settings import Shape
+from .objects import MovedObject, TouchingObject
+
+if TYPE_CHECKING:
+    from .world import World
+
+
+class Collider(TouchingObject, MovedObject):
+    """A collider of a world: an object without mass that bodies cannot pass. For a plane, `pose` is the point of the
+    plane and a rotation that takes +z to its normal. Every use of a removed collider raises SceneError, except `alive`,
+    `name` and comparison."""
+
+    __slots__ = ()
+
+    def __init__(self, world: World, handle: Any, name: str) -> None:
+        super().__init__(world, handle, f"collider '{name}'", name)
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the collider in its own frame."""
+        shape: Shape = self._core.shape(self._handle)
+        return shape
+
+    def _description(self) -> str:
+        return f" '{self.name}' {type(self.shape).__name__}"

@@ -1,0 +1,86 @@
+"""Joints of rigid bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .._arrays import Vector
+from .._settings import JointKind, Motor
+from .objects import WorldObject
+
+if TYPE_CHECKING:
+    from .body import Body
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointState:
+    """Present pose and motion of a joint. Force and moment are those of the last step; they act on the first body and
+    are given in world axes."""
+
+    kind: JointKind
+    """Kind of the joint."""
+    first: Body
+    """The first body."""
+    second: Body | None
+    """The second body; None if the first body is joined to the world."""
+    point: Vector
+    """Point of the joint on the first body [m]."""
+    axis: Vector
+    """Axis of the joint on the second body."""
+    coordinate: float
+    """Angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or m]."""
+    speed: float
+    """Rate of `coordinate` [rad/s or m/s]."""
+    force: Vector
+    """Force at `point` [N]."""
+    moment: Vector
+    """Moment [N m]."""
+    motor: float
+    """Moment or force along the axis that the motor exerts [N m or N]."""
+    limit: float
+    """Moment or force along the axis that the limits exert [N m or N]."""
+    error: float
+    """Distance between the two points that the joint should keep together [m]."""
+
+
+class Joint(WorldObject):
+    """A joint between two rigid bodies, or between a rigid body and the world. Removing a body removes its joints."""
+
+    __slots__ = ()
+
+    @property
+    def state(self) -> JointState:
+        """Present pose, motion, force and moment."""
+        values = self._core.joint_state(self._handle)
+        for name in ("first", "second"):
+            if values[name] is not None:
+                values[name] = self._world._body(values[name])
+        return JointState(**values)
+
+    @property
+    def coordinate(self) -> float:
+        """Angle of a hinge or displacement of a slider [rad or m]."""
+        return self.state.coordinate
+
+    @property
+    def speed(self) -> float:
+        """Rate of `coordinate` [rad/s or m/s]."""
+        return self.state.speed
+
+    def set_motor(self, motor: Motor | None) -> None:
+        """Sets the motor of a hinge or a slider; None removes it."""
+        self._core.set_motor(self._handle, motor)
+
+    def set_limits(self, *, lower: float | None = None, upper: float | None = None) -> None:
+        """Sets the limits of the coordinate; None stands for no limit [rad or m]."""
+        self._core.set_limits(self._handle, lower, upper)
+
+    def remove(self) -> None:
+        """Removes the joint."""
+        self._world.remove(self)
+
+
+def joint_label(kind: str, first: str, second: str | None) -> str:
+    """Text that names a joint in messages."""
+    return f"{kind} joint of body '{first}' and {'the world' if second is None else f'body {second!r}'}"

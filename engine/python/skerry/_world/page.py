@@ -1,0 +1,28 @@
+"""The table of a world that notebooks show."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .world import World
+
+_MOST_ROWS = 50
+
+
+def world_table(world: World) -> str:
+    """HTML text with the time of the world and its objects."""
+    rows: list[tuple[str, str, str]] = [
+        (body.name, body.dynamics, f"{body.node_count:,} nodes, {body.mass:.3g} kg{', asleep' if body.asleep else ''}")
+        for body in world.bodies.values()
+    ]
+    rows += [(collider.name, "collider", type(collider.shape).__name__) for collider in world.colliders.values()]
+    rows += [("", "joint", joint._label) for joint in world.joints]
+    left = len(rows) - _MOST_ROWS
+    lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows[:_MOST_ROWS]]
+    if left > 0:
+        lines.append(f'<td colspan="3">and {left:,} more</td>')
+    head = f"skerry.World at {world.time:.6g} s"
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f"<table><caption>{escape(head)}</caption><tr><th>name</th><th>kind</th><th></th></tr>{body}</table>"

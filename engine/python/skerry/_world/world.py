@@ -1,0 +1,299 @@
+"""The world."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from html import escape
+from types import SimpleNamespace
+from typing import Any, Unpack
+
+from .. import _core
+from .._arrays import VectorLike, real_array
+from .._errors import BusyError, Doubt, SceneError, StepError
+from .._recorder import WorldOutput
+from .._results import WorldResults
+from .._settings import Backend, Settings
+from .body import Body
+from .building import Building
+from .changes import SettingsChanges
+from .collider import Collider
+from .objects import WorldObject
+from .page import world_table
+from .reports import Energy, StepReport, WorldReport, step_report, world_report
+
+if hasattr(os, "register_at_fork"):
+    # A fork copies no threads, so that worlds would wait for them for ever.
+    os.register_at_fork(after_in_child=_core.note_fork)
+
+_LARGEST_TRUSTED_ERROR = 0.5
+"""Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""
+
+
+class LoadSettings(SimpleNamespace):
+    """Threads of a copy for the extension module."""
+
+
+class World(Building, WorldResults, WorldOutput):
+    """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
+
+    World() has the default settings, World(settings) the given ones; keywords change single settings:
+    World(gravity=(0, 0, 0), threads=1).
+
+    One thread at a time may use a world; a call from another thread raises BusyError. Different worlds are independent.
+    copy.copy(), copy.deepcopy() and pickle copy the whole state: the copy continues with the same bits. Functions of
+    watch_steps() are not copied."""
+
+    __slots__ = ()
+
+    def __init__(self, settings: Settings | None = None, /, **changes: Unpack[SettingsChanges]) -> None:
+        self._hold(_core.World(dataclasses.replace(settings or Settings(), **changes)))
+
+    @classmethod
+    def _of(cls, core: Any) -> World:
+        world = cls.__new__(cls)
+        world._hold(core)
+        return world
+
+    # Copies and files.
+
+    def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> World:
+        """A copy that continues with the same bits on any threads, which are by default those of this world.
+        body.in_copy(copy) is a body in the copy."""
+        return World._of(self._core.clone(LoadSettings(threads=threads, backend=backend)))
+
+    def to_bytes(self) -> bytes:
+        """The bytes that save() writes."""
+        data: bytes = self._core.to_bytes()
+        return data
+
+    @staticmethod
+    def from_bytes(data: bytes, *, threads: int | None = None, backend: Backend | None = None) -> World:
+        """Makes a world of the bytes of to_bytes()."""
+        return World._of(_core.World.from_bytes(data, LoadSettings(threads=threads, backend=backend)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Saves the world. An existing file is replaced completely or not at all."""
+        self._core.save(os.fspath(path))
+
+    @staticmethod
+    def load(path: str | os.PathLike[str], *, threads: int | None = None, backend: Backend | None = None) -> World:
+        """Reads a world that save() wrote. It continues with the same bits on any threads."""
+        return World._of(_core.World.load(os.fspath(path), LoadSettings(threads=threads, backend=backend)))
+
+    def __copy__(self) -> World:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> World:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (World.from_bytes, (self.to_bytes(),))
+
+    # Running.
+
+    def settle_start(self) -> None:
+        """Finds overlaps of bodies and colliders that were added or moved since the last check, and treats them
+        according to Settings.start_overlaps. advance() begins with this check."""
+        self._core.settle_start()
+
+    def advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
+        """Advances time by dt [s], in equal steps no longer than the stable step, without the GIL.
+
+        check: called with the report so far before each attempt at a step; if it returns False, the call ends between
+        two steps with the status "stopped". Like functions of watch_steps() it may read the world, but must not change
+        or advance it; an exception ends the call between two steps. So does Ctrl-C.
+
+        StepError: a step could not be completed. SceneError: bodies overlap at the start and this is refused."""
+        report = self.try_advance(dt, check=check)
+        if report.status not in ("ok", "stopped"):
+            raise StepError(report)
+        return report
+
+    def try_advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
+        """Advances like advance(), but returns the report of a step that could not be completed."""
+        values = self._core.advance(dt, self._told(check), self._told(self._watch))
+        for follow in tuple(self._followers):
+            follow()
+        report = step_report(self, values)
+        if report.warning or report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
+            self._warn_of(report)
+        return report
+
+    def run(
+        self,
+        seconds: float,
+        *,
+        dt: float = 1 / 60,
+        each: Callable[[World], object] | None = None,
+        progress: bool = False,
+    ) -> None:
+        """Advances by `seconds` in calls of advance(dt), of which the last may be shorter.
+
+        each: called with the world after each call; if it returns False, the run ends. progress: writes the time and
+        the share of the run to the standard error output. At the end, doubts about the results become warnings."""
+        if not (seconds >= 0 and math.isfinite(seconds)):
+            raise SceneError(f"run: seconds: found {seconds}, expected a time >= 0 (s)", object="run", field="seconds")
+        if not (dt > 0 and math.isfinite(dt)):
+            raise SceneError(f"run: dt: found {dt}, expected a time > 0 (s)", object="run", field="dt")
+        calls = max(1, math.ceil(seconds / dt * (1 - 1e-9)))
+        for call in range(calls):
+            self.advance(dt if call < calls - 1 else seconds - (calls - 1) * dt)
+            if progress:
+                end = "\n" if call == calls - 1 else ""
+                print(f"\r{self.time:.6g} s, {100 * (call + 1) / calls:.0f} %", end=end, file=sys.stderr, flush=True)
+            if each is not None and each(self) is False:
+                break
+        self._warn_of_run()
+
+    def watch_steps(self, look: Callable[[StepReport], object] | None) -> None:
+        """From now on calls `look` after every completed step, with the report so far, on the thread that advances.
+        `look` may read the world, but must not change it. An exception ends advance() between two steps and comes out
+        of it. None ends the calls."""
+        self._core.require_between_steps()
+        self._watch = look
+
+    @contextmanager
+    def trace(self, path: str | os.PathLike[str]) -> Iterator[None]:
+        """Records the activity of every worker, and writes it in the Trace Event Format, which Perfetto opens:
+
+        with world.trace("trace.json"):
+            world.advance(0.1)
+        """
+        self._core.set_tracing(True)
+        try:
+            yield
+        finally:
+            self._core.set_tracing(False)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(self._core.trace_text())
+
+    def step_graph(self) -> str:
+        """The stages of the step and their dependencies, in the dot language of Graphviz."""
+        return str(self._core.step_graph())
+
+    # State.
+
+    @property
+    def time(self) -> float:
+        """Time [s]."""
+        return float(self._core.time())
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of the world."""
+        return Settings(**self._core.settings())
+
+    @property
+    def stable_step(self) -> float:
+        """Stable step of the stiffest body, which is the longest step that advance() takes [s]."""
+        return float(self._core.stable_step())
+
+    @property
+    def energy(self) -> Energy:
+        """Energies of the world."""
+        return Energy(**self._core.energy())
+
+    @property
+    def state_hash(self) -> int:
+        """Hash of all data on which the next step depends, equal for any number of threads."""
+        return int(self._core.state_hash())
+
+    def report(self) -> WorldReport:
+        """Sums and maxima of the run, and measures of the present state."""
+        return world_report(self, self._core.report())
+
+    # Control.
+
+    def set_gravity(self, gravity: VectorLike) -> None:
+        """Sets the acceleration of all bodies, shape (3,) [m/s^2]."""
+        self._core.set_gravity(real_array(gravity, "gravity", (3,)))
+
+    def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
+        """Switches the collision of two bodies, or of a body and a collider, on or off. For a body with itself it sets
+        its self-contact."""
+        self._core.set_collision(*_body_first(first, second), on)
+
+    def may_collide(self, first: Body | Collider, second: Body | Collider) -> bool:
+        """True if the collision groups and set_collision() let the two objects collide."""
+        return bool(self._core.may_collide(*_body_first(first, second)))
+
+    def reset(self, saved: World | None = None) -> None:
+        """Puts all bodies back into their rest shapes at their first poses. Time, colliders, attachments and loads do
+        not change. With `saved`, a copy of this world: continues from the state of the copy; objects that were added
+        after copying are removed. BufferError: arrays of views() are in use."""
+        if saved is None:
+            self._core.reset()
+            return
+        self._core.reset_to(saved._core)
+        self._mesh_arrays.clear()
+        self._materials.clear()
+
+    # Helpers.
+
+    def _told(self, look: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
+        """A function for the extension module that calls `look` with a report."""
+        if look is None:
+            return None
+        return lambda values: look(step_report(self, values)) is not False
+
+    def _warn_of(self, report: StepReport) -> None:
+        """Warns of doubts about the steps of a call."""
+        if report.warning:
+            self._warn(report.warning, "step", report.limited_by, report.inverted_name)
+        if report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
+            crossed = "crossed" if report.crossed else ""
+            wrong = "error" if report.worst_error > _LARGEST_TRUSTED_ERROR else ""
+            if ("distrust", crossed, wrong) not in self._doubts:
+                self._warn(self.report().distrust, "distrust", crossed, wrong)
+
+    def _warn_of_run(self) -> None:
+        """Warns of doubts that only a report of the world shows."""
+        for crossing in self.report().self_crossings:
+            self._warn(crossing.message, "self_crossing", crossing.name)
+
+    def _warn(self, text: str, *cause: str) -> None:
+        """Warns once for each cause."""
+        if cause in self._doubts:
+            return
+        self._doubts.add(cause)
+        if text:
+            warnings.warn(text, Doubt, stacklevel=_frames_of_package())
+
+    def __repr__(self) -> str:
+        try:
+            return (
+                f"<skerry.World at {self.time:.6g} s, {len(self.bodies):,} bodies, {len(self.colliders):,} colliders, "
+                f"{len(self._core.joints()):,} joints>"
+            )
+        except BusyError:
+            return "<skerry.World in use by another thread>"
+
+    def _repr_html_(self) -> str:
+        try:
+            return world_table(self)
+        except BusyError:
+            return escape(repr(self))
+
+
+def _body_first(first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
+    """Handles of a body and of a body or a collider, in this order."""
+    if isinstance(first, Collider):
+        first, second = second, first
+    if not isinstance(first, Body):
+        raise TypeError("set_collision: found two colliders, expected at least one body")
+    return first._handle, second._handle
+
+
+def _frames_of_package() -> int:
+    """Number of frames from _warn() up to the caller of the package, as warnings.warn() counts them."""
+    folder = os.path.dirname(os.path.dirname(__file__)) + os.sep
+    frame, count = sys._getframe(1), 1
+    while frame.f_back is not None and os.path.abspath(frame.f_code.co_filename).startswith(folder):
+        frame, count = frame.f_back, count + 1
+    return count

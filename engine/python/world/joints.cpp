@@ -1,0 +1,62 @@
+// Joints of rigid bodies.
+#include "skerry/joint.h"
+
+#include "engine/python/read_settings.h"
+#include "engine/python/world/parts.h"
+
+namespace skerry::python {
+
+namespace {
+
+JointHandle add_joint(WorldObject& object, const BodyHandle& first, std::optional<BodyHandle> second,
+                      nb::handle given) {
+    Use use(object);
+    JointSettings settings;
+    read(given, settings);
+    settings.first = first;
+    settings.second = second;
+    return Joints(object.world).add(settings);
+}
+
+nb::dict values_of(const JointState& state) {
+    nb::dict values;
+    values["kind"] = std::string(name_of(state.kind));
+    values["first"] = object_of(state.first);
+    values["second"] = state.second ? object_of(*state.second) : nb::none();
+    values["point"] = tuple_of(state.point);
+    values["axis"] = tuple_of(state.axis);
+    values["coordinate"] = state.coordinate;
+    values["speed"] = state.speed;
+    values["force"] = tuple_of(state.force);
+    values["moment"] = tuple_of(state.moment);
+    values["motor"] = state.motor;
+    values["limit"] = state.limit;
+    values["error"] = state.error;
+    return values;
+}
+
+void set_motor(WorldObject& object, const JointHandle& joint, nb::handle given) {
+    Use use(object);
+    std::optional<JointMotor> motor;
+    if (!given.is_none()) read(given, motor.emplace());
+    Joints(object.world).set_motor(joint, motor);
+}
+
+}  // namespace
+
+void bind_joints(WorldClass& type) {
+    type.def("add_joint", &add_joint, nb::arg("first"), nb::arg("second").none(), nb::arg("given"))
+        .def("remove", guarded([](World& world, const JointHandle& joint) { Joints(world).remove(joint); }))
+        .def("alive", guarded([](World& world, const JointHandle& joint) { return Joints(world).alive(joint); }))
+        .def("joints", guarded([](World& world) { return Joints(world).all(); }))
+        .def("joint_state",
+             guarded([](World& world, const JointHandle& joint) { return values_of(Joints(world).state(joint)); }))
+        .def("set_motor", &set_motor, nb::arg("joint"), nb::arg("motor").none())
+        .def("set_limits",
+             guarded([](World& world, const JointHandle& joint, std::optional<Real> lower, std::optional<Real> upper) {
+                 Joints(world).set_limits(joint, lower, upper);
+             }),
+             nb::arg("joint"), nb::arg("lower").none(), nb::arg("upper").none());
+}
+
+}  // namespace skerry::python

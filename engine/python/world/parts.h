@@ -1,0 +1,37 @@
+// The parts of the class World of the extension module, each in a file of its own.
+#pragma once
+
+#include "engine/python/world_object.h"
+#include "skerry/joint.h"
+#include "skerry/report.h"
+
+namespace skerry::python {
+
+using WorldClass = nb::class_<WorldObject>;
+
+void bind_building(WorldClass& type);
+void bind_advance(WorldClass& type);
+void bind_state(WorldClass& type);
+void bind_control(WorldClass& type);
+void bind_joints(WorldClass& type);
+void bind_views(WorldClass& type);
+void bind_results(WorldClass& type);
+void bind_problem_watch(WorldClass& type);
+
+/// The members of a report by name.
+nb::dict values_of(const StepReport& report);
+nb::dict values_of(const WorldReport& report);
+nb::dict values_of(const Energy& energy);
+nb::dict values_of(const DynamicsEstimate& estimate);
+
+/// The handle as a Python object; None if it names no object.
+template <class HandleType>
+nb::object object_of(const HandleType& handle) {
+    return handle == HandleType{} ? nb::none() : nb::cast(handle);
+}
+
+inline nb::tuple tuple_of(const Vec3& vector) {
+    return nb::make_tuple(vector.x(), vector.y(), vector.z());
+}
+
+}  // namespace skerry::python

@@ -1,0 +1,134 @@
+// State of worlds, bodies, colliders and attachments.
+#include "engine/python/read_settings.h"
+#include "engine/python/world/parts.h"
+
+namespace skerry::python {
+
+namespace {
+
+using Tensors = nb::ndarray<nb::numpy, Real>;
+
+/// A NumPy array (k, 3, 3). Eigen stores matrices by columns.
+Tensors array_of(std::vector<Mat3>&& matrices) {
+    for (Mat3& matrix : matrices) matrix.transposeInPlace();
+    return python::array_of<Real>(std::span<const Mat3>(matrices), {3, 3});
+}
+
+Tensors array_of(const std::vector<Real>& values) {
+    return python::array_of<Real>(std::span<const Real>(values));
+}
+
+/// Makes a method of WorldObject of a function of World that computes a field of a body. The GIL is released.
+template <class Result>
+auto field_of(std::vector<Result> (World::*compute)(BodyHandle) const) {
+    return [compute](WorldObject& object, const BodyHandle& body) {
+        Use use(object);
+        auto values = without_gil([&] { return (object.world.*compute)(body); });
+        if constexpr (std::is_same_v<Result, Vec3>)
+            return python::array_of(std::span<const Vec3>(values));
+        else
+            return array_of(std::move(values));
+    };
+}
+
+Tensors stress_at(WorldObject& object, const BodyHandle& body, const Indices& nodes) {
+    Use use(object);
+    return array_of(object.world.node_stress(body, span_of(nodes)));
+}
+
+nb::object pose_object(const MotionKey& pose) {
+    return object_of(Pose{.position = pose.position, .rotation = pose.rotation});
+}
+
+/// Bodies or colliders of this name, in the order of the world.
+template <class HandleType>
+std::vector<HandleType> named(const World& world, const std::vector<HandleType>& all, const std::string& name) {
+    std::vector<HandleType> found;
+    for (const HandleType& handle : all)
+        if (world.name(handle) == name) found.push_back(handle);
+    return found;
+}
+
+void bind_world_state(WorldClass& type) {
+    type.def("time", guarded([](World& world) { return world.time(); }))
+        .def("settings", guarded([](World& world) { return values_of(world.settings()); }))
+        .def("stable_step", guarded([](World& world) { return world.stable_step(); }))
+        .def("energy", guarded([](World& world) { return values_of(world.energy()); }))
+        .def("report",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return values_of(without_gil([&] { return object.world.report(); }));
+             })
+        .def("state_hash",
+             [](WorldObject& object) {
+                 Use use(object);
+                 return without_gil([&] { return object.world.state_hash(); });
+             })
+        .def("bodies", guarded([](World& world) { return world.bodies(); }))
+        .def("bodies_named",
+             guarded([](World& world, const std::string& name) { return named(world, world.bodies(), name); }))
+        .def("colliders", guarded([](World& world) { return world.colliders(); }))
+        .def("colliders_named",
+             guarded([](World& world, const std::string& name) { return named(world, world.colliders(), name); }))
+        .def("name", guarded([](World& world, const BodyHandle& body) { return world.name(body); }))
+        .def("name", guarded([](World& world, const ColliderHandle& collider) { return world.name(collider); }))
+        .def("pose", guarded([](World& world, const BodyHandle& body) { return pose_object(world.pose(body)); }))
+        .def("pose",
+             guarded([](World& world, const ColliderHandle& collider) { return pose_object(world.pose(collider)); }))
+        .def("pose", guarded([](World& world, const AttachmentHandle& attachment) {
+                 return pose_object(world.pose(attachment));
+             }))
+        .def("shape",
+             guarded([](World& world, const ColliderHandle& collider) { return object_of(world.shape(collider)); }));
+}
+
+void bind_body_state(WorldClass& type) {
+    type.def("positions",
+             guarded([](World& world, const BodyHandle& body) { return python::array_of(world.positions(body)); }))
+        .def("velocities",
+             guarded([](World& world, const BodyHandle& body) { return python::array_of(world.velocities(body)); }))
+        .def("node_count", guarded([](World& world, const BodyHandle& body) { return world.positions(body).size(); }))
+        .def("surface", guarded([](World& world, const BodyHandle& body) {
+                 return python::array_of<Index>(world.surface(body), {3});
+             }))
+        .def("tetrahedra", guarded([](World& world, const BodyHandle& body) {
+                 return python::array_of<Index>(world.tetrahedra(body), {4});
+             }))
+        .def("element",
+             guarded([](World& world, const BodyHandle& body) { return std::string(name_of(world.element(body))); }))
+        .def("dynamics",
+             guarded([](World& world, const BodyHandle& body) { return std::string(name_of(world.dynamics(body))); }))
+        .def("dynamics_choice",
+             guarded([](World& world, const BodyHandle& body) { return values_of(world.dynamics_choice(body)); }))
+        .def("mass", guarded([](World& world, const BodyHandle& body) { return world.mass(body); }))
+        .def("center_of_mass", guarded([](World& world, const BodyHandle& body) {
+                 const Vec3 center = world.center_of_mass(body);
+                 return python::array_of<Real>(std::span<const Real>(center.data(), 3));
+             }))
+        .def("contact_distance",
+             guarded([](World& world, const BodyHandle& body) { return world.contact_distance(body); }))
+        .def("asleep", guarded([](World& world, const BodyHandle& body) { return world.asleep(body); }))
+        .def("mean_edge", guarded([](World& world, const BodyHandle& body) { return world.mean_edge(body); }));
+}
+
+void bind_fields(WorldClass& type) {
+    type.def("stress", field_of<Mat3>(&World::stress))
+        .def("strain", field_of<Mat3>(&World::strain))
+        .def("node_stress", field_of<Mat3>(&World::node_stress))
+        .def("node_stress_at", &stress_at)
+        .def("node_strain", field_of<Mat3>(&World::node_strain))
+        .def("von_mises_stress", field_of<Real>(&World::von_mises_stress))
+        .def("node_von_mises_stress", field_of<Real>(&World::node_von_mises_stress))
+        .def("node_principal_stresses", field_of<Vec3>(&World::node_principal_stresses))
+        .def("tetrahedron_steps", field_of<Real>(&World::tetrahedron_steps));
+}
+
+}  // namespace
+
+void bind_state(WorldClass& type) {
+    bind_world_state(type);
+    bind_body_state(type);
+    bind_fields(type);
+}
+
+}  // namespace skerry::python

@@ -1,0 +1,80 @@
+// A world as Python holds it, and the rule that only one thread at a time may use it.
+#pragma once
+
+#include <atomic>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "engine/python/bind.h"
+#include "skerry/world.h"
+
+namespace skerry::python {
+
+/// A world, the thread that uses it at present, and the arrays that show its memory.
+struct WorldObject {
+    World world;
+    std::atomic<unsigned long> user{0};  // number of the thread that is inside a call; 0 if none is
+    int depth = 0;                       // number of nested calls of this thread
+    std::vector<BodyHandle> views{};     // body of each living array that shows memory of the world
+
+    explicit WorldObject(World&& from);
+    /// In a process made by fork(), the threads of the world do not exist. The world is then left in memory, because
+    /// its destructor would wait for them.
+    ~WorldObject();
+};
+
+/// Marks a world as in use by this thread until the end of the scope. If another thread uses the world, raises
+/// skerry.BusyError. Raises RuntimeError in a process made by fork() from one that has started threads.
+class Use {
+public:
+    explicit Use(WorldObject& object) : object_(object) {
+        require_threads();
+        const unsigned long self = PyThread_get_thread_ident();
+        unsigned long none = 0;
+        if (object.user.load() != self && !object.user.compare_exchange_strong(none, self)) raise_busy();
+        ++object.depth;
+    }
+    ~Use() {
+        if (--object_.depth == 0) object_.user.store(0);
+    }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+    /// Raises RuntimeError if fork() has left this process without the threads of its worlds.
+    static void require_threads() {
+        if (threads_lost) raise_threads_lost();
+    }
+    /// Called when a world starts or uses threads.
+    static void note_threads() { threads_started = true; }
+    /// Called in a new process after fork().
+    static void note_fork() { threads_lost = threads_started; }
+    static bool lost_threads() { return threads_lost; }
+
+private:
+    [[noreturn]] static void raise_busy();
+    [[noreturn]] static void raise_threads_lost();
+
+    static inline bool threads_started = false, threads_lost = false;  // of this process; changed with the GIL held
+
+    WorldObject& object_;
+};
+
+/// Raises BufferError that names the bodies and their numbers of arrays, if arrays show memory of the world, which
+/// `action` could move.
+void require_no_views(const WorldObject& object, const char* action);
+
+template <class Result, class... Arguments>
+auto guarded_as(Result (*function)(World&, Arguments...)) {
+    return [function](WorldObject& object, Arguments... arguments) -> Result {
+        Use use(object);
+        return function(object.world, std::forward<Arguments>(arguments)...);
+    };
+}
+/// Makes a method of WorldObject of a function of World: guarded([](World& world, ...) {...}).
+template <class Function>
+auto guarded(Function function) {
+    return guarded_as(+function);
+}
+
+}  // namespace skerry::python

@@ -1,0 +1,108 @@
+"""Joints of rigid bodies, with motors and limits."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import skerry as sk
+from worlds import RUBBER
+
+
+def rod_world(**settings: object) -> tuple[sk.World, sk.Body]:
+    """A rigid rod along x, from the origin to x = 0.2 m."""
+    world = sk.World(threads=1, **settings)  # type: ignore[arg-type]
+    mesh = sk.Mesh.box((0.2, 0.02, 0.02), (4, 1, 1))
+    return world, world.add_body(mesh, RUBBER, position=(0.1, 0, 0), dynamics="rigid", name="rod")
+
+
+def test_a_rod_on_a_hinge_swings_about_it() -> None:
+    world, rod = rod_world()
+    hinge = world.add_joint("hinge", rod, point=(0, 0, 0), axis=(0, 1, 0))
+    assert world.joints == [hinge]
+    assert repr(hinge) == "<skerry.Joint: hinge joint of body 'rod' and the world>"
+    world.advance(0.1)
+    state = hinge.state
+    assert state.first == rod and state.second is None and state.kind == "hinge"
+    assert np.linalg.norm(rod.center_of_mass) == pytest.approx(0.1, abs=1e-3)
+    assert state.coordinate == hinge.coordinate > 0 and state.speed == hinge.speed > 0
+    assert state.error < 1e-4
+    assert np.allclose(state.axis, (0, 1, 0))
+
+
+def test_a_joint_in_equilibrium_carries_the_weight() -> None:
+    world, rod = rod_world(tolerance=1e-9)
+    joint = world.add_joint("fixed", rod, point=(0, 0, 0))
+    world.advance(0.1)
+    weight = 9.81 * rod.mass
+    assert joint.state.force == pytest.approx((0, 0, weight), abs=1e-7 * weight)
+    assert joint.state.moment == pytest.approx((0, -0.1 * weight, 0), abs=1e-7 * weight)
+
+
+def test_a_motor_reaches_its_speed_and_can_be_removed() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0))
+    hinge = world.add_joint("hinge", rod, axis=(0, 0, 1), motor=sk.Motor(speed=3.0, strength=10.0))
+    world.advance(0.2)
+    assert hinge.speed == pytest.approx(3.0, rel=1e-3)
+    hinge.set_motor(sk.Motor(speed=-1.0, strength=10.0))
+    world.advance(0.2)
+    assert hinge.speed == pytest.approx(-1.0, rel=1e-3)
+    hinge.set_motor(None)
+    world.advance(0.1)
+    assert hinge.speed == pytest.approx(-1.0, rel=1e-3) and hinge.state.motor == 0
+
+
+def test_a_motor_follows_its_keys() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0))
+    keys = [sk.MotorKey(time=0, position=0), sk.MotorKey(time=1, position=1)]
+    slider = world.add_joint("slider", rod, axis=(1, 0, 0), motor=sk.Motor(keys=keys, strength=100))
+    world.advance(0.5)
+    assert slider.coordinate == pytest.approx(0.5, abs=0.02)
+
+
+def test_limits_stop_a_joint() -> None:
+    world, rod = rod_world()
+    hinge = world.add_joint("hinge", rod, axis=(0, 1, 0), lower=-0.1, upper=0.3)
+    world.advance(1.0)
+    assert hinge.coordinate == pytest.approx(0.3, abs=0.02)
+    hinge.set_limits(upper=0.6)
+    world.advance(1.0)
+    assert hinge.coordinate == pytest.approx(0.6, abs=0.02)
+    hinge.set_limits()
+    world.advance(1.0)
+    assert hinge.coordinate > 0.65
+    with pytest.raises(sk.SceneError, match="lower|upper|limits"):
+        hinge.set_limits(lower=2, upper=1)
+
+
+def test_a_joint_goes_with_its_body() -> None:
+    world, rod = rod_world()
+    other = world.add_body(sk.Sphere(radius=0.01), RUBBER, position=(0.25, 0, 0), name="bob")
+    joint = world.add_joint("ball", rod, other, point=(0.22, 0, 0))
+    assert repr(joint) == "<skerry.Joint: ball joint of body 'rod' and body 'bob'>"
+    assert joint.state.second == other
+    other.remove()
+    assert not joint.alive and world.joints == []
+    with pytest.raises(sk.SceneError, match="^ball joint of body 'rod' and body 'bob' was removed$"):
+        joint.set_motor(None)
+
+
+def test_a_joint_can_be_removed_and_pickled() -> None:
+    world, rod = rod_world()
+    joint = world.add_joint("ball", rod)
+    again = pickle.loads(pickle.dumps(joint))
+    assert again.alive and again.world.state_hash == world.state_hash and again != joint
+    joint.remove()
+    assert not joint.alive and again.alive
+    world.advance(0.05)
+    again.world.advance(0.05)
+    assert rod.center_of_mass[2] < again.world.bodies[rod].center_of_mass[2]
+
+
+def test_joints_of_deformable_bodies_are_refused() -> None:
+    world, _ = rod_world()
+    soft = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 0), name="soft")
+    with pytest.raises(sk.SceneError, match="soft"):
+        world.add_joint("ball", soft)
+    with pytest.raises(sk.SceneError, match="kind: found 'weld', expected one of 'ball', 'hinge'"):
+        world.add_joint("weld", soft)  # type: ignore[arg-type]

@@ -1,0 +1,228 @@
+"""Meshes: shapes, files, other packages and errors."""
+
+import os
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import skerry as sk
+
+NODES = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
+TETRAHEDRA = [[0, 1, 2, 3], [1, 2, 3, 4]]
+"""Two positive tetrahedra that share a face."""
+
+
+def test_a_mesh_has_the_arrays_that_it_was_made_from() -> None:
+    mesh = sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    assert mesh.nodes.dtype == np.float64 and mesh.tetrahedra.dtype == np.int32
+    assert mesh.nodes.tolist() == NODES
+    assert mesh.tetrahedra.tolist() == TETRAHEDRA
+    assert mesh.labels is not None and mesh.labels.tolist() == [7, 9]
+    assert mesh.volume == pytest.approx(1 / 6 + 1 / 3)
+    assert repr(mesh) == "<skerry.Mesh 5 nodes, 2 tetrahedra, 2 labels>"
+
+
+def test_the_arrays_of_a_mesh_cannot_be_changed() -> None:
+    given = np.array(NODES, dtype=np.float64)
+    mesh = sk.Mesh(given, TETRAHEDRA)
+    given[0] = 5
+    assert mesh.nodes[0, 0] == 0
+    for array in (mesh.nodes, mesh.tetrahedra):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
+
+
+def test_equal_meshes_are_equal_and_pickled_meshes_return() -> None:
+    mesh = sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    assert mesh == sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    assert mesh != sk.Mesh(NODES, TETRAHEDRA)
+    again = pickle.loads(pickle.dumps(mesh))
+    assert again == mesh and hash(again) == hash(mesh)
+
+
+def test_an_array_of_another_shape_or_type_is_refused_with_both() -> None:
+    with pytest.raises(TypeError, match=r"nodes: found an array of the shape \(5, 2\), expected \(n, 3\)"):
+        sk.Mesh(np.zeros((5, 2)), TETRAHEDRA)
+    with pytest.raises(TypeError, match=r"tetrahedra: found an array of the shape \(8,\), expected \(m, 4\)"):
+        sk.Mesh(NODES, np.ravel(TETRAHEDRA))
+    with pytest.raises(TypeError, match=r"labels: found an array of the shape \(1,\), expected \(2,\)"):
+        sk.Mesh(NODES, TETRAHEDRA, labels=[7])
+    with pytest.raises(TypeError, match="tetrahedra: found numbers of the type float64, expected whole numbers"):
+        sk.Mesh(NODES, [[0, 1, 2, 3.5]])
+
+
+@pytest.mark.parametrize(
+    ("nodes", "tetrahedra", "message"),
+    [
+        (NODES, [[0, 1, 2, 5]], "mesh: tetrahedron 0: node: found 5, expected a node index from 0 to 4"),
+        (NODES, [[0, 1, 2, 2]], "tetrahedron 0"),
+        ([*NODES[:4], [0, 0, np.nan]], TETRAHEDRA, "mesh: node 4: position: found a coordinate that is not finite"),
+    ],
+)
+def test_a_wrong_tetrahedron_or_node_is_refused_with_its_number(nodes: Any, tetrahedra: Any, message: str) -> None:
+    with pytest.raises(sk.SceneError, match=message):
+        sk.Mesh(nodes, tetrahedra)
+
+
+@pytest.mark.parametrize("turned", [[0], [0, 1]])
+def test_inverted_tetrahedra_are_turned_with_a_warning(turned: list[int]) -> None:
+    rows = np.array(TETRAHEDRA)
+    rows[turned, :2] = rows[turned, 1::-1]
+    with pytest.warns(sk.Doubt, match=f"mesh: {len(turned)} of 2 tetrahedra list their nodes in the opposite order"):
+        mesh = sk.Mesh(NODES, rows)
+    assert mesh.inspect().inverted == 0
+    assert mesh.volume == pytest.approx(0.5)
+
+
+def test_tetrahedra_that_would_overlap_when_turned_stay_inverted() -> None:
+    nodes = np.array([*NODES[:4], [0, 0, 0.5]])
+    mesh = sk.Mesh(nodes, [[0, 1, 2, 3], [0, 2, 1, 4]])
+    assert mesh.inspect().inverted == 1
+
+
+SHAPES = [
+    (sk.Mesh.box((1, 2, 3), (1, 2, 3)), 6.0),
+    (sk.Mesh.box([1, 1, 1], 2), 1.0),
+    (sk.Mesh.ball(1.0, 12), 4 / 3 * np.pi),
+    (sk.Mesh.cylinder(1.0, 2.0, 12), 2 * np.pi),
+    (sk.Mesh.lathe([(1, 0), (1, 2)], 12), 2 * np.pi),
+    (sk.Mesh.table(height=0.3), 0.5 * 0.3 * 0.05 + 4 * 0.05**2 * 0.25),
+]
+
+
+@pytest.mark.parametrize(("mesh", "volume"), SHAPES)
+def test_a_shape_has_its_volume(mesh: sk.Mesh, volume: float) -> None:
+    # Flat triangles cut up to 5 % off a round shape with twelve elements across.
+    assert mesh.volume == pytest.approx(volume, rel=0.05)
+    report = mesh.inspect()
+    assert report.volume == pytest.approx(mesh.volume)
+    assert report.closed_manifold and report.inverted == 0
+
+
+def test_a_skittle_stands_on_the_ground() -> None:
+    report = sk.Mesh.skittle(0.4, 6).inspect()
+    assert report.lower[2] == pytest.approx(0)
+    assert report.upper[2] == pytest.approx(0.4)
+
+
+def test_a_size_of_a_shape_must_be_positive() -> None:
+    with pytest.raises(ValueError, match="radius"):
+        sk.Mesh.ball(-1.0, 4)
+    with pytest.raises(TypeError, match=r"cells: found an array of the shape \(2,\), expected \(3,\)"):
+        sk.Mesh.box((1, 1, 1), (2, 2))
+
+
+def test_a_written_mesh_is_read_back_equal(tmp_path: Path) -> None:
+    mesh = sk.Mesh(np.array(NODES) / 3, TETRAHEDRA, labels=[7, 9])
+    mesh.write(tmp_path / "a.msh")
+    assert sk.Mesh.read(tmp_path / "a.msh") == mesh
+    assert sk.read_surface(str(tmp_path / "a.msh")) == mesh.boundary()
+
+
+def test_a_file_that_cannot_be_read_is_named_in_the_error(tmp_path: Path) -> None:
+    with pytest.raises(sk.SceneError, match=r"none\.msh") as caught:
+        sk.Mesh.read(tmp_path / "none.msh")
+    assert caught.value.file.endswith("none.msh")
+    with pytest.raises(sk.SceneError, match=r"file name: found the extension \.step, expected"):
+        sk.Mesh.read("a.step")
+
+
+def test_the_notes_of_a_file_become_warnings(tmp_path: Path) -> None:
+    mesh = sk.Mesh(NODES, TETRAHEDRA)
+    mesh.write(tmp_path / "a.msh")
+    text = (tmp_path / "a.msh").read_text()
+    place = text.index("$Elements")
+    lines = text[place:].splitlines()
+    turned = [
+        " ".join([*line.split()[:-2], *line.split()[:-3:-1]]) if len(line.split()) > 8 else line for line in lines
+    ]
+    (tmp_path / "b.msh").write_text(text[:place] + "\n".join(turned) + "\n")
+    with pytest.warns(sk.Doubt, match="b.msh: 2 of 2 tetrahedra"):
+        sk.Mesh.read(tmp_path / "b.msh")
+
+
+def test_the_boundary_has_outward_triangles() -> None:
+    surface = sk.Mesh.box((1, 1, 1), 2).boundary()
+    corners = surface.nodes[surface.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.all(np.einsum("ij,ij->i", normal, corners.mean(axis=1)) > 0)
+    assert len(surface.triangles) == 6 * 2 * 2 * 2
+
+
+def test_a_mesh_report_reads_well() -> None:
+    lines = repr(sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9]).inspect()).splitlines()
+    assert lines[0] == "MeshReport"
+    assert "  nodes: 5" in lines and "  labels: 7: 1, 9: 1" in lines and "  upper: (1, 1, 1)" in lines
+
+
+def test_a_meshio_mesh_comes_and_goes(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    mesh = sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    given = mesh.to_meshio()
+    assert sk.Mesh.from_meshio(given) == mesh
+    given.write(tmp_path / "a.vtu")
+    given.write(tmp_path / "a.msh", file_format="gmsh22")
+    assert sk.Mesh.from_meshio(meshio.read(tmp_path / "a.vtu")) == mesh
+    assert sk.Mesh.read(tmp_path / "a.vtu") == mesh
+    assert sk.Mesh.read(tmp_path / "a.msh") == mesh
+
+
+def test_a_meshio_mesh_loses_what_is_not_a_tetrahedron() -> None:
+    meshio = pytest.importorskip("meshio")
+    points = [[9, 9, 9], *NODES]
+    cells = [
+        ("triangle", [[0, 1, 2]]),
+        ("tetra", np.array(TETRAHEDRA[:1]) + 1),
+        ("tetra", np.array(TETRAHEDRA[1:]) + 1),
+    ]
+    data = {"size": [[0.5], [0.5], [0.5]], "region": [[3], [7], [9]]}
+    assert sk.Mesh.from_meshio(meshio.Mesh(points, cells, cell_data=data)) == sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    with pytest.raises(sk.SceneError, match="meshio mesh: cells: found no tetrahedra"):
+        sk.Mesh.from_meshio(meshio.Mesh(points, cells[:1]))
+    with pytest.raises(sk.SceneError, match="found 1 curved tetrahedra, expected linear ones"):
+        sk.Mesh.from_meshio(meshio.Mesh(np.zeros((10, 3)), [("tetra10", [range(10)])]))
+
+
+def test_a_pyvista_grid_comes_and_goes() -> None:
+    pyvista = pytest.importorskip("pyvista")
+    mesh = sk.Mesh(NODES, TETRAHEDRA, labels=[7, 9])
+    grid = mesh.to_pyvista()
+    assert grid.compute_cell_sizes()["Volume"].sum() == pytest.approx(mesh.volume)
+    assert sk.Mesh.from_pyvista(grid) == mesh
+    with pytest.raises(sk.SceneError, match="PyVista grid: cells: found no tetrahedra"):
+        sk.Mesh.from_pyvista(pyvista.ImageData(dimensions=(2, 2, 2)).cast_to_unstructured_grid())
+
+
+def test_a_gmsh_model_gives_its_physical_groups_as_labels() -> None:
+    gmsh = pytest.importorskip("gmsh")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        first, second = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1), gmsh.model.occ.addBox(1, 0, 0, 1, 1, 1)
+        gmsh.model.occ.fragment([(3, first)], [(3, second)])
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+        gmsh.model.mesh.generate(3)
+        mesh = sk.Mesh.from_gmsh(gmsh.model)
+        assert mesh.volume == pytest.approx(2)
+        assert mesh.labels is not None and set(mesh.labels) == {first, second}
+        gmsh.model.addPhysicalGroup(3, [second], 17)
+        mesh = sk.Mesh.from_gmsh(gmsh.model)
+        assert mesh.labels is not None and set(mesh.labels) == {0, 17}
+        middle = mesh.nodes[mesh.tetrahedra[mesh.labels == 17]].mean(axis=(0, 1))
+        assert middle[0] > 1
+    finally:
+        gmsh.finalize()
+
+
+DATA = os.environ.get("SKERRY_TEST_DATA")
+
+
+@pytest.mark.skipif(not DATA, reason="SKERRY_TEST_DATA names no folder with meshes in it")
+def test_malformed_files_of_other_programs_are_refused_by_name() -> None:
+    for path in (Path(DATA or "") / "meshes" / "malformed").iterdir():
+        with pytest.raises(sk.SceneError, match=path.name):
+            sk.Mesh.read(path)

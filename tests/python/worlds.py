@@ -1,0 +1,39 @@
+"""Small worlds for the tests, and a way to run a program in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from typing import Any
+
+import skerry as sk
+
+RUBBER = sk.Material(young_modulus=2e5, poisson_ratio=0.4, density=1000, friction=0.5)
+
+
+def ball_world(**settings: Any) -> tuple[sk.World, sk.Body, sk.Collider]:
+    """A rubber ball that touches a plane after 45 ms."""
+    world = sk.World(**{"threads": 1, **settings})
+    floor = world.add_collider(sk.Plane(), name="floor")
+    ball = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(0, 0, 0.06), name="ball")
+    return world, ball, floor
+
+
+def run_program(program: str, *, check: bool = True, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Runs a Python program, which must end well and silently: nanobind reports leaks at the end of a program."""
+    done = subprocess.run(
+        [sys.executable, "-X", "dev", "-W", "error", "-c", textwrap.dedent(program)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join([os.path.dirname(__file__), os.environ.get("PYTHONPATH", "")]),
+        },
+        **options,
+    )
+    if check:
+        assert (done.returncode, done.stderr) == (0, ""), done.stdout + done.stderr
+    return done
