@@ -67,6 +67,7 @@ def test_texts_of_busy_objects_say_so() -> None:
     world, ball, floor = ball_world()
     with busy(world):
         assert repr(world) == "<skerry.World in use by another thread>"
+        assert world._repr_html_() == "&lt;skerry.World in use by another thread&gt;"
         assert repr(ball) == "<skerry.Body: body 'ball', in use by another thread>"
         assert repr(floor) == "<skerry.Collider: collider 'floor', in use by another thread>"
 

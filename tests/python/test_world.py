@@ -179,6 +179,31 @@ def test_a_body_is_copied_with_its_world() -> None:
     assert copy.copy(ball) == ball
 
 
+def test_every_object_is_found_in_a_copy() -> None:
+    world, ball, floor = ball_world()
+    rod = world.add_body(sk.Sphere(radius=0.1), RUBBER, position=(1, 0, 1), name="rod")
+    steel = world.add_material(density=8000)
+    objects = [ball, rod, floor, ball.attach([0]), world.add_joint("hinge", rod), steel]
+    other = pickle.loads(pickle.dumps(world))
+    for each in objects:
+        twin = each.in_copy(other)
+        assert type(twin) is type(each) and twin.world is other and twin != each and twin.alive
+        pickled = pickle.loads(pickle.dumps(each))
+        assert pickled.world is not world and pickled.alive and copy.copy(each) == each
+        assert repr(twin) == repr(each) == repr(pickled)
+    objects[3].in_copy(other).set_velocity((1, 0, 0))
+    steel.in_copy(other).change(density=7000)
+    assert steel.settings.density == 8000
+    rod.remove()
+    with pytest.raises(sk.SceneError, match="body 'ball': found a world without it, expected a copy"):
+        ball.in_copy(sk.World())
+    late = other.copy()
+    rod.in_copy(other).remove()
+    with pytest.raises(sk.SceneError, match="body 'rod': found a world without it"):
+        rod.in_copy(other)
+    assert rod.in_copy(late).alive and not rod.alive
+
+
 def test_a_saved_world_continues_with_the_same_bits(tmp_path: pathlib.Path) -> None:
     world, ball, _ = ball_world()
     world.advance(0.06)
@@ -391,6 +416,20 @@ def test_the_start_again_is_a_reset_to_a_copy() -> None:
     assert ball.alive and not later.alive
     assert len(ball.surface) == len(start.bodies[ball].surface)
     assert world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0)) != later
+
+
+def test_materials_and_meshes_that_a_reset_removes_are_forgotten() -> None:
+    world, ball, _ = ball_world()
+    start = world.copy()
+    steel = sk.Material(density=8000)
+    for _ in range(2):
+        later = world.add_body(sk.Mesh.ball(0.05, 4), steel, position=(1, 0, 1), dynamics="rigid")
+        assert len(later.surface) == len(ball.surface) and len(world._mesh_arrays) == 2
+        world.reset(start)
+        assert not world._mesh_arrays
+    assert len(ball.surface) and len(world._mesh_arrays) == 1
+    ball.remove()
+    assert not world._mesh_arrays
 
 
 def test_a_reset_of_the_bodies_keeps_the_time() -> None:

@@ -41,8 +41,8 @@ void require_no_views(const WorldObject& object, const char* action) {
     for (const auto& [name, arrays] : count)
         list += (list.empty() ? "" : ", ") + std::to_string(arrays) + " of body '" + name + "'";
     PyErr_Format(PyExc_BufferError,
-                 "%s: arrays of views() are in use (%s); expected none, because the call may move "
-                 "their memory",
+                 "%s: found arrays of views() in use (%s), expected none, because the call could move their memory; "
+                 "delete these arrays and their parts first",
                  action, list.c_str());
     throw nb::python_error();
 }

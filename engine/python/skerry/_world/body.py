@@ -269,23 +269,24 @@ class Attachment(MovedObject):
     """Nodes of a body whose motion is prescribed. `pose` is the pose of the moving frame to which the nodes are
     attached. When they were attached, this frame was at the pivot without rotation, or at the pose of the keys."""
 
-    __slots__ = ("_body", "_node_count")
+    __slots__ = ("_body_handle", "_body_name", "_node_count")
 
     def __init__(self, world: World, handle: Any, body: Body, node_count: int) -> None:
         super().__init__(world, handle, f"attachment of body '{body.name}'")
-        self._body = body
+        self._body_handle = body._given_handle
+        self._body_name = body.name
         self._node_count = node_count
 
     @property
     def body(self) -> Body:
         """The body."""
-        return self._body
+        return Body(self._world, self._body_handle, self._body_name)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (Attachment, (self._world, self._given_handle, self._body, self._node_count))
+        return (type(self), (self._world, self._given_handle, self.body, self._node_count))
 
     def _description(self) -> str:
-        return f" of body '{self._body.name}', {self._node_count:,} nodes"
+        return f" of body '{self._body_name}', {self._node_count:,} nodes"
 
 
 def _nodes(at: str) -> bool:

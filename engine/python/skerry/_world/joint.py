@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .._arrays import Vector
 from .._settings import JointKind, Motor
@@ -79,9 +79,6 @@ class Joint(WorldObject):
     def remove(self) -> None:
         """Removes the joint."""
         self._world.remove(self)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (Joint, (self._world, self._given_handle, self._label))
 
 
 def joint_label(kind: str, first: str, second: str | None) -> str:

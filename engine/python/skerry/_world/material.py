@@ -45,7 +45,7 @@ class MaterialHandle(WorldObject):
         self._world._forget_material(self._given_handle)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (MaterialHandle, (self._world, self._given_handle))
+        return (type(self), (self._world, self._given_handle))
 
     def _description(self) -> str:
         return f" {self.settings!r}"

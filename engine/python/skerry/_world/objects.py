@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
-from typing import TYPE_CHECKING, Any, Generic, SupportsIndex, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack
 
 from .._arrays import VectorLike, real_array
 from .._errors import BusyError, SceneError
@@ -37,6 +38,19 @@ class WorldObject:
         """False after the object was removed. Every other use of a removed object raises SceneError."""
         return bool(self._core.alive(self._given_handle))
 
+    def in_copy(self, world: World) -> Self:
+        """The same object in a copy of its world, also in a loaded one. SceneError: the copy does not have it."""
+        twin = copy.copy(self)
+        twin._world = world
+        if not twin.alive:
+            raise SceneError(
+                f"{self._label}: found a world without it, expected a copy of its world",
+                object=self._label,
+                found="a world without it",
+                expected="a copy of its world",
+            )
+        return twin
+
     @property
     def _core(self) -> Any:
         """World of the extension module."""
@@ -48,6 +62,9 @@ class WorldObject:
         if not self.alive:
             raise SceneError(f"{self._label} was removed", object=self._label, found="a removed object")
         return self._given_handle
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (type(self), (self._world, self._given_handle, self._label))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, WorldObject):

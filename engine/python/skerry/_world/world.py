@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from html import escape
 from types import SimpleNamespace
 from typing import Any, Unpack
 
@@ -63,7 +64,7 @@ class World(Building, WorldResults, WorldOutput):
 
     def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> World:
         """A copy that continues with the same bits on any threads, which are by default those of this world.
-        copy.bodies[body] is the copy of a body."""
+        body.in_copy(copy) is a body in the copy."""
         return World._of(self._core.clone(LoadSettings(threads=threads, backend=backend)))
 
     def to_bytes(self) -> bytes:
@@ -274,7 +275,10 @@ class World(Building, WorldResults, WorldOutput):
             return "<skerry.World in use by another thread>"
 
     def _repr_html_(self) -> str:
-        return world_table(self)
+        try:
+            return world_table(self)
+        except BusyError:
+            return escape(repr(self))
 
 
 def _body_first(first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
