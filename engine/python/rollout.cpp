@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/python/bind.h"
@@ -28,6 +31,7 @@ std::variant<ColliderHandle, AttachmentHandle> movable(nb::handle object) {
     if (nb::isinstance<AttachmentHandle>(object)) return nb::cast<AttachmentHandle>(object);
     return nb::cast<ColliderHandle>(object);
 }
+
 /// A control of Python: kind, handle (None for gravity) and values in the order of RolloutControl::values.
 using Control = std::tuple<std::string, nb::object, Values>;
 

@@ -91,7 +91,7 @@ def test_the_given_world_does_not_change() -> None:
 
 def test_records_have_the_shapes_of_their_quantities() -> None:
     bench = Bench()
-    record = {
+    record: dict[str, sk.Probe] = {
         "nodes": sk.NodesProbe(bench.ball),
         "centre": sk.BodyProbe(bench.ball),
         "tip": bench.bar.probe((0.1, 1 / 2, 1 / 2)),
@@ -121,7 +121,7 @@ def test_records_have_the_shapes_of_their_quantities() -> None:
 
 def test_a_rollout_has_the_numbers_of_a_recorder() -> None:
     bench = Bench()
-    record = {"tip": bench.bar.probe((0.1, 0.5, 0.5)), "clamp": sk.ReactionProbe(bench.clamp)}
+    record: dict[str, sk.Probe] = {"tip": bench.bar.probe((0.1, 0.5, 0.5)), "clamp": sk.ReactionProbe(bench.clamp)}
     out = sk.rollout(bench.world, dt=DT, steps=4, record=record)
     recorder = bench.world.recorder(record)
     for _ in range(4):
@@ -263,7 +263,8 @@ def test_wrong_names_quantities_and_settings_are_refused() -> None:
 
 def test_another_thread_finds_the_world_busy() -> None:
     bench = Bench()
-    started, errors = threading.Event(), []
+    started = threading.Event()
+    errors: list[sk.BusyError] = []
 
     def run() -> None:
         started.set()

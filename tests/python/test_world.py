@@ -418,6 +418,20 @@ def test_the_start_again_is_a_reset_to_a_copy() -> None:
     assert world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0)) != later
 
 
+def test_materials_and_meshes_that_a_reset_removes_are_forgotten() -> None:
+    world, ball, _ = ball_world()
+    start = world.copy()
+    steel = sk.Material(density=8000)
+    for _ in range(2):
+        later = world.add_body(sk.Mesh.ball(0.05, 4), steel, position=(1, 0, 1), dynamics="rigid")
+        assert len(later.surface) == len(ball.surface) and len(world._mesh_arrays) == 2
+        world.reset(start)
+        assert not world._mesh_arrays
+    assert len(ball.surface) and len(world._mesh_arrays) == 1
+    ball.remove()
+    assert not world._mesh_arrays
+
+
 def test_a_reset_of_the_bodies_keeps_the_time() -> None:
     world, ball, _ = ball_world()
     first = ball.positions

@@ -18,9 +18,6 @@ from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
 
 Reals: TypeAlias = NDArray[np.float64]
-RolloutObject: TypeAlias = Body | Collider | Attachment | Joint | World | str
-"""An object of the world, the name of a body or a collider, or the world itself."""
-
 
 _CONTROLS: dict[type, dict[str, tuple[int, ...]]] = {
     Collider: {"pose": (6,), "velocity": (6,)},
@@ -47,7 +44,7 @@ class RolloutResult(dict[str, NDArray[Any]]):
 
 def rollout(
     worlds: World | Sequence[World],
-    controls: Mapping[RolloutObject | tuple[RolloutObject, str], ArrayLike] | None = None,
+    controls: Mapping[Any, ArrayLike] | None = None,
     *,
     dt: float,
     steps: int | None = None,
@@ -64,10 +61,13 @@ def rollout(
 
     worlds: one world, or a list of copies of one world, which may differ in materials, poses and so on.
 
-    controls: arrays (B, T, ...), or (T, ...) for all worlds, where B is the number of worlds. A key is an object, or an
-    object and a quantity. Quantities of colliders and attachments: "pose" (default), position and rotation vector at
-    the end of the interval (6,) [m, rad]; "velocity" (6,) [m/s, rad/s]. Of bodies: "force" (3,) [N]; "loads" (n, 3)
-    [N]. Of joints with a motor: "coordinate" or "speed", one number. Of the world: "gravity" (3,) [m/s^2].
+    controls: arrays (B, T, ...), or (T, ...) for all worlds, where B is the number of worlds. A key is an object, the
+    name of a collider or a body, or a pair of an object and a quantity:
+    - colliders and attachments: "pose" (default), position and rotation vector at the end of the interval (6,)
+      [m, rad]; "velocity" (6,) [m/s, rad/s]
+    - bodies: "force" (default), a force at the centre of mass (3,) [N]; "loads", forces on the nodes (n, 3) [N]
+    - joints with a motor: "coordinate" (default) or "speed", one number
+    - the world: "gravity" (3,) [m/s^2]
 
     steps: number T of intervals; needed only without controls.
 

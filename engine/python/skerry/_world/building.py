@@ -115,8 +115,6 @@ class Building:
             name=self._new_name(name, "body", self.bodies),
         )
         if isinstance(mesh, (Sphere, Capsule, Cylinder)):
-            if dynamics == "automatic":
-                given.dynamics = "rigid"
             handle = self._core.add_round_body(mesh, self._material(material), given)
         elif isinstance(mesh, Mesh):
             by_label = {label: self._material(of_label) for label, of_label in (materials or {}).items()}
