@@ -117,7 +117,7 @@ struct RolloutResult {
 /// Each thread of the rollout has one copy of a world at a time; with keep_worlds all copies remain. The results need 8
 /// bytes per value. To continue a rollout, keep the worlds and pass them to the next call. To start again from the same
 /// states, pass the same worlds again. There is no need to keep copies and reset them: World::reset takes as long as a
-/// copy, which is less than a call of advance(0.005) takes in a world of a thousand tetrahedra.
+/// new copy, about 0.4 ms for a world of 4,000 tetrahedra.
 ///
 /// Throws SceneError before any world runs if a setting, a handle or a value is invalid.
 RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);
