@@ -1,5 +1,7 @@
 """Sweeps over the values of a scene."""
 
+import signal
+import threading
 from typing import Any
 
 import numpy as np
@@ -55,3 +57,10 @@ def test_a_scene_without_probes_has_its_end() -> None:
     found = sk.sweep(changed(probes=[]), {"seconds": [0.02, 0.04]})
     assert found["status"].tolist() == ["ok", "ok"]
     assert found["state_hash"][0] != found["state_hash"][1]
+
+
+def test_an_interrupt_ends_a_sweep() -> None:
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.raises(KeyboardInterrupt):
+        # This takes an hour.
+        sk.sweep(changed(settings={"sleep": False}, probes=[]), {"name": list("abcd")}, seconds=1e6, jobs=2)
