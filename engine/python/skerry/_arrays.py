@@ -88,14 +88,16 @@ def rotation(value: RotationLike, name: str) -> Vector:
 
 def real(value: SupportsFloat, name: str) -> float:
     """A number. Texts are refused."""
-    if isinstance(value, str) or not isinstance(value, SupportsFloat):
+    if isinstance(value, (float, int)):
+        return float(value)
+    if not hasattr(value, "__float__"):
         raise TypeError(f"{name}: found {_shortened(value)}, expected a number")
     return float(value)
 
 
 def whole(value: SupportsIndex, name: str) -> int:
     """A whole number from 0 to 4294967295."""
-    if not isinstance(value, SupportsIndex) or not 0 <= operator.index(value) < 2**32:
+    if not hasattr(value, "__index__") or not 0 <= operator.index(value) < 2**32:
         raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number from 0 to 4294967295")
     return operator.index(value)
 
