@@ -2,6 +2,7 @@
 #include "skerry/problem.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -90,10 +91,15 @@ void watch_problems(WorldObject& object, const nb::object& take, std::uint64_t e
         object.world.watch_contact_problems({});
         return;
     }
+    // The world copies its function without the GIL, and may release the last copy without it.
+    const std::shared_ptr<nb::object> shared(new nb::object(take), [](nb::object* last) {
+        nb::gil_scoped_acquire held;
+        delete last;
+    });
     object.world.watch_contact_problems(
-        [take](const StepProblem& step) {
+        [shared](const StepProblem& step) {
             nb::gil_scoped_acquire held;
-            take(values_of(step));
+            (*shared)(values_of(step));
         },
         every);
 }
