@@ -84,7 +84,7 @@ nb::dict roll_out(const std::vector<WorldObject*>& objects, std::size_t count, s
 }  // namespace
 
 void bind_rollout(nb::module_& module) {
-    nb::class_<ControlObject>(module, "RolloutControl");
+    const nb::class_<ControlObject> type(module, "RolloutControl");
     bind_control_of<PoseControl, Moved>(module, "pose_control");
     bind_control_of<VelocityControl, Moved>(module, "velocity_control");
     bind_control_of<MotorSpeedControl, JointHandle>(module, "motor_speed_control");

@@ -149,7 +149,7 @@ def test_a_reset_body_has_its_first_shape_at_the_given_pose() -> None:
 def test_a_body_can_become_rigid_and_explicit_again() -> None:
     world, ball, _ = ball_world()
     ball.set_dynamics("rigid")
-    assert ball.dynamics == "rigid" and "rigid" in repr(ball)
+    assert str(ball.dynamics) == "rigid" and "rigid" in repr(ball)
     world.advance(0.01)
     ball.set_dynamics("explicit")
     assert ball.dynamics == "explicit"

@@ -96,7 +96,7 @@ def test_a_body_falls_through_a_floor_that_it_may_not_touch() -> None:
         assert not world.may_collide(ball, floor)
         world.advance(0.2)
         assert ball.center_of_mass[2] < 0
-    with pytest.raises(TypeError, match="two colliders"):
+    with pytest.raises(TypeError, match="one of two objects: found <skerry.Collider .floor. Plane>, expected a Body"):
         world.may_collide(floor, floor)
 
 

@@ -1,7 +1,9 @@
 """Errors: their classes, parts, notes and copies."""
 
 import pickle
+import re
 import traceback
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -37,6 +39,47 @@ def test_a_value_of_the_wrong_type_names_object_and_field() -> None:
     with pytest.raises(sk.SceneError, match="BodySettings: self_contact: found 'yes', expected True or False"):
         world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, self_contact="yes")  # type: ignore[arg-type]
     assert len(world.bodies) == 0
+
+
+WRONG: dict[str, Callable[[sk.World, sk.Body, sk.Collider], object]] = {
+    "dt: found '1', expected a number": lambda world, ball, floor: world.advance("1"),  # type: ignore[arg-type]
+    "settings: found 3, expected a Settings": lambda world, ball, floor: sk.World(3),  # type: ignore[arg-type]
+    "saved: found 3, expected a World": lambda world, ball, floor: world.reset(3),  # type: ignore[arg-type]
+    "look: found 3, expected a function": lambda world, ball, floor: world.watch_steps(3),  # type: ignore[arg-type]
+    "first: found <skerry.Collider 'floor' Plane>, expected a Body": lambda world, ball, floor: world.add_joint(
+        "ball",
+        floor,  # type: ignore[arg-type]
+    ),
+    "removed: found 'ball', expected a Body or a Collider or an Attachment": lambda world, ball, floor: world.remove(
+        "ball"  # type: ignore[arg-type]
+    ),
+    "motion: found 1, expected a Motion": lambda world, ball, floor: ball.attach(
+        [0],
+        motion=1,  # type: ignore[arg-type]
+    ),
+    "pose: found 1, expected a Pose": lambda world, ball, floor: ball.reset(1),  # type: ignore[arg-type]
+    "dynamics: found 1, expected a str": lambda world, ball, floor: ball.set_dynamics(1),  # type: ignore[arg-type]
+    "mask: found -1, expected a whole number from 0": lambda world, ball, floor: ball.set_collision_groups(mask=-1),
+    "on: found 'off', expected a bool": lambda world, ball, floor: world.set_collision(
+        ball,
+        floor,
+        "off",  # type: ignore[arg-type]
+    ),
+    "label: found numbers of the type <U1": lambda world, ball, floor: world.add_body(
+        sk.Mesh.ball(0.05, 4),
+        RUBBER,
+        materials={"a": RUBBER},  # type: ignore[dict-item]
+    ),
+}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_an_argument_of_another_class_is_refused_by_name(message: str) -> None:
+    world, ball, floor = ball_world()
+    state = world.state_hash
+    with pytest.raises(TypeError, match=re.escape(message)):
+        WRONG[message](world, ball, floor)
+    assert world.state_hash == state and len(world.bodies) == 1
 
 
 def test_a_scene_error_can_be_pickled() -> None:

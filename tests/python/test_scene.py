@@ -89,6 +89,23 @@ def test_a_run_makes_the_calls_that_the_scene_asks_for() -> None:
     assert plain.world.state_hash == twin.state_hash
 
 
+def test_the_outputs_of_a_run_that_fails_end_there(tmp_path: Path) -> None:
+    scene = sk.load_scene(SCENE)
+
+    def look(report: sk.StepReport) -> None:
+        if scene.world.time > 0.055:
+            raise ZeroDivisionError
+
+    scene.world.watch_steps(look)
+    with pytest.raises(ZeroDivisionError):
+        scene.run(csv=tmp_path / "a.csv", page=tmp_path / "a.html", vtk=tmp_path / "frames")
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == 7
+    assert (tmp_path / "a.html").stat().st_size > 100_000
+    assert (tmp_path / "frames" / "drop.pvd").is_file()
+    scene.world.watch_steps(None)
+    scene.world.advance(0.01)  # no output is left to write
+
+
 def test_a_run_can_be_continued_and_ends_where_it_is_told() -> None:
     whole, parts = sk.load_scene(SCENE), sk.load_scene(SCENE)
     whole.run()

@@ -1,5 +1,7 @@
 """Sweeps over the values of a scene."""
 
+import signal
+import threading
 from typing import Any
 
 import numpy as np
@@ -49,9 +51,18 @@ def test_a_sweep_without_a_valid_case_raises_the_first_error() -> None:
 def test_a_single_value_is_not_a_list_of_values() -> None:
     with pytest.raises(TypeError, match="seconds: found 1.0, expected a list of values"):
         sk.sweep(SCENE, {"seconds": 1.0})  # type: ignore[dict-item]
+    with pytest.raises(TypeError, match=r"grid\[0\]: found 'seconds', expected the values of a case by place"):
+        sk.sweep(SCENE, ["seconds"])  # type: ignore[list-item]
 
 
 def test_a_scene_without_probes_has_its_end() -> None:
     found = sk.sweep(changed(probes=[]), {"seconds": [0.02, 0.04]})
     assert found["status"].tolist() == ["ok", "ok"]
     assert found["state_hash"][0] != found["state_hash"][1]
+
+
+def test_an_interrupt_ends_a_sweep() -> None:
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.raises(KeyboardInterrupt):
+        # This takes an hour.
+        sk.sweep(changed(settings={"sleep": False}, probes=[]), {"name": list("abcd")}, seconds=1e6, jobs=2)

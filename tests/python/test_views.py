@@ -1,6 +1,7 @@
 """Arrays without copies: body.views()."""
 
 import gc
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ def test_changes_of_other_data_leave_the_memory_in_place() -> None:
     rod = world.add_body(mesh, material, position=(1, 0, 1), dynamics="rigid", name="rod")
     held = ball.attach(ball.select(above=0.09))
     with ball.views() as (x, v), rod.views() as (y, w):
-        changes = [
+        changes: list[Callable[[], object]] = [
             lambda: material.change(density=2000, young_modulus=1e6),
             lambda: world.add_material(density=3),
             lambda: world.add_joint("hinge", rod, point=(1, 0, 1)),

@@ -73,7 +73,8 @@ def test_bodies_are_found_by_name_number_and_body() -> None:
     assert world.bodies["ball"] == world.bodies[0] == world.bodies[-2] == world.bodies[ball] == ball
     assert list(world.bodies.values()) == [ball, other]
     assert list(world.bodies.items()) == [("ball", ball), ("other", other)]
-    assert len(world.bodies) == 2 and "other" in world.bodies and other in world.bodies and 2 not in world.bodies
+    assert len(world.bodies) == 2 and "other" in world.bodies and other in world.bodies
+    assert 1 in world.bodies and 2 not in world.bodies  # type: ignore[comparison-overlap]
     assert world.colliders["floor"] == floor and floor not in world.bodies
     with pytest.raises(KeyError, match="no bodies have the name 'bal'; the names are 'ball', 'other'"):
         world.bodies["bal"]
@@ -183,7 +184,8 @@ def test_every_object_is_found_in_a_copy() -> None:
     world, ball, floor = ball_world()
     rod = world.add_body(sk.Sphere(radius=0.1), RUBBER, position=(1, 0, 1), name="rod")
     steel = world.add_material(density=8000)
-    objects = [ball, rod, floor, ball.attach([0]), world.add_joint("hinge", rod), steel]
+    held = ball.attach([0])
+    objects = [ball, rod, floor, held, world.add_joint("hinge", rod), steel]
     other = pickle.loads(pickle.dumps(world))
     for each in objects:
         twin = each.in_copy(other)
@@ -191,7 +193,7 @@ def test_every_object_is_found_in_a_copy() -> None:
         pickled = pickle.loads(pickle.dumps(each))
         assert pickled.world is not world and pickled.alive and copy.copy(each) == each
         assert repr(twin) == repr(each) == repr(pickled)
-    objects[3].in_copy(other).set_velocity((1, 0, 0))
+    held.in_copy(other).set_velocity((1, 0, 0))
     steel.in_copy(other).change(density=7000)
     assert steel.settings.density == 8000
     rod.remove()
@@ -310,6 +312,14 @@ def test_the_text_of_a_world_counts_its_objects() -> None:
     assert "<td>ball</td><td>explicit</td>" in page and "&lt;b&gt;" in page and "<td><b>" not in page
 
 
+def test_the_table_of_a_large_world_ends_early() -> None:
+    world = sk.World(threads=1)
+    for number in range(60):
+        world.add_collider(sk.Sphere(radius=0.1), position=(number, 0, 0))
+    page = world._repr_html_()
+    assert "collider 49" in page and "collider 50" not in page and "and 10 more" in page
+
+
 def test_a_trace_and_the_graph_of_the_step_can_be_written(tmp_path: pathlib.Path) -> None:
     world, _, _ = ball_world()
     with world.trace(tmp_path / "trace.json"):
@@ -410,12 +420,30 @@ def test_the_start_again_is_a_reset_to_a_copy() -> None:
     world, ball, _ = ball_world()
     start = world.copy()
     world.advance(0.08)
-    later = world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0))
+    steel = world.add_material(density=8000)
+    later = world.add_body(sk.Sphere(radius=0.05), steel, position=(1, 0, 0))
     world.reset(start)
     assert world.state_hash == start.state_hash and world.time == 0
-    assert ball.alive and not later.alive
+    assert ball.alive and not later.alive and not steel.alive
+    assert repr(steel) == "<skerry.MaterialHandle: material, removed>"
+    with pytest.raises(sk.SceneError, match="^material was removed$"):
+        steel.change(density=1)
     assert len(ball.surface) == len(start.bodies[ball].surface)
     assert world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0)) != later
+
+
+def test_materials_and_meshes_that_a_reset_removes_are_forgotten() -> None:
+    world, ball, _ = ball_world()
+    start = world.copy()
+    steel = sk.Material(density=8000)
+    for _ in range(2):
+        later = world.add_body(sk.Mesh.ball(0.05, 4), steel, position=(1, 0, 1), dynamics="rigid")
+        assert len(later.surface) == len(ball.surface) and len(world._mesh_arrays) == 2
+        world.reset(start)
+        assert not world._mesh_arrays
+    assert len(ball.surface) and len(world._mesh_arrays) == 1
+    ball.remove()
+    assert not world._mesh_arrays
 
 
 def test_a_reset_of_the_bodies_keeps_the_time() -> None:

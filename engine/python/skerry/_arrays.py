@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol, SupportsFloat, SupportsIndex, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+Checked = TypeVar("Checked")
 
 Vector: TypeAlias = tuple[float, float, float]
 """A point or a vector as the dataclasses of the package hold it."""
@@ -81,6 +84,30 @@ def rotation(value: RotationLike, name: str) -> Vector:
     """Rotation as axis times angle [rad]."""
     as_rotvec = getattr(value, "as_rotvec", None)
     return vector(value if as_rotvec is None else as_rotvec(), name)  # type: ignore[arg-type]
+
+
+def real(value: SupportsFloat, name: str) -> float:
+    """A number. Texts are refused."""
+    if isinstance(value, (float, int)):
+        return float(value)
+    if not hasattr(value, "__float__"):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a number")
+    return float(value)
+
+
+def whole(value: SupportsIndex, name: str) -> int:
+    """A whole number from 0 to 4294967295."""
+    if not hasattr(value, "__index__") or not 0 <= operator.index(value) < 2**32:
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number from 0 to 4294967295")
+    return operator.index(value)
+
+
+def checked(value: Checked, name: str, *kinds: type) -> Checked:
+    """The same object. Raises TypeError unless its class is one of the given ones."""
+    if not isinstance(value, kinds):
+        expected = " or ".join(f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}" for kind in kinds)
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
+    return value
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

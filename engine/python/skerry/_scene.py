@@ -96,7 +96,8 @@ class Scene:
         if not (end >= 0 and math.isfinite(end)):
             raise ValueError(f"seconds: found {end}, expected a time >= 0 (s)")
         with ExitStack() as outputs:
-            film = outputs.enter_context(world.record(title=self.name, every=self.frame_step)) if page else None
+            if page is not None:
+                outputs.callback(world.record(title=self.name, every=self.frame_step).save, page)
             if vtk is not None:
                 name = os.path.basename(os.path.normpath(vtk))
                 outputs.enter_context(
@@ -108,8 +109,6 @@ class Scene:
             outputs.enter_context(recorder)
             for duration in self.calls(end):
                 world.run(duration, dt=duration, progress=progress)
-        if film is not None and page is not None:
-            film.save(page)
         return recorder
 
     def calls(self, end: float) -> Iterator[float]:

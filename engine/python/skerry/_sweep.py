@@ -6,7 +6,7 @@ import itertools
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -64,6 +64,8 @@ def sweep(
     with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
         futures = [pool.submit(_run_case, scene, case, seconds, folder, stop) for case in cases]
         try:
+            while wait(futures, timeout=0.1).not_done:
+                pass  # Python raises KeyboardInterrupt here
             results = [future.result() for future in futures]
         except BaseException:
             stop.set()
@@ -76,6 +78,9 @@ def sweep(
 
 def _cases(grid: Mapping[str, Sequence[Json]] | Sequence[Case]) -> list[Case]:
     if not isinstance(grid, Mapping):
+        for number, case in enumerate(grid):
+            if not isinstance(case, Mapping):
+                raise TypeError(f"grid[{number}]: found {case!r}, expected the values of a case by place")
         return list(grid)
     for place, values in grid.items():
         if isinstance(values, str) or not hasattr(values, "__len__"):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import VectorLike, index_array, real_array, require_shape
+from .._arrays import VectorLike, checked, index_array, real_array, require_shape
 from .._recorder import PointProbe, point_probe
 from .._settings import Dynamics, ElementKind, Motion, Pose
 from .objects import MovedObject, TouchingObject
@@ -212,7 +212,7 @@ class Body(TouchingObject):
         body. BufferError: arrays of views() are in use."""
         chosen = self._node_numbers(nodes)
         point = real_array((0.0, 0.0, 0.0) if pivot is None else pivot, "pivot", (3,))
-        handle = self._core.attach(self._handle, chosen, motion or Motion(), point)
+        handle = self._core.attach(self._handle, chosen, checked(motion or Motion(), "motion", Motion), point)
         return Attachment(self._world, handle, self, len(chosen))
 
     def set_loads(self, loads: ArrayLike) -> None:
@@ -229,7 +229,7 @@ class Body(TouchingObject):
         if pose is None:
             self._core.reset(self._handle)
         else:
-            self._core.reset(self._handle, pose)
+            self._core.reset(self._handle, checked(pose, "pose", Pose))
 
     def set_dynamics(self, dynamics: Literal["explicit", "implicit", "rigid"]) -> None:
         """Changes the kind of motion. Name, settings, shape, momentum and angular momentum stay; the body counts as
@@ -237,7 +237,7 @@ class Body(TouchingObject):
 
         SceneError: the body is attached, has a joint, or is a sphere, capsule or cylinder; or the kind does not fit its
         self-contact, losses or inverted tetrahedra. BufferError: arrays of views() are in use."""
-        self._core.set_dynamics(self._handle, dynamics)
+        self._core.set_dynamics(self._handle, checked(dynamics, "dynamics", str))
 
     def wake(self) -> None:
         """Wakes the body if it is asleep."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from .._arrays import RotationLike, VectorLike, read_only, vector
+from .._arrays import RotationLike, VectorLike, checked, index_array, read_only, vector
 from .._arrays import rotation as rotation_vector
 from .._errors import SceneError
 from .._mesh import Mesh
@@ -23,7 +23,7 @@ from .._settings import (
     Shape,
     Sphere,
 )
-from .body import Body, Indices
+from .body import Attachment, Body, Indices
 from .changes import MaterialChanges
 from .collider import Collider
 from .joint import Joint, joint_label
@@ -68,9 +68,8 @@ class Building:
     def add_material(self, material: Material | None = None, /, **changes: Unpack[MaterialChanges]) -> MaterialHandle:
         """Adds a material: add_material(Material(density=900)) or add_material(density=900). SceneError: a value is out
         of range."""
-        return MaterialHandle(
-            self._self, self._core.add_material(dataclasses.replace(material or Material(), **changes))
-        )
+        given = checked(material or Material(), "material", Material)
+        return MaterialHandle(self._self, self._core.add_material(dataclasses.replace(given, **changes)))
 
     def add_body(
         self,
@@ -115,11 +114,12 @@ class Building:
             name=self._new_name(name, "body", self.bodies),
         )
         if isinstance(mesh, (Sphere, Capsule, Cylinder)):
-            if dynamics == "automatic":
-                given.dynamics = "rigid"
             handle = self._core.add_round_body(mesh, self._material(material), given)
         elif isinstance(mesh, Mesh):
-            by_label = {label: self._material(of_label) for label, of_label in (materials or {}).items()}
+            given_materials = checked(materials or {}, "materials", Mapping)
+            by_label = {
+                index_array(label, "label", ()).item(): self._material(item) for label, item in given_materials.items()
+            }
             handle = self._core.add_body(mesh._core, self._material(material), by_label, given)
         else:
             raise TypeError(f"mesh: found {mesh!r}, expected a Mesh, a Sphere, a Capsule or a Cylinder")
@@ -193,12 +193,15 @@ class Building:
             motor=motor,
             bodies_touch=bodies_touch,
         )
+        checked(first, "first", Body)
+        if second is not None:
+            checked(second, "second", Body)
         handle = self._core.add_joint(first._handle, None if second is None else second._handle, given)
         return self._joint(handle)
 
     def remove(self, removed: PosedObject | Joint) -> None:
         """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = removed._handle
+        handle = checked(removed, "removed", Body, Collider, Attachment, Joint)._handle
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .._arrays import Vector
+from .._arrays import Vector, checked, real
 from .._settings import JointKind, Motor
 from .objects import WorldObject
 
@@ -70,11 +70,12 @@ class Joint(WorldObject):
 
     def set_motor(self, motor: Motor | None) -> None:
         """Sets the motor of a hinge or a slider; None removes it."""
-        self._core.set_motor(self._handle, motor)
+        self._core.set_motor(self._handle, None if motor is None else checked(motor, "motor", Motor))
 
     def set_limits(self, *, lower: float | None = None, upper: float | None = None) -> None:
         """Sets the limits of the coordinate; None stands for no limit [rad or m]."""
-        self._core.set_limits(self._handle, lower, upper)
+        limits = (None if value is None else real(value, name) for value, name in ((lower, "lower"), (upper, "upper")))
+        self._core.set_limits(self._handle, *limits)
 
     def remove(self) -> None:
         """Removes the joint."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, Any, Unpack
 
+from .._arrays import checked
 from .._errors import SceneError
 from .._settings import Material
 from .changes import MaterialChanges
@@ -40,7 +41,7 @@ class MaterialHandle(WorldObject):
         """Replaces the material, or some of its fields: handle.change(density=900). Bodies keep shapes and velocities,
         and get new masses and stable steps. SceneError: the model would change, or a body has no stable step with the
         new values. Nothing is changed then."""
-        changed = dataclasses.replace(material or self.settings, **changes)
+        changed = dataclasses.replace(checked(material or self.settings, "material", Material), **changes)
         self._core.set_material(self._handle, changed)
         self._world._forget_material(self._given_handle)
 

@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
 from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack
 
-from .._arrays import VectorLike, real_array
+from .._arrays import VectorLike, checked, real, real_array, whole
 from .._errors import BusyError, SceneError
 from .._settings import Pose, Surface
 from .changes import SurfaceChanges
@@ -100,7 +100,7 @@ class PosedObject(WorldObject):
 
     @pose.setter
     def pose(self, pose: Pose) -> None:
-        self._core.set_pose(self._handle, _checked_pose(pose))
+        self._core.set_pose(self._handle, checked(pose, "pose", Pose))
 
     def set_velocity(self, velocity: VectorLike, angular_velocity: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Sets the velocities, each of shape (3,) [m/s, rad/s]. A collider or an attachment keeps them until they are
@@ -124,7 +124,7 @@ class MovedObject(PosedObject):
 
     def move_to(self, pose: Pose, seconds: float) -> None:
         """Moves to a pose at constant velocities within the given time, > 0 [s], and then stops."""
-        self._core.move_to(self._handle, _checked_pose(pose), seconds)
+        self._core.move_to(self._handle, checked(pose, "pose", Pose), real(seconds, "seconds"))
 
 
 class TouchingObject(PosedObject):
@@ -144,21 +144,16 @@ class TouchingObject(PosedObject):
     def set_surface(self, surface: Surface | None = None, /, **values: Unpack[SurfaceChanges]) -> None:
         """Sets friction and restitution: set_surface(friction=0.3). Values that are not given are those of the material
         of a body, and for a collider those of the body that touches it."""
-        self._core.set_surface_properties(self._handle, dataclasses.replace(surface or Surface(), **values))
+        given = checked(surface or Surface(), "surface", Surface)
+        self._core.set_surface_properties(self._handle, dataclasses.replace(given, **values))
 
     def set_collision_groups(self, *, group: int = 1, mask: int = 0xFFFFFFFF) -> None:
         """Sets the collision groups of the object, and the groups that it can touch, both as bits. Two objects can
         touch only if each of the two masks contains a group of the other object."""
-        self._core.set_collision_groups(self._handle, group, mask)
+        self._core.set_collision_groups(self._handle, whole(group, "group"), whole(mask, "mask"))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (self._world, self._given_handle, self._name))
-
-
-def _checked_pose(pose: Pose) -> Pose:
-    if not isinstance(pose, Pose):
-        raise TypeError(f"pose: found {pose!r}, expected a Pose")
-    return pose
 
 
 Item = TypeVar("Item", bound=TouchingObject)

@@ -13,8 +13,10 @@ from html import escape
 from types import SimpleNamespace
 from typing import Any, Unpack
 
+import numpy as np
+
 from .. import _core
-from .._arrays import VectorLike, real_array
+from .._arrays import VectorLike, checked, real, real_array
 from .._errors import BusyError, Doubt, SceneError, StepError
 from .._recorder import WorldOutput
 from .._results import WorldResults
@@ -52,7 +54,8 @@ class World(Building, WorldResults, WorldOutput):
     __slots__ = ()
 
     def __init__(self, settings: Settings | None = None, /, **changes: Unpack[SettingsChanges]) -> None:
-        self._hold(_core.World(dataclasses.replace(settings or Settings(), **changes)))
+        given = checked(settings or Settings(), "settings", Settings)
+        self._hold(_core.World(dataclasses.replace(given, **changes)))
 
     @classmethod
     def _of(cls, core: Any) -> World:
@@ -75,7 +78,9 @@ class World(Building, WorldResults, WorldOutput):
     @staticmethod
     def from_bytes(data: bytes, *, threads: int | None = None, backend: Backend | None = None) -> World:
         """Makes a world of the bytes of to_bytes()."""
-        return World._of(_core.World.from_bytes(data, LoadSettings(threads=threads, backend=backend)))
+        return World._of(
+            _core.World.from_bytes(checked(data, "data", bytes), LoadSettings(threads=threads, backend=backend))
+        )
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Saves the world. An existing file is replaced completely or not at all."""
@@ -117,9 +122,10 @@ class World(Building, WorldResults, WorldOutput):
 
     def try_advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
         """Advances like advance(), but returns the report of a step that could not be completed."""
-        values = self._core.advance(dt, self._told(check), self._told(self._watch))
-        for follow in tuple(self._followers):
-            follow()
+        values = self._core.advance(real(dt, "dt"), self._told(check), self._told(self._watch))
+        if self._followers:
+            for follow in tuple(self._followers):
+                follow()
         report = step_report(self, values)
         if report.warning or report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
             self._warn_of(report)
@@ -137,6 +143,7 @@ class World(Building, WorldResults, WorldOutput):
 
         each: called with the world after each call; if it returns False, the run ends. progress: writes the time and
         the share of the run to the standard error output. At the end, doubts about the results become warnings."""
+        seconds, dt = real(seconds, "seconds"), real(dt, "dt")
         if not (seconds >= 0 and math.isfinite(seconds)):
             raise SceneError(f"run: seconds: found {seconds}, expected a time >= 0 (s)", object="run", field="seconds")
         if not (dt > 0 and math.isfinite(dt)):
@@ -156,6 +163,8 @@ class World(Building, WorldResults, WorldOutput):
         `look` may read the world, but must not change it. An exception ends advance() between two steps and comes out
         of it. None ends the calls."""
         self._core.require_between_steps()
+        if look is not None and not callable(look):
+            raise TypeError(f"look: found {look!r}, expected a function")
         self._watch = look
 
     @contextmanager
@@ -217,7 +226,7 @@ class World(Building, WorldResults, WorldOutput):
     def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
         """Switches the collision of two bodies, or of a body and a collider, on or off. For a body with itself it sets
         its self-contact."""
-        self._core.set_collision(*_body_first(first, second), on)
+        self._core.set_collision(*_body_first(first, second), bool(checked(on, "on", bool, np.bool_)))
 
     def may_collide(self, first: Body | Collider, second: Body | Collider) -> bool:
         """True if the collision groups and set_collision() let the two objects collide."""
@@ -230,7 +239,7 @@ class World(Building, WorldResults, WorldOutput):
         if saved is None:
             self._core.reset()
             return
-        self._core.reset_to(saved._core)
+        self._core.reset_to(checked(saved, "saved", World)._core)
         self._mesh_arrays.clear()
         self._materials.clear()
 
@@ -285,9 +294,7 @@ def _body_first(first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
     """Handles of a body and of a body or a collider, in this order."""
     if isinstance(first, Collider):
         first, second = second, first
-    if not isinstance(first, Body):
-        raise TypeError("set_collision: found two colliders, expected at least one body")
-    return first._handle, second._handle
+    return checked(first, "one of two objects", Body)._handle, checked(second, "second", Body, Collider)._handle
 
 
 def _frames_of_package() -> int:
