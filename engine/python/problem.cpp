@@ -2,6 +2,7 @@
 #include "skerry/problem.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -90,10 +91,16 @@ void watch_problems(WorldObject& object, const nb::object& take, std::uint64_t e
         object.world.watch_contact_problems({});
         return;
     }
+    // The world copies and destroys its function without the GIL. A copy of a shared_ptr leaves the Python object
+    // alone.
+    const std::shared_ptr<nb::object> shared(new nb::object(take), [](nb::object* last) {
+        nb::gil_scoped_acquire held;
+        delete last;
+    });
     object.world.watch_contact_problems(
-        [take](const StepProblem& step) {
+        [shared](const StepProblem& step) {
             nb::gil_scoped_acquire held;
-            take(values_of(step));
+            (*shared)(values_of(step));
         },
         every);
 }
@@ -112,11 +119,12 @@ void bind_problem(nb::module_& module) {
         .def("mu", [](const ContactProblem& problem) { return flat_array(problem.mu); });
     module.attr("has_hdf5") = SKERRY_HAS_HDF5 != 0;
     module.def("new_problem", &new_problem);
-    module.def("read_problem", [](const std::string& file) { return without_gil([&] { return read_problem(file); }); });
+    // The two functions for files keep the GIL, because HDF5 is not built for several threads.
+    module.def("read_problem", [](const std::string& file) { return read_problem(file); });
     module.def(
         "write_problem",
         [](const ContactProblem& problem, const std::string& file, const std::optional<Vectors>& reaction) {
-            without_gil([&] { write_problem(problem, file, reaction ? span_of(*reaction) : std::span<const Vec3>()); });
+            write_problem(problem, file, reaction ? span_of(*reaction) : std::span<const Vec3>());
         },
         nb::arg(), nb::arg(), nb::arg().none());
     module.def("part_of", [](const ContactProblem& problem, const Indices& contacts) {

@@ -138,6 +138,7 @@ void for_each_value(const StepReport& report, auto&& visit) {
     visit("crossed", nb::cast(report.crossed));
 }
 
+static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "every counter must be in add_counters");
 void add_counters(const RunCounters& counters, nb::dict& values) {
     values["steps"] = counters.steps;
     values["inline_steps"] = counters.inline_steps;
