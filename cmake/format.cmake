@@ -37,7 +37,11 @@ if(SKERRY_PYTHON AND SKERRY_CLANG_FORMAT)
     cmake_path(GET Python_EXECUTABLE PARENT_PATH python_programs)
     find_program(SKERRY_RUFF ruff HINTS ${python_programs})
     mark_as_advanced(SKERRY_RUFF)
-    if(SKERRY_RUFF)
+    if(NOT SKERRY_RUFF)
+        set(absent "ruff was not found: install it beside ${Python_EXECUTABLE}")
+        add_custom_command(TARGET format_check POST_BUILD VERBATIM
+            COMMAND ${CMAKE_COMMAND} -E echo ${absent} COMMAND ${CMAKE_COMMAND} -E false)
+    else()
         set(folders engine/python examples/python tests/python)
         add_custom_command(TARGET format POST_BUILD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM
             COMMAND ${SKERRY_RUFF} check --quiet --fix-only ${folders} COMMAND ${SKERRY_RUFF} format ${folders})

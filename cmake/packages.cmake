@@ -62,3 +62,13 @@ if(skerry_missing)
         "Install them, with apt-get or another package manager, or name their folder in CMAKE_PREFIX_PATH. "
         "SKERRY_HDF5=OFF, SKERRY_SCENES=OFF, SKERRY_PAGES=OFF and SKERRY_BACKENDS=threads need fewer of them.\n")
 endif()
+if(SKERRY_PYTHON)
+    find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
+    execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir
+        OUTPUT_VARIABLE nanobind_DIR OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE missing)
+    if(missing)
+        message(FATAL_ERROR "SKERRY_PYTHON is ON: ${Python_EXECUTABLE} has no package nanobind; expected one "
+                            "(pip install nanobind), or Python_EXECUTABLE naming a Python that has it")
+    endif()
+    find_package(nanobind 3 CONFIG REQUIRED)
+endif()

@@ -1,6 +1,8 @@
 #include "engine/problem/check_arrays.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -39,6 +41,20 @@ void check_arrays(const ContactProblem& problem) {
     for (const Index column : problem.column)
         expect(column >= 0 && static_cast<std::size_t>(column) < count, "column", std::to_string(column),
                "the index of a contact, 0 to " + std::to_string(static_cast<Index>(count) - 1));
+    const auto at = [](std::size_t number) { return " at entry " + std::to_string(number); };
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto begin = problem.column.begin() + problem.row_offset[i];
+        const auto end = problem.column.begin() + problem.row_offset[i + 1];
+        expect(std::adjacent_find(begin, end, std::greater_equal<>()) == end, "column",
+               "columns that do not ascend in row " + std::to_string(i), "ascending columns in each row");
+        expect(std::binary_search(begin, end, static_cast<Index>(i)), "column",
+               "no diagonal block in row " + std::to_string(i), "a diagonal block in each row");
+        expect(problem.q[i].allFinite(), "q", "a value that is not finite" + at(i), "finite velocities (m/s)");
+        expect(problem.mu[i] >= 0 && std::isfinite(problem.mu[i]), "mu", std::to_string(problem.mu[i]) + at(i),
+               "friction coefficients >= 0");
+    }
+    for (std::size_t k = 0; k < blocks; ++k)
+        expect(problem.block[k].allFinite(), "block", "a value that is not finite" + at(k), "finite blocks (1/kg)");
 }
 
 }  // namespace skerry

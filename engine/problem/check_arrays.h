@@ -4,7 +4,7 @@
 
 namespace skerry {
 
-/// Throws SceneError if the arrays of the problem have inconsistent sizes or indices.
+/// Throws SceneError if the arrays of the problem have inconsistent sizes or indices, or values out of range.
 void check_arrays(const ContactProblem& problem);
 
 }  // namespace skerry

@@ -91,8 +91,7 @@ void watch_problems(WorldObject& object, const nb::object& take, std::uint64_t e
         object.world.watch_contact_problems({});
         return;
     }
-    // The world copies and destroys its function without the GIL. A copy of a shared_ptr leaves the Python object
-    // alone.
+    // The world copies its function without the GIL, and may release the last copy without it.
     const std::shared_ptr<nb::object> shared(new nb::object(take), [](nb::object* last) {
         nb::gil_scoped_acquire held;
         delete last;

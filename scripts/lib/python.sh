@@ -14,7 +14,7 @@ make_venv() {
 install_python() {
     local folder=$1
     shift
-    "$folder/bin/python" -m pip install --quiet --disable-pip-version-check "$@" || fail \
+    "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --retries 10 --timeout 60 "$@" || fail \
         "pip could not install: $*" $'\n'"It needs PyPI, or a folder of wheels in PIP_FIND_LINKS with PIP_NO_INDEX=1." \
         $'\n'"SKERRY_PYTHON=OFF in the environment leaves out the Python package and its tests."
 }

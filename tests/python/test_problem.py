@@ -127,6 +127,18 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
         sk.Problem([0, 1, 2, 3], [0, 1, 2], np.zeros((3, 3, 3)), Q[:1], [0.5])
     with pytest.raises(sk.SceneError, match="column: found 3, expected the index of a contact, 0 to 2"):
         sk.Problem([0, 1, 2, 3], [0, 1, 3], np.zeros((3, 3, 3)), Q, MU)
+    with pytest.raises(sk.SceneError, match="column: found no diagonal block in row 1, expected a diagonal block"):
+        sk.Problem([0, 1, 1], [0], np.zeros((1, 3, 3)), Q[:2], 0.5)
+    with pytest.raises(sk.SceneError, match="column: found columns that do not ascend in row 0"):
+        sk.Problem([0, 2, 3], [1, 0, 1], np.zeros((3, 3, 3)), Q[:2], 0.5)
+    with pytest.raises(sk.SceneError, match="q: found a value that is not finite at entry 0"):
+        sk.Problem.from_dense(np.eye(3), [[np.nan, 0, 0]], 0.5)
+    with pytest.raises(sk.SceneError, match="block: found a value that is not finite at entry 0"):
+        sk.Problem.from_dense(np.full((3, 3), np.inf), [[-1, 0, 0]], 0.5)
+    with pytest.raises(sk.SceneError, match="mu: found -0.5.* at entry 0, expected friction coefficients >= 0"):
+        sk.Problem.from_dense(np.eye(3), [[-1, 0, 0]], -0.5)
+    with pytest.raises(TypeError, match="problem: found 7, expected a Problem"):
+        sk.solve(7)  # type: ignore[arg-type]
     problem = sk.Problem.from_dense(W, Q, MU)
     with pytest.raises(TypeError, match=r"reaction: found an array of the shape \(2, 3\), expected \(3, 3\)"):
         sk.problem_error(problem, np.zeros((2, 3)))
@@ -175,6 +187,8 @@ def test_without_h5py_the_error_says_what_to_install(monkeypatch: pytest.MonkeyP
 
 
 def test_a_file_that_is_no_problem_is_refused_by_name(tmp_path: Path) -> None:
+    if not _core.has_hdf5:
+        pytest.importorskip("h5py")
     (tmp_path / "a.hdf5").write_text("none")
     with pytest.raises((sk.SceneError, OSError), match=r"a\.hdf5|signature"):
         sk.Problem.read(tmp_path / "a.hdf5")

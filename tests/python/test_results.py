@@ -209,6 +209,8 @@ def test_arguments_of_queries_are_checked() -> None:
     assert repr(world.forces) == f"<skerry.Forces of {world!r}>"
     with pytest.raises(TypeError, match=r"points: found an array of the shape \(3,\), expected \(n, 3\)"):
         world.nearest_points((0, 0, 1))
+    with pytest.raises(TypeError, match="but: found 7, expected an object of a world"):
+        world.cast_ray((0, 0, 1), (0, 0, -1), but=[7])  # type: ignore[list-item]
     with pytest.raises(sk.SceneError, match="direction"):
         world.cast_ray((0, 0, 1), (0, 0, 0))
     with pytest.raises(sk.SceneError, match="max_distance"):

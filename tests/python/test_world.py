@@ -312,6 +312,14 @@ def test_the_text_of_a_world_counts_its_objects() -> None:
     assert "<td>ball</td><td>explicit</td>" in page and "&lt;b&gt;" in page and "<td><b>" not in page
 
 
+def test_the_table_of_a_large_world_ends_early() -> None:
+    world = sk.World(threads=1)
+    for number in range(60):
+        world.add_collider(sk.Sphere(radius=0.1), position=(number, 0, 0))
+    page = world._repr_html_()
+    assert "collider 49" in page and "collider 50" not in page and "and 10 more" in page
+
+
 def test_a_trace_and_the_graph_of_the_step_can_be_written(tmp_path: pathlib.Path) -> None:
     world, _, _ = ball_world()
     with world.trace(tmp_path / "trace.json"):
@@ -412,10 +420,14 @@ def test_the_start_again_is_a_reset_to_a_copy() -> None:
     world, ball, _ = ball_world()
     start = world.copy()
     world.advance(0.08)
-    later = world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0))
+    steel = world.add_material(density=8000)
+    later = world.add_body(sk.Sphere(radius=0.05), steel, position=(1, 0, 0))
     world.reset(start)
     assert world.state_hash == start.state_hash and world.time == 0
-    assert ball.alive and not later.alive
+    assert ball.alive and not later.alive and not steel.alive
+    assert repr(steel) == "<skerry.MaterialHandle: material, removed>"
+    with pytest.raises(sk.SceneError, match="^material was removed$"):
+        steel.change(density=1)
     assert len(ball.surface) == len(start.bodies[ball].surface)
     assert world.add_body(sk.Sphere(radius=0.05), RUBBER, position=(1, 0, 0)) != later
 

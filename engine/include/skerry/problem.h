@@ -68,8 +68,8 @@ ContactProblem read_problem(const std::filesystem::path& file);
 
 /// Writes a local problem in the format of FCLIB, with W in compressed columns, so that other solvers can read it. If
 /// `reaction` is given (one vector per contact), a solution is written, too. Equal problems give equal bytes. The file
-/// appears complete or not at all. Throws SceneError if the problem is empty, if its arrays have inconsistent sizes, or
-/// if the file cannot be written.
+/// appears complete or not at all. Throws SceneError if the problem is empty, if its arrays have inconsistent sizes or
+/// values out of range, or if the file cannot be written.
 void write_problem(const ContactProblem& problem, const std::filesystem::path& file,
                    std::span<const Vec3> reaction = {});
 
@@ -79,8 +79,8 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
 
 /// Separates the problem into independent regions and solves each region, starting from r = 0. With Friction::pyramid
 /// the errors of the solution, and so `converged`, refer to the friction pyramid: the natural map clamps each
-/// tangential component separately. Throws SceneError if the arrays of the problem have inconsistent sizes or a setting
-/// is out of its range.
+/// tangential component separately. Throws SceneError if the arrays of the problem have inconsistent sizes, or if a
+/// value or a setting is out of its range.
 ProblemSolution solve_problem(const ContactProblem& problem, const ProblemSettings& settings = {});
 
 /// Errors of given reactions as in FCLIB and Siconos (rho = 1, docs/methods/errors.md 3), and the energy gap of

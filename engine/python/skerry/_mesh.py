@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Vector, index_array, read_only, real_array
+from ._arrays import Vector, VectorLike, index_array, read_only, real_array
 from ._errors import Doubt, import_package, scene_error
 from ._settings import SurfaceMesh
 
@@ -133,11 +133,10 @@ class Mesh:
     # Shapes.
 
     @staticmethod
-    def box(size: ArrayLike, cells: int | Iterable[int]) -> Mesh:
+    def box(size: VectorLike, cells: int | Sequence[int] | NDArray[Any]) -> Mesh:
         """A box around the origin with edge lengths `size` (3,) [m], divided into `cells` cells along x, y and z (one
         number for each, or one for all) with six tetrahedra each."""
-        counts = np.asarray(cells if isinstance(cells, int) else list(cells))
-        numbers = index_array(np.broadcast_to(counts, (3,)) if counts.ndim == 0 else counts, "cells", (3,))
+        numbers = index_array(np.broadcast_to(cells, (3,)) if np.ndim(cells) == 0 else cells, "cells", (3,))
         return Mesh._of(_core.box(real_array(size, "size", (3,)), numbers.tolist()))
 
     @staticmethod

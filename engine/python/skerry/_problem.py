@@ -26,12 +26,13 @@ class Problem:
     tangent 1, tangent 2) for each contact. W is stored in compressed rows of blocks. A problem cannot be changed.
 
     row_offset: number of the first block of each row, and the number of all blocks, shape (c + 1,).
-    column: column of each block, shape (z,).
+    column: column of each block, shape (z,), ascending in each row; each row has its diagonal block.
     block: blocks of W, shape (z, 3, 3) [1/kg].
     q: relative velocities without impulses, shape (c, 3) [m/s].
     mu: friction coefficient of each contact, shape (c,), or one for all.
 
-    TypeError: an array has the wrong shape or type. SceneError: the arrays do not fit together."""
+    TypeError: an array has the wrong shape or type. SceneError: the arrays do not fit together, or a
+    value is out of range."""
 
     __slots__ = ("_arrays", "_core")
 
@@ -287,6 +288,8 @@ def solve(
     settings = ProblemSettings(
         method=method, friction=friction, tolerance=tolerance, max_iterations=max_iterations, relaxation=relaxation
     )
+    if not isinstance(problem, Problem):
+        raise TypeError(f"problem: found {problem!r}, expected a Problem")
     return Solution(**_core.solve(problem._core, settings))
 
 

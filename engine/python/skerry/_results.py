@@ -162,12 +162,12 @@ class Forces:
 
     def on(self, on: Body | Collider, by: Body | Collider | None = None) -> ForceReport:
         """Contact forces on a body or a collider, summed over all contacts, or over those with the object `by`."""
-        handles = (on._handle,) if by is None else (on._handle, by._handle)
+        handles = [_handle_of(on, "on")] if by is None else [_handle_of(on, "on"), _handle_of(by, "by")]
         return ForceReport(**self._world._core.forces_on(*handles))
 
     def by(self, attachment: Attachment) -> ForceReport:
         """Forces of an attachment on its body, which keep the attached nodes on their prescribed motion."""
-        return ForceReport(**self._world._core.forces_by(attachment._handle))
+        return ForceReport(**self._world._core.forces_by(_handle_of(attachment, "attachment")))
 
     def pairs(self) -> list[PairForces]:
         """All pairs of objects that touched: first bodies with colliders, then bodies with bodies."""
@@ -277,7 +277,7 @@ class WorldResults:
         """Casts many rays like cast_ray(). origins, directions: shape (n, 3), or (3,) for all rays. The result is a
         structured array (n,) with the fields of hit_dtype."""
         starts, ways = _rows_of_both(origins, "origins", directions, "directions")
-        filters = (bodies, colliders, groups, [obj._handle for obj in but])
+        filters = (bodies, colliders, groups, [_handle_of(left_out, "but") for left_out in but])
         rows: NDArray[np.void] = self._core.cast_rays(starts, ways, max_distance, *filters).view(hit_dtype)
         return rows
 
@@ -316,7 +316,7 @@ class WorldResults:
         """Finds the nearest points of surfaces for many points, shape (n, 3). The result is a structured array (n,)
         with the fields of hit_dtype."""
         given = real_array(points, "points", ("n", 3))
-        filters = (bodies, colliders, groups, [obj._handle for obj in but])
+        filters = (bodies, colliders, groups, [_handle_of(left_out, "but") for left_out in but])
         rows: NDArray[np.void] = self._core.nearest_points(given, max_distance, *filters).view(hit_dtype)
         return rows
 
@@ -332,6 +332,12 @@ class WorldResults:
             normal=tuple(row["normal"].tolist()),
             distance=float(row["distance"]),
         )
+
+
+def _handle_of(found: Any, name: str) -> Any:
+    if not hasattr(found, "_handle"):
+        raise TypeError(f"{name}: found {found!r}, expected an object of a world")
+    return found._handle
 
 
 def _rows_of_both(first: ArrayLike, name: str, second: ArrayLike, other: str) -> tuple[Reals, Reals]:

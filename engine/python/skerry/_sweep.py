@@ -78,6 +78,9 @@ def sweep(
 
 def _cases(grid: Mapping[str, Sequence[Json]] | Sequence[Case]) -> list[Case]:
     if not isinstance(grid, Mapping):
+        for number, case in enumerate(grid):
+            if not isinstance(case, Mapping):
+                raise TypeError(f"grid[{number}]: found {case!r}, expected the values of a case by place")
         return list(grid)
     for place, values in grid.items():
         if isinstance(values, str) or not hasattr(values, "__len__"):

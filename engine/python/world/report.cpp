@@ -106,36 +106,51 @@ nb::list list_of(const std::vector<Row>& rows) {
     return values;
 }
 
-void for_each_value(const StepReport& report, auto&& visit) {
-    visit("status", nb::cast(name_of_status(report.status)));
-    visit("message", nb::cast(report.message()));
-    visit("warning", nb::cast(report.warning()));
-    visit("body", object_of(report.body));
-    visit("body_name", nb::cast(report.body_name));
-    visit("node", index_or_none(report.node));
-    visit("element", index_or_none(report.element));
-    visit("value", nb::cast(report.value));
-    visit("step_size", nb::cast(report.step_size));
-    visit("steps", nb::cast(report.steps));
-    visit("shortened", nb::cast(report.shortened));
-    visit("retried", nb::cast(report.retried));
-    visit("limited", nb::cast(report.limited));
-    visit("limited_step", nb::cast(report.limited_step));
-    visit("limited_by", nb::cast(report.limited_by));
-    visit("contacts", nb::cast(report.contacts));
-    visit("regions", nb::cast(report.regions));
-    visit("largest_region", nb::cast(report.largest_region));
-    visit("unconverged", nb::cast(report.unconverged));
-    visit("worst_error", nb::cast(report.worst_error));
-    visit("worst_region", nb::cast(report.worst_region));
-    visit("max_penetration", nb::cast(report.max_penetration));
-    visit("max_gap_violation", nb::cast(report.max_gap_violation));
-    visit("held_penetration", nb::cast(report.held_penetration));
-    visit("inverted", nb::cast(report.inverted));
-    visit("inverted_body", object_of(report.inverted_body));
-    visit("inverted_name", nb::cast(report.inverted_name));
-    visit("inverted_element", index_or_none(report.inverted_element));
-    visit("crossed", nb::cast(report.crossed));
+nb::object value_of(StepStatus status) {
+    return nb::cast(name_of_status(status));
+}
+nb::object value_of(const BodyHandle& body) {
+    return object_of(body);
+}
+nb::object value_of(Index index) {
+    return index_or_none(index);
+}
+nb::object value_of(Real number) {
+    return nb::cast(number);
+}
+nb::object value_of(const std::string& text) {
+    return nb::cast(text);
+}
+
+/// Calls visit(name, member) for each member of StepReport.
+void for_each_member(auto&& visit) {
+    visit("status", &StepReport::status);
+    visit("body", &StepReport::body);
+    visit("body_name", &StepReport::body_name);
+    visit("node", &StepReport::node);
+    visit("element", &StepReport::element);
+    visit("value", &StepReport::value);
+    visit("step_size", &StepReport::step_size);
+    visit("steps", &StepReport::steps);
+    visit("shortened", &StepReport::shortened);
+    visit("retried", &StepReport::retried);
+    visit("limited", &StepReport::limited);
+    visit("limited_step", &StepReport::limited_step);
+    visit("limited_by", &StepReport::limited_by);
+    visit("contacts", &StepReport::contacts);
+    visit("regions", &StepReport::regions);
+    visit("largest_region", &StepReport::largest_region);
+    visit("unconverged", &StepReport::unconverged);
+    visit("worst_error", &StepReport::worst_error);
+    visit("worst_region", &StepReport::worst_region);
+    visit("max_penetration", &StepReport::max_penetration);
+    visit("max_gap_violation", &StepReport::max_gap_violation);
+    visit("held_penetration", &StepReport::held_penetration);
+    visit("inverted", &StepReport::inverted);
+    visit("inverted_body", &StepReport::inverted_body);
+    visit("inverted_name", &StepReport::inverted_name);
+    visit("inverted_element", &StepReport::inverted_element);
+    visit("crossed", &StepReport::crossed);
 }
 
 static_assert(sizeof(RunCounters) == 31 * sizeof(Real), "every counter must be in add_counters");
@@ -218,15 +233,22 @@ nb::dict values_of(const DynamicsEstimate& estimate) {
 }
 
 nb::dict values_of(const StepReport& report) {
-    // Names as Python texts, which are made once, because each call of advance() returns a report. They are not freed,
-    // as the interpreter may end before them.
-    static std::vector<PyObject*>& names = *new std::vector<PyObject*>;
-    nb::dict values;
-    std::size_t count = 0;
-    for_each_value(report, [&](const char* name, const nb::object& value) {
-        if (count == names.size()) names.push_back(PyUnicode_InternFromString(name));
-        if (PyDict_SetItem(values.ptr(), names[count++], value.ptr()) != 0) throw nb::python_error();
+    // Most values of most reports are those of an empty report, and copying its dictionary is faster than making
+    // another one. It is not freed, as the interpreter may end before.
+    static const StepReport empty;
+    static PyObject* const empty_values = [] {
+        nb::dict values;
+        values["message"] = "";
+        values["warning"] = "";
+        for_each_member([&](const char* name, auto member) { values[name] = value_of(empty.*member); });
+        return values.release().ptr();
+    }();
+    auto values = nb::steal<nb::dict>(PyDict_Copy(empty_values));
+    for_each_member([&](const char* name, auto member) {
+        if (report.*member != empty.*member) values[name] = value_of(report.*member);
     });
+    if (!report.ok()) values["message"] = report.message();
+    if (const std::string warning = report.warning(); !warning.empty()) values["warning"] = warning;
     return values;
 }
 

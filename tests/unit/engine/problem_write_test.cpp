@@ -136,6 +136,15 @@ TEST_CASE("what cannot be written is refused and leaves what was there", "[unit]
     broken = problem;
     std::swap(broken.row_offset[1], broken.row_offset[2]);
     CHECK(refusal_to_write(broken, path).find("at entry 2, expected an offset >=") != std::string::npos);
+    broken = problem;
+    broken.mu[1] = -0.5;
+    CHECK(refusal_to_write(broken, path).find("at entry 1, expected friction coefficients >= 0") != std::string::npos);
+    broken = problem;
+    broken.block.back()(2, 1) = infinity;
+    CHECK(refusal_to_write(broken, path).find("block: found a value that is not finite") != std::string::npos);
+    broken = problem;
+    broken.column[0] = broken.column[1];
+    CHECK(refusal_to_write(broken, path).find("columns that do not ascend in row 0") != std::string::npos);
     CHECK(bytes_of(path) == "old");
     CHECK(refusal_to_write(problem, path / "inside.hdf5").find("old.hdf5") != std::string::npos);
 }

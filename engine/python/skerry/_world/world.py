@@ -126,8 +126,9 @@ class World(Building, WorldResults, WorldOutput):
     def try_advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
         """Advances like advance(), but returns the report of a step that could not be completed."""
         values = self._core.advance(real(dt, "dt"), self._told(check), self._told(self._watch))
-        for follow in tuple(self._followers):
-            follow()
+        if self._followers:
+            for follow in tuple(self._followers):
+                follow()
         report = step_report(self, values)
         if report.warning or report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
             self._warn_of(report)
