@@ -97,7 +97,8 @@ class Scene:
             raise ValueError(f"seconds: found {end}, expected a time >= 0 (s)")
         with ExitStack() as outputs:
             if page is not None:
-                outputs.callback(world.record(title=self.name, every=self.frame_step).save, page)
+                film = outputs.enter_context(world.record(title=self.name, every=self.frame_step))
+                outputs.callback(film.save, page)
             if vtk is not None:
                 name = os.path.basename(os.path.normpath(vtk))
                 outputs.enter_context(
