@@ -27,14 +27,16 @@ _SLACK = 1e-9  # rounding error when a run is divided into frames, as a fraction
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactProbe:
-    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table."""
+    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table.
+
+    name: name.
+    body: body.
+    nodes: numbers of the nodes, shape (j,).
+    """
 
     name: str
-    """Name."""
     body: Body
-    """Body."""
     nodes: NDArray[np.int32]
-    """Numbers of the nodes, shape (j,)."""
 
 
 class Scene:
