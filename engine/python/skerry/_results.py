@@ -157,6 +157,9 @@ class Forces:
     def __init__(self, world: World) -> None:
         self._world = world
 
+    def __repr__(self) -> str:
+        return f"<skerry.Forces of {self._world!r}>"
+
     def on(self, on: Body | Collider, by: Body | Collider | None = None) -> ForceReport:
         """Contact forces on a body or a collider, summed over all contacts, or over those with the object `by`."""
         handles = [_handle_of(on, "on")] if by is None else [_handle_of(on, "on"), _handle_of(by, "by")]
