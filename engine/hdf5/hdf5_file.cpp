@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/world/complaint.h"
+
 namespace skerry {
 namespace {
 
@@ -123,15 +125,8 @@ std::vector<T> Hdf5File::numbers(const std::string& path, H5T_class_t kind, hid_
 }
 
 void Hdf5File::expect_offsets(const std::string& path, std::span<const Index> offset, std::size_t items) const {
-    const auto most = static_cast<Index>(items);
-    for (std::size_t i = 0; i < offset.size(); ++i) {
-        const Index least = i == 0 ? 0 : offset[i - 1];
-        if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
-        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i);
-        if (i == 0) complain(path, found, "0, the first offset");
-        if (offset[i] > most) complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
-        complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");
-    }
+    skerry::expect_offsets(
+        offset, items, [&](const std::string& found, const std::string& expected) { complain(path, found, expected); });
 }
 
 Index Hdf5File::integer(const std::string& path) const {
@@ -148,7 +143,7 @@ std::vector<Real> Hdf5File::reals(const std::string& path) const {
     std::vector<Real> values = numbers<Real>(path, H5T_FLOAT, H5T_NATIVE_DOUBLE, "numbers");
     const auto bad = std::find_if(values.begin(), values.end(), [](Real value) { return !std::isfinite(value); });
     if (bad != values.end())
-        complain(path, std::to_string(*bad) + " at entry " + std::to_string(bad - values.begin()), "finite numbers");
+        complain(path, short_text(*bad) + " at entry " + std::to_string(bad - values.begin()), "finite numbers");
     return values;
 }
 

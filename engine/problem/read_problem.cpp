@@ -9,6 +9,7 @@
 #include "engine/problem/condense_problem.h"
 #include "engine/problem/fclib_matrix.h"
 #include "engine/problem/gather_blocks.h"
+#include "engine/world/complaint.h"
 #include "skerry/problem.h"
 
 namespace skerry {
@@ -40,7 +41,7 @@ std::vector<Real> read_friction(const Hdf5File& file, const std::string& path, I
     std::vector<Real> mu = file.reals(path);
     expect_size(file, path, mu.size(), static_cast<std::size_t>(contacts), of);
     const auto negative = std::find_if(mu.begin(), mu.end(), [](Real value) { return value < 0; });
-    if (negative != mu.end()) file.complain(path, std::to_string(*negative), "friction coefficients >= 0");
+    if (negative != mu.end()) file.complain(path, short_text(*negative), "friction coefficients >= 0");
     return mu;
 }
 

@@ -11,6 +11,7 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <atomic>
 #include <cstring>
 #include <span>
 #include <vector>
@@ -67,9 +68,36 @@ inline nb::ndarray<nb::numpy, Real> array_of(const std::vector<Vec3>& rows) {
     return array_of(std::span<const Vec3>(rows));
 }
 
+/// Counts the calls that run without the GIL, because Python must not end before they do: a thread that then asks for
+/// the GIL would abort the process. At the end of Python, calls of other threads are ended. A new call of such a thread
+/// raises SystemExit.
+class CallScope {
+public:
+    CallScope() {
+        raise_at_exit();
+        ++running;
+    }
+    ~CallScope() { --running; }
+    CallScope(const CallScope&) = delete;
+    CallScope& operator=(const CallScope&) = delete;
+
+    /// Raises SystemExit, which ends a thread without a message, if Python ends and waits for this thread. Needs no
+    /// GIL.
+    static void raise_at_exit();
+    /// Ends the calls of other threads, and waits for them without the GIL.
+    static void end_calls();
+    /// Called in a new process after fork(), which has no other threads.
+    static void note_fork() { running = 0; }
+
+private:
+    static inline std::atomic<int> running{0};
+    static inline std::atomic<unsigned long> ending{0};  // number of the thread in end_calls(); 0 if none
+};
+
 /// Calls a function without the GIL.
 template <class Function>
 auto without_gil(Function&& function) {
+    const CallScope scope;  // ends after the GIL is held again
     nb::gil_scoped_release released;
     return function();
 }

@@ -1,3 +1,6 @@
+#include <chrono>
+#include <thread>
+
 #include "engine/python/bind.h"
 #include "skerry/error.h"
 
@@ -29,6 +32,23 @@ void bind_errors(nb::module_&) {
             raise(error);
         }
     });
+}
+
+void CallScope::raise_at_exit() {
+    const unsigned long thread = ending.load();
+    if (thread == 0 || thread == PyThread_get_thread_ident()) return;
+    nb::gil_scoped_acquire held;
+    PyErr_SetNone(PyExc_SystemExit);
+    throw nb::python_error();
+}
+
+void CallScope::end_calls() {
+    ending = PyThread_get_thread_ident();
+    nb::gil_scoped_release released;
+    // A callback may wait for something that never happens. Python then ends without its call.
+    const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (running > 0 && std::chrono::steady_clock::now() < latest)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 }  // namespace skerry::python

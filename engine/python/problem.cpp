@@ -118,11 +118,12 @@ void bind_problem(nb::module_& module) {
         .def("mu", [](const ContactProblem& problem) { return flat_array(problem.mu); });
     module.attr("has_hdf5") = SKERRY_HAS_HDF5 != 0;
     module.def("new_problem", &new_problem);
-    module.def("read_problem", [](const std::string& file) { return without_gil([&] { return read_problem(file); }); });
+    // The two functions for files keep the GIL, because HDF5 is not built for several threads.
+    module.def("read_problem", [](const std::string& file) { return read_problem(file); });
     module.def(
         "write_problem",
         [](const ContactProblem& problem, const std::string& file, const std::optional<Vectors>& reaction) {
-            without_gil([&] { write_problem(problem, file, reaction ? span_of(*reaction) : std::span<const Vec3>()); });
+            write_problem(problem, file, reaction ? span_of(*reaction) : std::span<const Vec3>());
         },
         nb::arg(), nb::arg(), nb::arg().none());
     module.def("part_of", [](const ContactProblem& problem, const Indices& contacts) {

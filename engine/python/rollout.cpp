@@ -85,13 +85,14 @@ nb::dict run_rollout(const std::vector<WorldObject*>& objects, const std::vector
     std::deque<Use> used;  // a deque never moves its elements
     std::vector<const World*> worlds;
     for (WorldObject* object : objects) {
-        used.emplace_back(*object);
-        worlds.push_back(&object->world);
+        if (object) used.emplace_back(*object);
+        worlds.push_back(object ? &object->world : nullptr);  // rollout() refuses a null pointer
     }
     RolloutSettings settings{.intervals = intervals, .dt = dt, .threads = threads, .keep_worlds = keep_worlds};
     std::ranges::transform(controls, std::back_inserter(settings.controls), control_of);
     settings.record = std::move(record);
     settings.go_on = [&](const RolloutProgress& so_far) {
+        CallScope::raise_at_exit();
         nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (!progress.is_none()) progress(so_far.intervals_done, so_far.worlds * intervals);

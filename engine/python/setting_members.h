@@ -2,7 +2,12 @@
 // visit) calls visit(name, member) for each of them.
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include "skerry/joint.h"
 #include "skerry/problem.h"
@@ -165,6 +170,24 @@ void for_each_setting(Is<SurfaceMesh> auto& s, auto&& visit) {
     visit("nodes", s.nodes);
     visit("triangles", s.triangles);
 }
+
+/// True if a struct has the size of this many numbers and of the objects `Parts`. A new member changes the size and
+/// must be added to the list above.
+template <class Struct, std::size_t numbers, class... Parts>
+inline constexpr bool has_size = sizeof(Struct) == numbers * sizeof(Real) + (sizeof(Parts) + ... + 0);
+static_assert(has_size<Settings, 17>);
+static_assert(has_size<MaterialSettings, 14>);
+static_assert(has_size<BodySettings, 18, std::map<int, MaterialHandle>, std::string>);
+static_assert(has_size<ColliderSettings, 16, Motion, std::string>);
+static_assert(has_size<LoadSettings, 2>);
+static_assert(has_size<SurfaceSettings, 8>);
+static_assert(has_size<Pose, 6>);
+static_assert(has_size<MotionKey, 7>);
+static_assert(has_size<Motion, 6, std::vector<MotionKey>>);
+static_assert(has_size<JointSettings, 15, std::optional<JointMotor>>);
+static_assert(has_size<MotorKey, 5>);
+static_assert(has_size<JointMotor, 6, std::vector<MotorKey>>);
+static_assert(has_size<ProblemSettings, 4>);
 
 /// True for the structs that have members listed here.
 template <class T>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "engine/world/complaint.h"
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
 
@@ -88,6 +89,13 @@ Vec3 vector_at(std::span<const Real> values, std::size_t first) {
     return {values[first], values[first + 1], values[first + 2]};
 }
 
+/// The values of a control for one interval of one world. `count`: number of values per interval.
+std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
+                                std::size_t world, std::size_t interval) {
+    const bool for_all = control.values.size() == intervals * count;
+    return control.values.subspan(((for_all ? 0 : world * intervals) + interval) * count, count);
+}
+
 /// Applies the values of one interval to a world.
 struct ApplyControl {
     std::span<const Real> values;
@@ -155,7 +163,7 @@ std::size_t agreed_count(std::span<const World* const> worlds, const std::string
         try {
             in_world = count_in(*worlds[w]);
         } catch (const SceneError& error) {
-            throw SceneError(title + ": world " + std::to_string(w) + ": " + error.what());
+            throw error_at({{}, title, "world " + std::to_string(w), {}, {}, {}}, error);
         }
         if (w == 0) count = in_world;
         if (in_world != count)
@@ -187,19 +195,21 @@ void check_controls(std::span<const World* const> worlds, const RolloutSettings&
                 refuse_control(title,
                                "world " + std::to_string(i / of_one) + ", interval " +
                                    std::to_string(i % of_one / count) + ", number " + std::to_string(i % count),
-                               std::to_string(control.values[i]), "a finite number");
+                               short_text(control.values[i]), "a finite number");
     }
 }
 
-std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
-                                std::size_t world, std::size_t interval) {
-    const bool for_all = control.values.size() == intervals * count;
-    return control.values.subspan(((for_all ? 0 : world * intervals) + interval) * count, count);
-}
-
-void apply(const RolloutControl& control, std::span<const Real> values, Real dt, std::vector<Vec3>& forces,
-           World& world) {
-    std::visit(ApplyControl{values, dt, forces, world}, control.what);
+void apply_controls(const RolloutSettings& settings, std::span<const std::size_t> counts, std::size_t number,
+                    std::size_t interval, std::vector<Vec3>& forces, World& world) {
+    for (std::size_t c = 0; c < settings.controls.size(); ++c) {
+        const RolloutControl& control = settings.controls[c];
+        const std::span<const Real> values = values_of(control, counts[c], settings.intervals, number, interval);
+        try {
+            std::visit(ApplyControl{values, settings.dt, forces, world}, control.what);
+        } catch (const SceneError& error) {
+            throw error_at({{}, numbered("controls", c), {}, {}, {}, {}}, error);
+        }
+    }
 }
 
 }  // namespace skerry

@@ -20,11 +20,9 @@ std::size_t agreed_count(std::span<const World* const> worlds, const std::string
                          FunctionRef<std::size_t(const World&)> count_in);
 /// Checks number and values of all controls, and that no object has two controls. `worlds`: at least one world.
 void check_controls(std::span<const World* const> worlds, const RolloutSettings& settings);
-/// The values of a control for one interval of one world. `count`: number of values per interval.
-std::span<const Real> values_of(const RolloutControl& control, std::size_t count, std::size_t intervals,
-                                std::size_t world, std::size_t interval);
-/// Applies a control for an interval of duration dt [s]. `forces` is memory that is used again.
-void apply(const RolloutControl& control, std::span<const Real> values, Real dt, std::vector<Vec3>& forces,
-           World& world);
+/// Applies the values of all controls for one interval of the world with this number. `counts`: number of values of
+/// each control per interval. `forces` is memory that is used again. Throws SceneError that names the control.
+void apply_controls(const RolloutSettings& settings, std::span<const std::size_t> counts, std::size_t number,
+                    std::size_t interval, std::vector<Vec3>& forces, World& world);
 
 }  // namespace skerry

@@ -10,6 +10,8 @@
 
 #include "engine/output/series/probe_columns.h"
 #include "engine/rollout/controls.h"
+#include "engine/world/complaint.h"
+#include "engine/world/contact_view.h"
 #include "engine/world/world_state.h"
 #include "jobs/run_tasks.h"
 
@@ -34,11 +36,42 @@ void check_settings(std::size_t world_count, const RolloutSettings& settings) {
                        std::to_string(settings.intervals) + " for each of " + std::to_string(world_count) + " worlds",
                        "at most " + std::to_string(most) + " intervals of all worlds together");
     if (!(settings.dt > 0) || !std::isfinite(settings.dt))
-        refuse_setting("dt", std::to_string(settings.dt), "a time > 0 (s)");
+        refuse_setting("dt", short_text(settings.dt), "a time > 0 (s)");
     if (settings.threads < 0)
         refuse_setting("threads", std::to_string(settings.threads),
                        "a number of threads >= 0 (0: the number of cores)");
 }
+
+/// Returns the state of a world, after a check that a rollout can start from it.
+WorldState& source_of(const World* world, std::size_t number, Real dt) {
+    if (!world) refuse_setting("worlds", "a null pointer", "a world");
+    // The state is not constant, even if the world is.
+    auto& state = const_cast<WorldState&>(WorldAccess::state_of(*world));
+    state.require_between_steps("rollout");
+    if (!(state.clock.time + dt > state.clock.time))
+        refuse_setting("dt", short_text(dt),
+                       "a time that is not lost when it is added to " + short_text(state.clock.time) +
+                           " s, the time of world " + std::to_string(number));
+    // A later look at the contacts then writes nothing.
+    view_contacts(state);
+    return state;
+}
+
+/// Marks worlds as advancing during the lifetime of this object, so that go_on cannot change them.
+class SourcesScope {
+public:
+    explicit SourcesScope(std::span<WorldState* const> worlds) : worlds_(worlds) { mark(true); }
+    ~SourcesScope() { mark(false); }
+    SourcesScope(const SourcesScope&) = delete;
+    SourcesScope& operator=(const SourcesScope&) = delete;
+
+private:
+    void mark(bool advancing) {
+        for (WorldState* const world : worlds_) world->advancing = advancing;
+    }
+
+    std::span<WorldState* const> worlds_;
+};
 
 /// Checks a probe in all worlds and returns its columns.
 std::vector<SeriesColumn> columns_of(std::span<const World* const> worlds, const RecordedProbe& probe) {
@@ -57,11 +90,9 @@ class RunningRollout {
 public:
     RunningRollout(std::span<const World* const> worlds, const RolloutSettings& settings) : settings_(settings) {
         check_settings(worlds.size(), settings);
-        for (const World* world : worlds) {
-            if (!world) refuse_setting("worlds", "a null pointer", "a world");
-            sources_.push_back(&WorldAccess::state_of(*world));
-            sources_.back()->require_between_steps("rollout");
-        }
+        for (std::size_t w = 0; w < worlds.size(); ++w)
+            sources_.push_back(w > 0 && worlds[w] == worlds[w - 1] ? sources_.back()
+                                                                   : &source_of(worlds[w], w, settings.dt));
         check_controls(worlds, settings);
         check_probes(*worlds[0], settings.record);
         for (const RolloutControl& control : settings.controls)
@@ -83,6 +114,7 @@ public:
         const int threads = settings_.threads > 0 ? settings_.threads : core_count();
         const auto world_count = static_cast<Index>(sources_.size());
         const int threads_of_world = std::max(1, threads / world_count);
+        const SourcesScope scope(sources_);
         run_tasks(
             world_count, threads, [&](Index number) { run_world(static_cast<std::size_t>(number), threads_of_world); },
             watch_period, [&] { watch(); });
@@ -123,11 +155,8 @@ private:
         std::vector<Real> row;
         std::vector<Vec3> forces;
         for (std::size_t i = 0; i < settings_.intervals; ++i) {
-            for (std::size_t c = 0; c < settings_.controls.size(); ++c)
-                apply(settings_.controls[c],
-                      values_of(settings_.controls[c], number_count_[c], settings_.intervals, number, i), settings_.dt,
-                      forces, world);
             try {
+                apply_controls(settings_, number_count_, number, i, forces, world);
                 status.report = world.advance(settings_.dt, [this](const StepReport&) { return !stop_; });
             } catch (const SceneError& error) {
                 status.error = error.what();
@@ -149,7 +178,7 @@ private:
 
     const RolloutSettings& settings_;
     // States of the given worlds, without pending changes, so that all threads may read them.
-    std::vector<const WorldState*> sources_;
+    std::vector<WorldState*> sources_;
     std::vector<std::size_t> number_count_;  // number of values of each control per interval
     RolloutResult result_;
     std::vector<std::optional<World>> final_;

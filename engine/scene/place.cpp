@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "engine/world/complaint.h"
+
 namespace skerry {
 
 namespace {
@@ -59,13 +61,7 @@ void Place::refuse(std::string found, std::string expected, std::string hint) co
 }
 
 void Place::refuse_inner(const SceneError& inner) const {
-    Complaint parts = inner.complaint();
-    if (parts.file.empty()) {
-        parts.file = file_.string();
-        if (!object_.empty()) parts.object = object_;
-        parts.field = path_ + (path_.empty() || parts.field.empty() ? "" : ": ") + parts.field;
-    }
-    throw SceneError(Complaint{file_.string(), object_, path_, {}, {}, {}}.text() + inner.what(), parts);
+    throw error_at({file_.string(), object_, path_, {}, {}, {}}, inner);
 }
 
 std::string in_quotes(std::string_view text) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "engine/mesh/labels.h"
 #include "engine/mesh/require_positive.h"
+#include "engine/world/complaint.h"
 #include "systems/collision/build_surface.h"
 #include "systems/geometry/rotation.h"
 
@@ -17,9 +17,7 @@ namespace skerry {
 namespace {
 
 std::string shown(Real value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%g", value);
-    return buffer;
+    return short_text(value, 6);
 }
 
 std::string shown(const Vec3& value) {

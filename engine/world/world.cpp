@@ -66,9 +66,9 @@ void WorldState::require_between_steps(const char* call) const {
     Complaint{.file = {},
               .object = call,
               .field = {},
-              .found = "a call during advance()",
-              .expected = "a call between two calls of advance()",
-              .hint = "a callback run by advance() may read the world but must not change or advance it"}
+              .found = "a call during advance() or rollout()",
+              .expected = "a call after their end",
+              .hint = "a callback that they run may read the world but must not change or advance it"}
         .raise();
 }
 
@@ -320,6 +320,7 @@ AttachmentHandle World::attach(BodyHandle body, std::span<const Index> nodes, co
     const auto b = static_cast<std::size_t>(row);
     validate(motion, pivot);
     const Index count = model.bodies.nodes[b].size();
+    if (nodes.empty()) refuse("attach", "nodes", "no nodes", "at least one node of the body");
     require_nodes("attach", nodes, count);
     if (model.bodies.core_nodes[b] > 0)
         Complaint{.file = {},

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "engine/world/complaint.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/kernels.h"
 #include "engine/world/state_hash.h"
@@ -34,12 +34,6 @@ Energy energy_of(const Model& model, Real dissipated) {
 }
 
 namespace {
-
-std::string short_text(Real value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
 
 /// Counts smoothed elements that are strongly compressed. An element can be compressed although none of its tetrahedra
 /// is compressed.

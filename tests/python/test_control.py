@@ -82,6 +82,8 @@ def test_attaching_a_node_that_does_not_exist_is_refused() -> None:
     world, ball, _ = ball_world()
     with pytest.raises(sk.SceneError, match=r"attach: nodes: found node 10000, expected"):
         ball.attach([10_000])
+    with pytest.raises(sk.SceneError, match="attach: nodes: found no nodes, expected at least one"):
+        ball.attach([])
 
 
 def test_a_body_falls_through_a_floor_that_it_may_not_touch() -> None:

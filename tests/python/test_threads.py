@@ -1,12 +1,13 @@
 """Threads, signals, processes and memory."""
 
 import concurrent.futures
+import contextlib
 import multiprocessing
 import os
 import sys
 import threading
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ READS = {
 }
 
 
-@contextmanager
+@contextlib.contextmanager
 def busy(world: sk.World) -> Iterator[None]:
     """Another thread advances the world until the end of the scope."""
     inside, done = threading.Event(), threading.Event()
@@ -106,15 +107,14 @@ def test_reads_of_a_second_thread_are_right_or_refused() -> None:
     advanced = threading.Event()
 
     def advance() -> None:
-        while not advanced.is_set():
-            try:
+        while not advanced.wait(1e-3):
+            with contextlib.suppress(sk.BusyError):
                 world.advance(2e-3)
-            except sk.BusyError:
-                counts["busy"] += 1
 
     thread = threading.Thread(target=advance)
     thread.start()
-    for _ in range(100):
+    latest = time.monotonic() + 60
+    while min(counts.values()) < 100 and time.monotonic() < latest:
         for read in ("time", "positions", "mass", "bodies", "report", "state_hash", "stress", "copy"):
             try:
                 READS[read](world, ball)
@@ -123,7 +123,7 @@ def test_reads_of_a_second_thread_are_right_or_refused() -> None:
                 counts["busy"] += 1
     advanced.set()
     thread.join()
-    assert counts["right"] + counts["busy"] >= 800
+    assert min(counts.values()) >= 100
     for _ in range(round(world.time / 2e-3)):
         twin.advance(2e-3)
     assert twin.state_hash == world.state_hash
@@ -189,8 +189,7 @@ INTERRUPTED = """
     try:
         {call}
     except KeyboardInterrupt:
-        late = time.monotonic() - sent[0]
-        assert late < 0.05, late
+        assert time.monotonic() - sent[0] < 5  # the call itself would take hours
     else:
         raise SystemExit("the call was not interrupted")
     thread.join()
@@ -227,6 +226,54 @@ def test_an_interrupt_ends_a_run() -> None:
         assert 0 < world.time < 1e5 and world.advance(0.01).ok
         """
     )
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "world.advance(1e4)",
+        "world.advance(1e4, check=lambda report: True)",
+        "sk.rollout([world] * 2, dt=1.0, steps=100_000)",
+        "[world.advance(1e-3) for _ in iter(int, 1)]",
+    ],
+)
+def test_python_ends_silently_while_a_daemon_thread_is_in_a_call(call: str) -> None:
+    run_program(
+        f"""
+        import atexit, threading, time
+        atexit.register(lambda: print(other.advance(0.01).ok))  # the thread that ends Python can still use worlds
+        import skerry as sk
+        from worlds import ball_world
+
+        world, ball, floor = ball_world()
+        other = world.copy()
+        threading.Thread(target=lambda: {call}, daemon=True).start()
+        time.sleep(0.2)
+        """
+    )
+
+
+def test_a_callback_may_end_its_own_calls() -> None:
+    done = run_program(
+        """
+        from worlds import ball_world
+
+        world, ball, floor = ball_world()
+        world.run(0.05)
+
+        class Take:
+            def __call__(self, problem):
+                print("called")
+                world._core.watch_problems(None, 1)
+
+            def __del__(self):
+                print("deleted", sum(range(100)))
+
+        world._core.watch_problems(Take(), 1)
+        assert world.advance(0.01).ok
+        """
+    )
+    assert done.stdout == "called\ndeleted 4950\n"
 
 
 FORKED = """

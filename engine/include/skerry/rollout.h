@@ -88,7 +88,7 @@ struct RolloutSeries {
 struct RolloutStatus {
     std::size_t intervals = 0;  // number of completed intervals
     StepReport report{};        // report of the last call of advance; `stopped` if go_on ended the rollout
-    std::string error{};        // message of the SceneError with which advance refused to start, else empty
+    std::string error{};        // message of the SceneError of a control or of advance, else empty
     // Reasons why the values cannot be trusted (WorldReport::distrust). They may arise before the rollout.
     std::string distrust{};
 
@@ -106,18 +106,19 @@ struct RolloutResult {
     std::vector<World> worlds;
 };
 
-/// Advances a copy of each world through all intervals, several worlds at once. The worlds do not change, and no other
-/// thread may use them during the call. Worlds may occur several times, but all must be copies of one world, so that
-/// the handles of controls and probes are valid in each of them.
+/// Advances a copy of each world through all intervals, several worlds at once. The worlds do not change: no other
+/// thread may use them during the call, and go_on may only read them. Worlds may occur several times, but all must be
+/// copies of one world, so that the handles of controls and probes are valid in each of them.
 ///
 /// The results are bitwise those of a loop that clones each world, applies the controls of an interval, calls
 /// advance(dt) and samples a Recorder, on any number of threads. A world whose step is refused stops, and the others
 /// continue. If there are fewer worlds than threads, each world gets an equal number of threads.
 ///
-/// Each thread of the rollout has one copy of a world at a time; with keep_worlds all copies remain. The results need 8
-/// bytes per value. To continue a rollout, keep the worlds and pass them to the next call. To start again from the same
-/// states, pass the same worlds again. There is no need to keep copies and reset them: World::reset takes as long as a
-/// new copy, about 0.4 ms for a world of 4,000 tetrahedra.
+/// Each thread of the rollout has one copy of a world at a time. With keep_worlds all copies remain, each with the
+/// number of threads with which it was advanced. The results need 8 bytes per value. To continue a rollout, keep the
+/// worlds and pass them to the next call. To start again from the same states, pass the same worlds again. There is no
+/// need to keep copies and reset them: World::reset takes as long as a new copy, about 0.4 ms for a world of 4,000
+/// tetrahedra.
 ///
 /// Throws SceneError before any world runs if a setting, a handle or a value is invalid.
 RolloutResult rollout(std::span<const World* const> worlds, const RolloutSettings& settings);

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
@@ -87,10 +88,7 @@ auto called_for(const RecordedProbe& probe, auto&& function) {
     try {
         return function();
     } catch (const SceneError& error) {
-        const std::string name = "probe \"" + probe.name + "\"";
-        Complaint parts = error.complaint();
-        if (parts.object.empty()) parts.object = name;
-        throw SceneError(name + ": " + error.what(), parts);
+        throw error_at({{}, "probe \"" + probe.name + "\"", {}, {}, {}, {}}, error);
     }
 }
 
@@ -118,7 +116,7 @@ void require_weights(const PointProbe& point) {
     for (const Real w : point.weight) sum += w;
     constexpr Real rounding = 1e-9;
     if (!(std::abs(sum - 1) < rounding))
-        refuse("weight", "weights whose sum is " + std::to_string(sum), "weights that sum to one");
+        refuse("weight", "weights whose sum is " + short_text(sum, 9), "weights that sum to one");
 }
 
 void put_force(ForceSum& force, bool of_contacts, std::vector<Real>& values) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+import os
 import unicodedata
 from collections.abc import Sequence
 from typing import Any, Protocol, SupportsFloat, SupportsIndex, TypeAlias, TypeVar
@@ -167,6 +168,27 @@ def checked(value: Checked, name: str, *kinds: type) -> Checked:
         expected = " or ".join(f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}" for kind in kinds)
         raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
     return value
+
+
+def counted(value: SupportsIndex, name: str) -> int:
+    """A whole number of 32 bits. The extension module checks its range."""
+    if not hasattr(value, "__index__") or not -(2**31) <= operator.index(value) < 2**31:
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number of 32 bits")
+    return operator.index(value)
+
+
+def path_text(value: str | os.PathLike[str], name: str, expected: str = "a path") -> str:
+    """Text of a path."""
+    text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(text, str):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
+    return text
+
+
+def require_attributes(value: object, name: str, expected: str, *attributes: str) -> None:
+    """Raises TypeError unless an object of another package has the given attributes."""
+    if not all(hasattr(value, attribute) for attribute in attributes):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

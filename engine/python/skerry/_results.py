@@ -155,6 +155,9 @@ class Forces:
     def __init__(self, world: World) -> None:
         self._world = world
 
+    def __repr__(self) -> str:
+        return f"<skerry.Forces of {self._world!r}>"
+
     def on(self, on: Body | Collider, by: Body | Collider | None = None) -> ForceReport:
         """Contact forces on a body or a collider, summed over all contacts, or over those with the object `by`."""
         from ._world import Body, Collider

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import real_array, shape_text
+from ._arrays import real, real_array, shape_text
 from ._errors import Doubt, scene_error
-from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
+from ._world.probes import NodesProbe, Probe, recorded_probes
 
 Reals: TypeAlias = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def rollout(
         [world._core for world in copies],
         [(control.quantity, control.handle, control.array.ravel()) for control in given],
         recorded_probes(probes),
-        float(dt),
+        real(dt, "dt"),
         intervals,
         threads,
         keep_worlds,

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._recorder import Probe, Recorder, probe_of
+from ._recorder import Recorder
 from ._world import Body, World
+from ._world.probes import Probe, probe_of
 
 Path: TypeAlias = str | os.PathLike[str]
 Json: TypeAlias = Any
@@ -27,14 +28,16 @@ _SLACK = 1e-9  # rounding error when a run is divided into frames, as a fraction
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactProbe:
-    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table."""
+    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table.
+
+    name: name.
+    body: body.
+    nodes: numbers of the nodes, shape (j,).
+    """
 
     name: str
-    """Name."""
     body: Body
-    """Body."""
     nodes: NDArray[np.int32]
-    """Numbers of the nodes, shape (j,)."""
 
 
 class Scene:

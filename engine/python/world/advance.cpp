@@ -13,6 +13,7 @@ namespace {
 class SignalWatch {
 public:
     void check() {
+        CallScope::raise_at_exit();
         const Clock::time_point now = Clock::now();
         if (now - checked_ < std::chrono::milliseconds(20)) return;
         checked_ = now;
@@ -71,6 +72,8 @@ nb::dict advance(WorldObject& object, Real dt, const nb::object& check, const nb
 
 void bind_advance(WorldClass& type) {
     type.def("advance", &advance, nb::arg("dt"), nb::arg("check").none(), nb::arg("watch").none())
+        // World::watch_steps refuses calls of callbacks. It has no other effect, because StepWatchScope has removed its
+        // function.
         .def("require_between_steps", guarded([](World& world) { world.watch_steps({}); }))
         .def("set_tracing", guarded([](World& world, bool on) { world.set_tracing(on); }))
         .def("trace_text", guarded([](World& world) {

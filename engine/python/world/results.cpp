@@ -143,6 +143,11 @@ nb::ndarray<nb::numpy, std::uint8_t> cast_rays(WorldObject& object, const Vector
     Use use(object);
     const QueryFilter filter = filter_of(bodies, colliders, groups, except);
     const auto origin = span_of(origins), direction = span_of(directions);
+    if (origin.size() != direction.size()) {
+        PyErr_Format(PyExc_TypeError, "directions: found %zu rows, expected %zu, one for each origin", direction.size(),
+                     origin.size());
+        throw nb::python_error();
+    }
     return hits(object.world, origin.size(), [&](std::size_t number) {
         return object.world.cast_ray(origin[number], direction[number], max_distance, filter);
     });

@@ -77,7 +77,11 @@ void bind_world(nb::module_& module) {
     bind_handle<ColliderHandle>(module, "ColliderHandle");
     bind_handle<AttachmentHandle>(module, "AttachmentHandle");
     bind_handle<JointHandle>(module, "JointHandle");
-    module.def("note_fork", &Use::note_fork);
+    module.def("end_calls", &CallScope::end_calls);
+    module.def("note_fork", [] {
+        Use::note_fork();
+        CallScope::note_fork();
+    });
 
     WorldClass type(module, "World");
     bind_building(type);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/joining_rows.h"
 #include "engine/world/edit/rigid_bodies.h"
@@ -45,11 +46,10 @@ void validate_keys(const std::vector<MotorKey>& keys) {
                          key.speed ? "a position, as in the first key" : "a speed, as in the first key");
         const Real target = key.speed.value_or(key.position.value_or(0));
         if (!std::isfinite(target))
-            refuse_joint((field + (key.speed ? ".speed" : ".position")).c_str(), std::to_string(target),
-                         "a finite number");
+            refuse_joint((field + (key.speed ? ".speed" : ".position")).c_str(), short_text(target), "a finite number");
         if (!std::isfinite(key.time) || (k > 0 && !(key.time > keys[k - 1].time)))
-            refuse_joint((field + ".time").c_str(), std::to_string(key.time) + " s",
-                         k > 0 ? "a time after that of the key before, " + std::to_string(keys[k - 1].time) + " s"
+            refuse_joint((field + ".time").c_str(), short_text(key.time, 9) + " s",
+                         k > 0 ? "a time after that of the key before, " + short_text(keys[k - 1].time, 9) + " s"
                                : "a finite number");
     }
 }
@@ -61,17 +61,17 @@ void validate_motor(const JointMotor& motor) {
                      "either a speed, a position or keys");
     validate_keys(motor.keys);
     const Real target = motor.speed.value_or(motor.position.value_or(0));
-    if (!std::isfinite(target)) refuse_joint("motor", std::to_string(target), "a finite speed or position");
+    if (!std::isfinite(target)) refuse_joint("motor", short_text(target), "a finite speed or position");
     if (!(std::isfinite(motor.strength) && motor.strength >= 0))
-        refuse_joint("motor.strength", std::to_string(motor.strength), "a maximum torque or force >= 0 (N m or N)");
-    if (!(motor.fastest > 0)) refuse_joint("motor.fastest", std::to_string(motor.fastest), "a speed > 0");
+        refuse_joint("motor.strength", short_text(motor.strength), "a maximum torque or force >= 0 (N m or N)");
+    if (!(motor.fastest > 0)) refuse_joint("motor.fastest", short_text(motor.fastest), "a speed > 0");
 }
 
 void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
-    if (lower && !std::isfinite(*lower)) refuse_joint("lower", std::to_string(*lower), "a finite number, or no limit");
-    if (upper && !std::isfinite(*upper)) refuse_joint("upper", std::to_string(*upper), "a finite number, or no limit");
+    if (lower && !std::isfinite(*lower)) refuse_joint("lower", short_text(*lower), "a finite number, or no limit");
+    if (upper && !std::isfinite(*upper)) refuse_joint("upper", short_text(*upper), "a finite number, or no limit");
     if (lower.value_or(-infinity) > upper.value_or(infinity))
-        refuse_joint("lower", std::to_string(*lower), "a number <= upper, which is " + std::to_string(*upper));
+        refuse_joint("lower", short_text(*lower), "a number <= upper, which is " + short_text(*upper));
 }
 
 void validate_joint(const JointSettings& joint) {

@@ -2,6 +2,7 @@
 // since a start time, or keyframes.
 #include <vector>
 
+#include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/validate.h"
@@ -175,7 +176,7 @@ void require_duration(auto&& object, Real duration, Real now) {
     Complaint{.file = {},
               .object = object(),
               .field = "duration",
-              .found = std::to_string(duration),
+              .found = short_text(duration),
               .expected = "a time > 0 (s)",
               .hint = "to move " + object() + " at once, call set_pose"}
         .raise();

@@ -87,7 +87,7 @@ Forces World::forces() const {
                   .object = "forces",
                   .field = {},
                   .found = "a world that does not measure forces",
-                  .expected = "a call of measure_forces(true) before advance()",
+                  .expected = "a call of measure_forces before that of advance",
                   .hint = {}}
             .raise();
     return Forces(*state_);

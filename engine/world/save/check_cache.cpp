@@ -1,6 +1,7 @@
 #include <functional>
 #include <limits>
 
+#include "engine/world/complaint.h"
 #include "engine/world/save/checks.h"
 #include "systems/collision/colliders/collider_shape.h"
 #include "systems/collision/inputs/contact_key.h"
@@ -20,7 +21,7 @@ void expect_ascending(const SavedFile& file, const std::string& path, const auto
 
 /// Checks that a step length is positive. Denormal numbers are refused too, since steps treat them as zero.
 void expect_step(const SavedFile& file, const std::string& path, Real step) {
-    if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, std::to_string(step), "a time > 0 (s)");
+    if (!(step >= std::numeric_limits<Real>::min())) file.complain(path, short_text(step), "a time > 0 (s)");
 }
 
 }  // namespace

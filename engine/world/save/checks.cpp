@@ -2,16 +2,25 @@
 
 #include <Eigen/Dense>
 
+#include "engine/world/complaint.h"
+
 namespace skerry {
 
 namespace {
+
+std::string text_of(Real value) {
+    return short_text(value);
+}
+std::string text_of(Index value) {
+    return std::to_string(value);
+}
 
 template <class T>
 void expect_numbers(const SavedFile& file, std::string_view path, std::span<const T> values, T least, T most) {
     for (std::size_t row = 0; row < values.size(); ++row)
         if (!(values[row] >= least && values[row] <= most))
-            file.complain(std::string(path), at_row(std::to_string(values[row]), row),
-                          "a number from " + std::to_string(least) + " to " + std::to_string(most));
+            file.complain(std::string(path), at_row(text_of(values[row]), row),
+                          "a number from " + text_of(least) + " to " + text_of(most));
 }
 
 }  // namespace
@@ -77,18 +86,11 @@ void expect_partition(const SavedFile& file, std::string_view path, std::span<co
 
 void expect_all_offsets(const SavedFile& file, const std::string& path, std::span<const Index> offset,
                         std::size_t items, const std::string& of) {
-    const auto most = static_cast<Index>(items);
-    for (std::size_t i = 0; i < offset.size(); ++i) {
-        const Index least = i == 0 ? 0 : offset[i - 1];
-        if (offset[i] >= least && offset[i] <= most && (i > 0 || offset[i] == 0)) continue;
-        const std::string found = std::to_string(offset[i]) + " at entry " + std::to_string(i) + of;
-        if (i == 0) file.complain(path, found, "0, the first offset");
-        if (offset[i] > most)
-            file.complain(path, found, "an offset <= " + std::to_string(most) + ", the number of items");
-        file.complain(path, found, "an offset >= " + std::to_string(least) + ", because offsets ascend");
-    }
-    if (offset.back() != most)
-        file.complain(path, std::to_string(offset.back()) + " as the last offset" + of,
+    expect_offsets(offset, items, [&](const std::string& found, const std::string& expected) {
+        file.complain(path, found + of, expected);
+    });
+    if (offset.empty() || offset.back() != static_cast<Index>(items))
+        file.complain(path, (offset.empty() ? "no offset" : std::to_string(offset.back()) + " as the last offset") + of,
                       std::to_string(items) + ", the number of items");
 }
 

@@ -38,8 +38,6 @@ private:
     std::vector<ArraySource> arrays_;
 };
 
-}  // namespace
-
 std::vector<std::byte> bytes_of_world(WorldState& world, const SavedNote& note) {
     world.settle();
     SavedRows saved = rows_to_save(world);
@@ -48,6 +46,8 @@ std::vector<std::byte> bytes_of_world(WorldState& world, const SavedNote& note) 
     list_state(world, saved, lister);
     return saved_bytes(lister.take(), {.state_hash = hash_text(state_hash(world)), .note = note.text});
 }
+
+}  // namespace
 
 void save_world(WorldState& world, const SavedNote& note, const std::filesystem::path& file) {
     world.require_between_steps("save");

@@ -54,17 +54,35 @@ std::uint64_t header_length(std::span<const std::byte> start) {
     return length;
 }
 
-std::string in_json(const std::string& text) {
+/// Length of the UTF-8 character with which a text begins; 0 if it does not begin with one [bytes].
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if (byte(i) < 0x80 || byte(i) >= 0xc0) return 0;
+    // too long forms, surrogates, and numbers above U+10FFFF
+    const bool refused = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
+                         (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
+    return refused ? 0 : length;
+}
+
+/// Returns a text as JSON, without quotation marks. Control characters, and bytes that are not UTF-8, become \u00XX.
+std::string in_json(std::string_view text) {
     std::string result;
-    for (const char c : text) {
-        if (static_cast<unsigned char>(c) < ' ') {
+    while (!text.empty()) {
+        const auto c = static_cast<unsigned char>(text[0]);
+        const std::size_t length = utf8_length(text);
+        if (c < ' ' || length == 0) {
             char code[8];
             std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(c));
             result += code;
-            continue;
+        } else {
+            if (c == '"' || c == '\\') result += '\\';
+            result += text.substr(0, length);
         }
-        if (c == '"' || c == '\\') result += '\\';
-        result += c;
+        text.remove_prefix(std::max<std::size_t>(length, 1));
     }
     return result;
 }
@@ -99,8 +117,8 @@ public:
                 unsigned code = 0;
                 const char* const begin = text_.data() + at_;
                 const char* const end = begin + std::min<std::size_t>(2, text_.size() - at_);
-                if (std::from_chars(begin, end, code, 16).ptr != begin + 2 || code >= ' ')
-                    refuse("a control character");
+                if (std::from_chars(begin, end, code, 16).ptr != begin + 2 || (code >= ' ' && code < 0x80))
+                    refuse("a control character, or a byte that is not UTF-8");
                 at_ += 2;
                 result += static_cast<char>(code);
                 continue;

@@ -19,7 +19,7 @@ inline constexpr int world_file_version = 25;
 /// Texts in the header of a saved world.
 struct SavedTexts {
     std::string state_hash;  // hash_text() of the hash of the world
-    std::string note;        // text of the caller, in UTF-8
+    std::string note;        // text of the caller; bytes that are not UTF-8 are saved as \u00XX
 };
 
 /// An array that is to be saved: rows of `width` numbers each.

@@ -1,26 +1,19 @@
 #include "engine/world/start/start_messages.h"
 
 #include <cmath>
-#include <cstdio>
 
-#include "skerry/error.h"
+#include "engine/world/complaint.h"
 
 namespace skerry {
 
 namespace {
-
-std::string text(Real value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.3g", value);
-    return buffer;
-}
 
 /// Formats a vector. Components as small as the rounding errors of the largest component are written as 0.
 std::string text(Vec3 value) {
     constexpr Real rounding = 1e-9;
     const Real largest = value.cwiseAbs().maxCoeff();
     for (Real& component : value) component = std::abs(component) > rounding * largest ? component : 0;
-    return "(" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + ")";
+    return "(" + short_text(value.x()) + ", " + short_text(value.y()) + ", " + short_text(value.z()) + ")";
 }
 
 }  // namespace
@@ -32,11 +25,11 @@ std::string StartOverlap::message() const {
                       where = " at " + text(place) + " m";
     switch (kind) {
         case OverlapKind::crossing:
-            return both + " overlap by " + text(depth) + " m" + where;
+            return both + " overlap by " + short_text(depth) + " m" + where;
         case OverlapKind::inside:
-            return one + " is inside " + other + where + ", " + text(depth) + " m deep";
+            return one + " is inside " + other + where + ", " + short_text(depth) + " m deep";
         case OverlapKind::around:
-            return other + " is inside " + one + where + ", " + text(depth) + " m deep";
+            return other + " is inside " + one + where + ", " + short_text(depth) + " m deep";
         case OverlapKind::coincident:
             return both + " coincide" + where;
     }
@@ -55,7 +48,7 @@ void refuse_overlap(const StartOverlap& overlap, std::size_t others, const std::
               .found = "an overlap: " + overlap.message() + rest,
               .expected = "bodies that are apart from each other and from colliders",
               .hint = why + "; to remove this overlap, move '" +
-                      (second_leaves ? overlap.second_name : overlap.first_name) + "' by " + text(overlap.depth) +
+                      (second_leaves ? overlap.second_name : overlap.first_name) + "' by " + short_text(overlap.depth) +
                       " m along " + text(direction) + ", or set start_overlaps to \"ignore\" to start with the overlap"}
         .raise();
 }

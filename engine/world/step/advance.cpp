@@ -1,11 +1,11 @@
 // The loop that divides a time interval into steps, and its reaction when a step cannot be taken.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <limits>
 #include <utility>
 
+#include "engine/world/complaint.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
@@ -143,15 +143,14 @@ void require_countable(const Model& model, Real dt) {
     const Real stable = stable_step(model, &body) * model.tuning.step_safety;
     const Real step = model.settings.step_size.value_or(stable);
     if (!(dt > most * step)) return;
-    char found[64];
-    std::snprintf(found, sizeof found, "%g s in steps of %g s", dt, step);
     const bool of_body = !model.settings.step_size && body != no_index;
     Complaint{.file = {},
               .object = "advance",
               .field = "dt",
-              .found = found + (of_body ? ", the stable step of body '" +
-                                              model.body_records[static_cast<std::size_t>(body)].name + "'"
-                                        : std::string()),
+              .found = short_text(dt) + " s in steps of " + short_text(step) + " s" +
+                       (of_body ? ", the stable step of body '" +
+                                      model.body_records[static_cast<std::size_t>(body)].name + "'"
+                                : std::string()),
               .expected = "at most 2147483647 steps",
               .hint = of_body ? "check the size and material of this body" : "use a shorter dt or a larger step_size"}
         .raise();
@@ -189,7 +188,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         Complaint{.file = {},
                   .object = "advance",
                   .field = "dt",
-                  .found = std::to_string(dt),
+                  .found = short_text(dt),
                   .expected = "a time >= 0 (s)",
                   .hint = {}}
             .raise();

@@ -2,9 +2,12 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <thread>
 
 #include "engine/program/sweep/process_pool.h"
 #include "tests/support/temporary_folder.h"
@@ -26,17 +29,36 @@ Told run(int count, int at_once, skerry::FunctionRef<int(int)> job, bool after_f
     return told;
 }
 
+/// Waits up to a minute for a file. Returns false if it does not appear.
+bool appears(const std::filesystem::path& file) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!std::filesystem::exists(file)) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return true;
+}
+
 }  // namespace
 
 TEST_CASE("every job runs once, so many at a time", "[unit][processes]") {
-    const skerry::TemporaryFolder folder;
+    const skerry::TemporaryFolder folder, running;
     const auto job = [&](int index) {
-        std::ofstream(folder.path() / std::to_string(index), std::ios::app) << index;
+        const std::filesystem::path mark = running.path() / std::to_string(index), done = folder.path();
+        std::ofstream(done / std::to_string(index), std::ios::app) << index;
+        std::ofstream(mark, std::ios::app) << index;
+        // The first three jobs wait for each other, so that they run at the same time.
+        for (int other = 0; index < 3 && other < 3; ++other)
+            if (!appears(done / std::to_string(other))) return 1;
+        const std::filesystem::directory_iterator marks(running.path());
+        if (std::distance(begin(marks), end(marks)) > 3) return 2;
+        std::filesystem::remove(mark);
         return 0;
     };
     const Told told = run(20, 3, job);
     CHECK(told.end.done == 20);
-    CHECK(told.most_running == 3);
+    CHECK(told.end.lost.empty());
+    CHECK(told.most_running <= 3);
     for (int i = 0; i < 20; ++i) {
         std::string text;
         std::ifstream(folder.path() / std::to_string(i)) >> text;

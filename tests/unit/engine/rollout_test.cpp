@@ -84,6 +84,13 @@ TEST_CASE("settings and controls of a rollout are refused with the control, the 
     RolloutSettings negative = calls(5, {});
     negative.threads = -3;
     check_refused(yard, negative, {"threads", "-3"});
+    World late = yard.world.clone();
+    REQUIRE(late.advance(0.1).ok());
+    RolloutSettings tiny = calls(5, {});
+    tiny.dt = 1e-18;
+    CHECK_NOTHROW(rollout(yard.world, 1, tiny));
+    CHECK_THROWS_WITH(rollout(std::vector<const World*>{&yard.world, &late}, tiny),
+                      Catch::Contains("dt: found 1e-18, expected") && Catch::Contains("0.1 s, the time of world 1"));
 
     check_refused(yard, calls(6, {pose}), {"controls[0] (pose of collider 'floor')", "60 values", "72", "36"});
     poses[31] = none;
@@ -128,6 +135,13 @@ TEST_CASE("worlds of a rollout must be copies of one world", "[unit]") {
             "controls[0]: number of values per interval: world 1: ");
     refused({&yard.world, &removed}, calls(1, {{PoseControl{yard.clamp}, poses}}),
             "controls[0]: number of values per interval: world 1: ");
+    try {
+        rollout(std::vector<const World*>{&yard.world, &removed}, calls(1, {{PoseControl{yard.clamp}, poses}}));
+    } catch (const SceneError& error) {
+        CHECK(error.complaint().object == "controls[0]: number of values per interval");
+        CHECK(error.complaint().field == "world 1");
+        CHECK_FALSE(error.complaint().expected.empty());
+    }
     refused({&added, &more}, calls(1, {{NodeForceControl{small}, forces}}),
             "world 1: found 192, expected 24 as in world 0");
     refused({&added, &more}, calls(1, {}, {{"nodes", NodesProbe{small}}}),
@@ -255,6 +269,42 @@ TEST_CASE("a world that advance refuses to start ends with the message, and the 
     CHECK_THAT(result.status[1].message(), Catch::Contains("cube") && Catch::Contains("overlap"));
 }
 
+TEST_CASE("a world in which a control fails ends with the name of the control, and the others go on", "[unit]") {
+    const Yard yard;
+    const std::vector<Real> poses(3 * 6, 0), targets(3, 0.1);
+    RolloutSettings settings = calls(3, {{MotorSpeedControl{yard.hinge}, targets}, {PoseControl{yard.clamp}, poses}});
+    settings.prepare = [&](World& copy, std::size_t number) {
+        if (number == 1) copy.remove(yard.clamp);
+    };
+    const RolloutResult result = rollout(yard.world, 3, settings);
+    CHECK(result.status[0].ok());
+    CHECK(result.status[2].ok());
+    CHECK(result.status[1].intervals == 0);
+    CHECK_THAT(result.status[1].message(), Catch::StartsWith("controls[1]: ") && Catch::Contains("attachment"));
+}
+
+TEST_CASE("`go_on` may read the worlds of a rollout but not change them", "[unit]") {
+    Yard yard;
+    RolloutSettings settings = calls(1000000, {});
+    const std::uint64_t before = yard.world.state_hash();
+    const auto run = [&](auto&& call) {
+        settings.go_on = [&](const RolloutProgress&) {
+            call();
+            return false;
+        };
+        rollout(yard.world, 2, settings);
+    };
+    const auto refuses = [&](auto&& change) {
+        CHECK_THROWS_WITH(run(change), Catch::Contains("found a call during advance() or rollout()"));
+    };
+    refuses([&] { yard.world.advance(0.01); });
+    refuses([&] { yard.world.set_gravity({0, 0, 0}); });
+    refuses([&] { rollout(yard.world, 1, calls(1, {})); });
+    CHECK_NOTHROW(run([&] { CHECK(yard.world.contacts().empty()); }));
+    CHECK(yard.world.state_hash() == before);
+    CHECK(yard.world.advance(0.01).ok());
+}
+
 TEST_CASE("an exception of `prepare` ends a rollout", "[unit]") {
     const Yard yard;
     RolloutSettings settings = calls(3, {});
@@ -270,13 +320,14 @@ TEST_CASE("`go_on` runs on the calling thread, counts up, and ends a rollout wit
     RolloutSettings settings = calls(1000000, {}, {{"energy", EnergyProbe{}}});  // to the end it takes hours
     settings.keep_worlds = true;
     std::size_t polls = 0, done = 0;
+    bool wait = true;  // true: goes on until an interval is completed
     settings.go_on = [&](const RolloutProgress& progress) {
         CHECK(std::this_thread::get_id() == caller);
         CHECK(progress.worlds == 3);
         CHECK(progress.worlds_done == 0);
         CHECK(progress.intervals_done >= done);
         done = progress.intervals_done;
-        return ++polls < 10;
+        return ++polls < 10 || (wait && done == 0);
     };
     const auto check_stopped = [&] {
         const RolloutResult result = rollout(yard.world, 3, settings);
@@ -289,13 +340,14 @@ TEST_CASE("`go_on` runs on the calling thread, counts up, and ends a rollout wit
         return result.status[0].intervals;
     };
     CHECK(check_stopped() > 0);
-    CHECK(polls == 10);
+    CHECK(polls >= 10);
     CHECK(done > 0);
 
     settings.intervals = 1;
     settings.dt = 1e5;
     settings.threads = 3;
-    done = 0;
+    polls = done = 0;
+    wait = false;
     CHECK(check_stopped() == 0);
 
     settings.go_on = [](const RolloutProgress&) -> bool { throw std::runtime_error("interrupted"); };

@@ -113,7 +113,8 @@ class PosedObject(WorldObject):
 
     @property
     def angular_velocity(self) -> Reals:
-        """Angular velocity, shape (3,) [rad/s]. For a deformable body: of the rigid motion with its angular momentum."""
+        """Angular velocity, shape (3,) [rad/s]. For a deformable body, that of the motion with its angular
+        momentum."""
         angular_velocity: Reals = self._core.velocity(self._handle)[1]
         return angular_velocity
 

@@ -22,54 +22,70 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PointProbe:
-    """Position, displacement and velocity of a point of a body, which Body.probe() finds."""
+    """Position, displacement and velocity of a point of a body, which Body.probe() finds.
+
+    body: body of the point.
+    node: nodes between which the point lies; -1 where the weight is 0.
+    weight: weight of each of these nodes.
+    origin: position from which the displacement is measured [m]; None: the position when the recorder is made.
+    """
 
     body: Body
-    """Body of the point."""
     _: KW_ONLY
     node: tuple[int, int, int, int]
-    """Nodes between which the point lies; -1 where the weight is 0."""
     weight: tuple[float, float, float, float]
-    """Weight of each of these nodes."""
     origin: Vector | None = None
-    """Position from which the displacement is measured [m]; None: the position when the recorder is made."""
+
+    def __post_init__(self) -> None:
+        nodes = index_array(self.node, "PointProbe.node", (4,))
+        weights = real_array(self.weight, "PointProbe.weight", (4,))
+        object.__setattr__(self, "node", tuple(nodes.tolist()))
+        object.__setattr__(self, "weight", tuple(weights.tolist()))
 
 
 @dataclass(frozen=True, slots=True)
 class BodyProbe:
-    """Position, displacement and velocity of the centre of mass of a body."""
+    """Position, displacement and velocity of the centre of mass of a body.
+
+    body: the body.
+    origin: position from which the displacement is measured [m]; None: the position when the recorder is made.
+    """
 
     body: Body
-    """The body."""
     _: KW_ONLY
     origin: Vector | None = None
-    """Position from which the displacement is measured [m]; None: the position when the recorder is made."""
 
 
 @dataclass(frozen=True, slots=True)
 class ForceProbe:
-    """Contact forces on a body or a collider."""
+    """Contact forces on a body or a collider.
+
+    on: object on which the forces act.
+    by: only forces of this object; None: the forces of all contacts.
+    """
 
     on: Body | Collider
-    """Object on which the forces act."""
     by: Body | Collider | None = None
-    """Only forces of this object; None: the forces of all contacts."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReactionProbe:
-    """Force of an attachment on its body."""
+    """Force of an attachment on its body.
+
+    attachment: the attachment.
+    """
 
     attachment: Attachment
-    """The attachment."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointProbe:
-    """Force and moment of a joint, and for a hinge or slider its coordinate and its speed."""
+    """Force and moment of a joint, and for a hinge or slider its coordinate and its speed.
+
+    joint: the joint.
+    """
 
     joint: Joint
-    """The joint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +95,14 @@ class EnergyProbe:
 
 @dataclass(frozen=True, slots=True)
 class StressProbe:
-    """Largest von Mises stress at some nodes of a body."""
+    """Largest von Mises stress at some nodes of a body.
+
+    body: the body.
+    nodes: numbers of the nodes; none: all nodes.
+    """
 
     body: Body
-    """The body."""
     nodes: Field[ArrayLike, tuple[int, ...]] = held(())
-    """Numbers of the nodes; none: all nodes."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", tuple(index_array(self.nodes, "StressProbe.nodes", ("j",)).tolist()))
@@ -92,34 +110,42 @@ class StressProbe:
 
 @dataclass(frozen=True, slots=True)
 class VolumeProbe:
-    """Smallest ratio of present volume to rest volume among the tetrahedra of a body."""
+    """Smallest ratio of present volume to rest volume among the tetrahedra of a body.
+
+    body: the body.
+    """
 
     body: Body
-    """The body."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseProbe:
-    """Pose of a body, a collider or an attachment."""
+    """Pose of a body, a collider or an attachment.
+
+    object: the object.
+    """
 
     object: PosedObject
-    """The object."""
 
 
 @dataclass(frozen=True, slots=True)
 class VelocityProbe:
-    """Velocity and angular velocity of a body, a collider or an attachment."""
+    """Velocity and angular velocity of a body, a collider or an attachment.
+
+    object: the object.
+    """
 
     object: PosedObject
-    """The object."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodesProbe:
-    """Positions of all nodes of a body."""
+    """Positions of all nodes of a body.
+
+    body: the body.
+    """
 
     body: Body
-    """The body."""
 
 
 Probe: TypeAlias = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import dataclasses
 import math
 import os
@@ -30,6 +31,8 @@ from .reports import Energy, StepReport, WorldReport, step_report, world_report
 if hasattr(os, "register_at_fork"):
     # A fork copies no threads, so that worlds would wait for them for ever.
     os.register_at_fork(after_in_child=_core.note_fork)
+# Daemon threads inside the extension module would abort the process.
+atexit.register(_core.end_calls)
 
 _LARGEST_TRUSTED_ERROR = 0.5
 """Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""

@@ -1,0 +1,26 @@
+// Parts of the messages of SceneError.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "components/types.h"
+#include "jobs/function_ref.h"
+#include "skerry/error.h"
+
+namespace skerry {
+
+/// Returns an error whose text is that of `inner` with `place` in front. Its parts are those of `inner`. If `inner`
+/// names no file, they get the file and the object of the place, and its field in front of the field of `inner`.
+SceneError error_at(const Complaint& place, const SceneError& inner);
+
+/// Formats a number with `digits` significant digits.
+std::string short_text(Real value, int digits = 3);
+
+/// Checks that the offsets of a list of rows begin at 0, ascend and do not exceed the number of items. For the first
+/// wrong offset it calls `complain`, which must throw.
+void expect_offsets(std::span<const Index> offset, std::size_t items,
+                    FunctionRef<void(const std::string& found, const std::string& expected)> complain);
+
+}  // namespace skerry
