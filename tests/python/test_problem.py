@@ -207,3 +207,29 @@ def test_problems_of_the_fclib_collection_are_solved(name: str) -> None:
     assert sk.problem_error(problem, solution.reaction).relative <= 1e-6
     pytest.importorskip("h5py")
     assert _problem._read_with_h5py(str(path)) == problem
+
+
+def test_a_second_block_of_contact_problems_is_refused() -> None:
+    world, _, _ = ball_world()
+    world.advance(0.045)
+
+    def look(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError), world.contact_problems():
+            pass
+
+    with world.contact_problems() as problems:
+        with pytest.raises(sk.SceneError, match="found a block that is already active"), world.contact_problems():
+            pass
+        world.watch_steps(look)
+        world.advance(0.01)
+        world.watch_steps(None)
+        first = len(problems)
+        world.advance(0.01)
+    assert 0 < first < len(problems)
+
+    def look_outside(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError, match="callback"), world.contact_problems():
+            pass
+
+    world.watch_steps(look_outside)
+    world.advance(0.001)
