@@ -56,6 +56,7 @@ void CallScope::end_calls() {
 NB_MODULE(_core, module) {
     using namespace skerry::python;
     module.doc() = "The C++ interface of Skerry. Import skerry instead.";
+    module.attr("version") = SKERRY_VERSION;
     bind_errors(module);
     bind_settings(module);
     bind_mesh(module);

@@ -293,6 +293,10 @@ class World(Building, WorldResults, WorldOutput):
             return escape(repr(self))
 
 
+_SETTINGS_TEXT = (Settings.__doc__ or "").partition("\n\n")[2]
+World.__init__.__doc__ = f"Makes an empty world. The keywords are the fields of Settings.\n\n{_SETTINGS_TEXT}"
+
+
 def _body_first(first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
     """Handles of a body and of a body or a collider, in this order."""
     if isinstance(first, Collider):
