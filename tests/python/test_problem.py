@@ -225,7 +225,7 @@ def test_a_matrix_that_is_not_symmetric_is_refused(row: int, column: int, value:
     ("change", "message"),
     [
         ({"W": np.full((9, 9), np.nan)}, "block: found a value that is not finite"),
-        ({"q": Q * np.inf}, "q: found a value that is not finite"),
+        ({"q": np.full((3, 3), np.inf)}, "q: found a value that is not finite"),
         ({"mu": -0.5}, "mu: found -0.5"),
         ({"mu": np.nan}, "mu: found nan"),
     ],
