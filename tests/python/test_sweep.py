@@ -70,7 +70,7 @@ def test_an_interrupt_ends_a_sweep() -> None:
 
 
 def test_a_wrong_argument_is_named() -> None:
-    with pytest.raises(TypeError, match="^sweep: jobs: found -1, expected a whole number"):
+    with pytest.raises(sk.SceneError, match="^sweep: jobs: found -1, expected a whole number"):
         sk.sweep(SCENE, {"seconds": [0.1]}, jobs=-1)
     with pytest.raises(sk.SceneError, match="^sweep: seconds: found nan, expected a finite time"):
         sk.sweep(SCENE, {"seconds": [0.1]}, seconds=float("nan"))

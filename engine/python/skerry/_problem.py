@@ -307,18 +307,23 @@ def problem_error(problem: Problem, reaction: ArrayLike) -> ProblemError:
 
 
 @contextmanager
-def contact_problems(core: Any, every: int) -> Iterator[list[StepProblem]]:
-    """Collects the problems of the steps of a world of the extension module."""
+def contact_problems(world: Any, every: int) -> Iterator[list[StepProblem]]:
+    """Collects the problems of the steps of a world."""
+    world._core.require_between_steps()
+    if world._collecting:
+        raise scene_error("contact_problems", "", "a block that is already active", "one block at a time")
     problems: list[StepProblem] = []
 
     def take(values: dict[str, Any]) -> None:
         problems.append(StepProblem(**{**values, "problem": Problem._of(values["problem"])}))
 
-    core.watch_problems(take, every)
+    world._core.watch_problems(take, every)
+    world._collecting = True
     try:
         yield problems
     finally:
-        core.watch_problems(None, 1)
+        world._collecting = False
+        world._core.watch_problems(None, 1)
 
 
 def _same_problem(row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str) -> Problem:

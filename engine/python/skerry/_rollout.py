@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import checked, counted, real, real_array, shape_text
+from ._arrays import checked, counted, flag, real, real_array, shape_text
 from ._errors import Doubt, scene_error
-from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
+from ._world.probes import NodesProbe, Probe, recorded_probes
 
 Reals: TypeAlias = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def rollout(
         real(dt, "dt"),
         intervals,
         counted(threads, "rollout: threads"),
-        bool(checked(keep_worlds, "rollout: keep_worlds", bool, np.bool_)),
+        flag(keep_worlds, "rollout: keep_worlds"),
         _show if progress else None,
     )
     if progress:

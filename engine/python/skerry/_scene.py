@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import counted, path_text, real
+from ._arrays import counted, path_text, seconds
 from ._errors import scene_error
-from ._recorder import Probe, Recorder, probe_of
+from ._recorder import Recorder
 from ._world import Body, World
+from ._world.probes import Probe, probe_of
 
 Path: TypeAlias = str | os.PathLike[str]
 Json: TypeAlias = Any
@@ -96,10 +97,11 @@ class Scene:
         that plays the run. vtk: folder of frames for ParaView. progress: writes the time to the standard error output.
 
         StepError: a step could not be completed; all outputs then end there."""
-        world, end = self.world, self.seconds if until is None else end_time(until, "Scene.run", "until")
+        world, end = self.world, self.seconds if until is None else seconds(until, "Scene.run", "until")
         with ExitStack() as outputs:
             if page is not None:
-                outputs.callback(world.record(title=self.name, every=self.frame_step).save, page)
+                film = outputs.enter_context(world.record(title=self.name, every=self.frame_step))
+                outputs.callback(film.save, page)
             if vtk is not None:
                 name = os.path.basename(os.path.normpath(vtk))
                 outputs.enter_context(
@@ -169,14 +171,6 @@ def load_scene(
             "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
         )
     return Scene(_core.load_scene(file, assignments, count))
-
-
-def end_time(value: float, object: str, field: str) -> float:
-    """A finite time, >= 0 [s]."""
-    time = real(value, f"{object}: {field}")
-    if not (time >= 0 and math.isfinite(time)):
-        raise scene_error(object, field, f"{time}", "a finite time >= 0 (s)")
-    return time
 
 
 def scene_schema() -> dict[str, Any]:

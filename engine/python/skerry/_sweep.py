@@ -13,11 +13,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
 from ._arrays import checked, whole
 from ._errors import SceneError, StepError
 from ._recorder import Recorder
 from ._rollout import warn_of
-from ._scene import Json, Path, end_time, load_scene
+from ._scene import Json, Path, load_scene
 
 Case: TypeAlias = Mapping[str, Json]
 """Values of a scene by their places."""
@@ -63,7 +64,7 @@ def sweep(
     SceneError: all cases are refused; it is the error of the first.
     """
     cases = _cases(grid)
-    end = None if seconds is None else end_time(seconds, "sweep", "seconds")
+    end = None if seconds is None else _arrays.seconds(seconds, "sweep", "seconds")
     stop = threading.Event()
     with ThreadPoolExecutor((0 if jobs is None else whole(jobs, "sweep: jobs")) or os.cpu_count() or 1) as pool:
         futures = [pool.submit(_run_case, scene, case, end, folder, stop) for case in cases]

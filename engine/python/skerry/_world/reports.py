@@ -88,6 +88,13 @@ class StepReport:
         """False if a step could not be completed, or if the call was asked to stop."""
         return self.status == "ok"
 
+    def __repr__(self) -> str:
+        doubts = "".join(f", {text}" for text in (self.message, self.warning) if text)
+        return (
+            f"<skerry.StepReport {self.status}, {self.steps:,} steps, {self.contacts:,} contacts, "
+            f"worst error {self.worst_error:.3g}{doubts}>"
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Energy:
@@ -401,6 +408,12 @@ class WorldReport:
     """Name of this collider."""
     distrust: str
     """Reason why positions, forces and energies of the run cannot be trusted; empty if there is none."""
+
+    def __repr__(self) -> str:
+        return (
+            f"<skerry.WorldReport at {self.time:.6g} s, {self.steps:,} steps, {self.bodies:,} bodies, "
+            f"worst error {self.worst_error:.3g}{f', {self.distrust}' if self.distrust else ''}>"
+        )
 
 
 def step_report(world: World, values: dict[str, Any]) -> StepReport:
