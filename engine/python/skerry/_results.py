@@ -208,7 +208,8 @@ class WorldResults:
     @property
     def contacts(self) -> NDArray[np.void]:
         """Contacts of the last step and contacts between sleeping bodies: a structured array with the fields of
-        contact_dtype, in a fixed order. Every use makes a new array, so keep it:
+        contact_dtype, in a fixed order. Numbers of bodies and colliders shift when an object before them is removed.
+        Every use makes a new array, so keep it:
 
             contacts = world.contacts
             sliding = contacts[contacts["motion"] == skerry.SLIDE]["force"]  # shape (k, 3) [N]
