@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <string>
 
 #include "skerry/error.h"
 
@@ -34,11 +33,15 @@ bool symmetric(const ContactProblem& problem, std::size_t i, std::size_t j) {
 
 }  // namespace
 
+std::string title_of(const ContactProblem& problem) {
+    return problem.name.empty() ? "problem" : "problem " + problem.name;
+}
+
 void check_arrays(const ContactProblem& problem) {
     const auto expect = [&](bool good, const char* field, const std::string& found, const std::string& expected) {
         if (!good)
             Complaint{.file = {},
-                      .object = "problem " + problem.name,
+                      .object = title_of(problem),
                       .field = field,
                       .found = found,
                       .expected = expected,

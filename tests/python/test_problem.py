@@ -231,7 +231,7 @@ def test_a_matrix_that_is_not_symmetric_is_refused(row: int, column: int, value:
     ],
 )
 def test_values_out_of_range_are_refused(change: dict[str, Any], message: str) -> None:
-    with pytest.raises(sk.SceneError, match=message):
+    with pytest.raises(sk.SceneError, match=f"^problem: {message}"):
         sk.Problem.from_dense(**{"W": W, "q": Q, "mu": MU, **change})
 
 
