@@ -215,7 +215,7 @@ def test_problems_of_the_fclib_collection_are_solved(name: str) -> None:
 )
 def test_a_matrix_that_is_not_symmetric_is_refused(row: int, column: int, value: float) -> None:
     wrong, rounded = W.copy(), W.copy()
-    wrong[row, column], rounded[row, column] = value, W[row, column] + 1e-12
+    wrong[row, column], rounded[row, column] = value, W[row, column] + 1e-3
     sk.Problem.from_dense(rounded, Q, MU)
     with pytest.raises(sk.SceneError, match="block: found a matrix W that is not symmetric in the rows of contact 0"):
         sk.Problem.from_dense(wrong, Q, MU)
