@@ -29,7 +29,7 @@ bool symmetric(const ContactProblem& problem, std::size_t i, std::size_t j) {
         return number < problem.block.size() ? problem.block[number] : Mat3::Zero();
     };
     return (block(i, j) - block(j, i).transpose()).norm() <=
-           rounding * std::max(block(i, i).norm(), block(j, j).norm());
+           tolerance * std::max(block(i, i).norm(), block(j, j).norm());
 }
 
 }  // namespace
