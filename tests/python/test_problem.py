@@ -246,3 +246,29 @@ def test_an_argument_of_a_wrong_type_is_named() -> None:
         sk.Problem.read(3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="^name: found 3, expected a str"):
         sk.Problem.from_dense(W, Q, MU, name=3)  # type: ignore[arg-type]
+
+
+def test_a_second_block_of_contact_problems_is_refused() -> None:
+    world, _, _ = ball_world()
+    world.advance(0.045)
+
+    def look(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError), world.contact_problems():
+            pass
+
+    with world.contact_problems() as problems:
+        with pytest.raises(sk.SceneError, match="found a block that is already active"), world.contact_problems():
+            pass
+        world.watch_steps(look)
+        world.advance(0.01)
+        world.watch_steps(None)
+        first = len(problems)
+        world.advance(0.01)
+    assert 0 < first < len(problems)
+
+    def look_outside(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError, match="callback"), world.contact_problems():
+            pass
+
+    world.watch_steps(look_outside)
+    world.advance(0.001)

@@ -203,7 +203,7 @@ void World::set_surface_properties(BodyHandle body, const SurfaceSettings& surfa
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(body, "set_surface_properties"));
     validate(surface, "body '" + model.body_records[row].name + "'");
-    const SurfaceProperties next = surface_properties(surface);
+    const SurfaceProperties next = skerry::surface_properties(surface);
     if (model.bodies.surface[row] == next) return;
     model.bodies.surface[row] = next;
     model.wake(row);
@@ -214,7 +214,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(collider, "set_surface_properties"));
     validate(surface, "collider '" + model.collider_records[row].name + "'");
-    const SurfaceProperties next = surface_properties(surface);
+    const SurfaceProperties next = skerry::surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
     state_->edits.places.add_collider(model, row, time());  // wakes bodies that lie on the collider
