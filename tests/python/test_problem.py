@@ -10,6 +10,7 @@ import pytest
 
 import skerry as sk
 from skerry import _core, _problem
+from worlds import ball_world
 
 W = np.array(
     [
