@@ -64,13 +64,15 @@ def test_the_solution_obeys_coulombs_law() -> None:
 
 
 def test_rows_and_columns_of_a_block_keep_their_meaning() -> None:
-    matrix = np.eye(3)
-    matrix[1, 0] = 0.5  # the normal impulse moves the contact along the first tangent
-    problem = sk.Problem.from_dense(matrix, [[-1, 0, 0]], 0.0)
-    assert problem.velocity([[1, 0, 0]])[0].tolist() == [0, 0.5, 0]
-    assert sk.problem_error(problem, [[1, 0, 0]]).absolute == pytest.approx(0)
-    rough = sk.Problem.from_dense(matrix, [[-1, 0, 0]], 1.0)
-    assert sk.problem_error(rough, [[1, 0, 0]]).absolute > 0.1
+    matrix = np.eye(6)
+    # The normal impulse of the second contact moves the first one along its first tangent.
+    matrix[1, 3] = matrix[3, 1] = 0.5
+    q, impulses = [[-1, 0, 0], [-1, 0, 0]], [[1, 0, 0], [1, 0, 0]]
+    problem = sk.Problem.from_dense(matrix, q, 0.0)
+    assert problem.velocity(impulses).tolist() == [[0, 0.5, 0], [0, 0, 0]]
+    assert sk.problem_error(problem, impulses).absolute == pytest.approx(0)
+    rough = sk.Problem.from_dense(matrix, q, 1.0)
+    assert sk.problem_error(rough, impulses).absolute > 0.1
 
 
 @pytest.mark.parametrize("method", ["ags", "pgs", "newton"])

@@ -359,7 +359,7 @@ def test_ctrl_c_ends_a_rollout_and_leaves_the_world_whole() -> None:
     [
         ({"threads": "a"}, "rollout: threads: found 'a', expected a whole number"),
         ({"steps": 1.5}, "rollout: steps: found 1.5, expected a whole number"),
-        ({"keep_worlds": "no"}, "rollout: keep_worlds: found 'no', expected a bool"),
+        ({"keep_worlds": "no"}, "rollout: keep_worlds: found 'no', expected True or False"),
         ({"controls": [1]}, r"rollout: controls: found \[1\], expected a Mapping"),
         ({"controls": {"finger": [[1, 2], [1]]}}, r"pose of collider 'finger': found \[\[1, 2\], \[1\]\]"),
         ({"controls": {("finger", "pose", 1): 0}}, r"controls: found \('finger', 'pose', 1\), expected a name or"),
