@@ -174,7 +174,7 @@ class Body(TouchingObject):
         x = self.positions
         chosen = np.ones(len(x), dtype=np.bool_)
         if box is not None:
-            lower, upper = real_array(box, "box", (2, 3))
+            lower, upper = real_array(box, "box", (2, 3))  # type: ignore[arg-type]
             chosen &= np.all((x >= lower) & (x <= upper), axis=1)
         if sphere is not None:
             if not isinstance(sphere, Sequence) or len(sphere) != 2:
