@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <string>
 
 #include "skerry/error.h"
 
@@ -21,24 +20,29 @@ std::size_t block_at(const ContactProblem& problem, std::size_t i, std::size_t j
                                                            : problem.block.size();
 }
 
-/// True if the blocks W_ij and W_ji are transposes of each other, apart from rounding errors in the assembly of W.
+/// True if the blocks W_ij and W_ji are transposes of each other, apart from errors in the assembly of W. In problems
+/// of the FCLIB collection these errors reach 0.004 of a diagonal block.
 bool symmetric(const ContactProblem& problem, std::size_t i, std::size_t j) {
-    constexpr Real rounding = 1e-6;  // relative to the larger one of the two diagonal blocks
+    constexpr Real tolerance = 0.01;  // relative to the larger one of the two diagonal blocks
     const auto block = [&](std::size_t row, std::size_t column) -> Mat3 {
         const std::size_t number = block_at(problem, row, column);
         return number < problem.block.size() ? problem.block[number] : Mat3::Zero();
     };
     return (block(i, j) - block(j, i).transpose()).norm() <=
-           rounding * std::max(block(i, i).norm(), block(j, j).norm());
+           tolerance * std::max(block(i, i).norm(), block(j, j).norm());
 }
 
 }  // namespace
+
+std::string title_of(const ContactProblem& problem) {
+    return problem.name.empty() ? "problem" : "problem " + problem.name;
+}
 
 void check_arrays(const ContactProblem& problem) {
     const auto expect = [&](bool good, const char* field, const std::string& found, const std::string& expected) {
         if (!good)
             Complaint{.file = {},
-                      .object = "problem " + problem.name,
+                      .object = title_of(problem),
                       .field = field,
                       .found = found,
                       .expected = expected,

@@ -174,6 +174,15 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     world.advance(0.01)
 
 
+def test_a_point_probe_has_four_nodes_and_weights() -> None:
+    world = sk.World(threads=1)
+    ball = world.add_body(sk.Mesh.ball(0.1, 4), sk.Material())
+    with pytest.raises(TypeError, match=r"^PointProbe\.node: found an array of the shape \(1,\), expected \(4,\)"):
+        sk.PointProbe(ball, node=(0,), weight=(1, 0, 0, 0))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^PointProbe\.weight: found an array of the shape \(1,\), expected \(4,\)"):
+        sk.PointProbe(ball, node=(0, -1, -1, -1), weight=(1,))  # type: ignore[arg-type]
+
+
 def test_a_recorder_counts_the_steps_of_a_call_that_ends_with_an_exception() -> None:
     world, ball, _ = ball_world()
     world.advance(0.045)

@@ -1,5 +1,6 @@
 """Skerry: deformable bodies in frictional contact."""
 
+from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
@@ -161,6 +162,7 @@ __all__ = [
     "VolumeProbe",
     "World",
     "WorldReport",
+    "__version__",
     "contact_dtype",
     "hit_dtype",
     "load_scene",

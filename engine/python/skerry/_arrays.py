@@ -171,10 +171,13 @@ def checked(value: Checked, name: str, *kinds: type) -> Checked:
 
 
 def counted(value: SupportsIndex, name: str) -> int:
-    """A whole number of 32 bits. The extension module checks its range."""
-    if not hasattr(value, "__index__") or not -(2**31) <= operator.index(value) < 2**31:
-        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number of 32 bits")
-    return operator.index(value)
+    """A whole number that fits into 32 bits. The extension module checks its range."""
+    if not hasattr(value, "__index__"):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number")
+    number = operator.index(value)
+    if not -(2**31) <= number < 2**31:
+        raise scene_error("", name, str(number), "a number of 32 bits")
+    return number
 
 
 def path_text(value: str | os.PathLike[str], name: str, expected: str = "a path") -> str:

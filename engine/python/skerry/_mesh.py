@@ -188,8 +188,8 @@ class Mesh:
         """A table that stands on z = 0: a top of length (x), width (y) and thickness (z) on four square legs with the
         edge length `leg`, divided into `cells_per_leg` cells. `height` includes the top. All lengths in [m]."""
         sizes = {"length": length, "width": width, "height": height, "thickness": thickness, "leg": leg}
-        lengths = [real(size, name) for name, size in sizes.items()]
-        return Mesh._of(_core.table(*lengths, counted(cells_per_leg, "cells_per_leg")))
+        length, width, height, thickness, leg = (real(size, name) for name, size in sizes.items())
+        return Mesh._of(_core.table(length, width, height, thickness, leg, counted(cells_per_leg, "cells_per_leg")))
 
     # Other packages.
 

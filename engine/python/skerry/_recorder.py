@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import Reals, seconds
+from ._arrays import Reals, path_text, seconds
 from ._errors import scene_error
 
 if TYPE_CHECKING:
@@ -128,15 +128,15 @@ class Recorder:
 
     def to_csv(self, path: Path) -> None:
         """Writes a CSV file with headings and units, and all digits. A file is replaced completely or not at all."""
-        self._core.write_csv(os.fspath(path))
+        self._core.write_csv(path_text(path, "path"))
 
     def to_hdf5(self, path: Path) -> None:
         """Writes an HDF5 file with a data set PROBE/QUANTITY for each column. SceneError: the package has no HDF5."""
-        self._core.write_hdf5(os.fspath(path))
+        self._core.write_hdf5(path_text(path, "path"))
 
     def stream_csv(self, path: Path) -> None:
         """Writes the rows so far to a CSV file, and from now on each new row at once."""
-        self._core.stream_csv(os.fspath(path))
+        self._core.stream_csv(path_text(path, "path"))
 
     def _rows(self) -> Reals:
         rows: Reals = self._core.table().reshape(-1, len(self._core.columns()))
@@ -331,7 +331,7 @@ class WorldOutput:
         colliders. every: time between frames; 0: one for each call of advance() [s]. materials: names of the materials,
         in the order added."""
         world: World = self  # type: ignore[assignment]
-        writer = _core.VtkWriter(os.fspath(folder), name)
+        writer = _core.VtkWriter(path_text(folder, "folder"), name)
         if materials:
             writer.name_materials(list(materials))
         frames = _Frames(world, seconds(every, "vtk", "every"), lambda: writer.add_frame(world._core))

@@ -59,48 +59,52 @@ hit_dtype = np.dtype(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurfaceHit:
-    """A point of the surface of a body or a collider."""
+    """A point of the surface of a body or a collider.
+
+    body: body, or None if the point is on a collider.
+    collider: collider, or None if the point is on a body.
+    triangle: number of the triangle in Body.surface, or in the mesh of a collider; -1 for exact shapes.
+    barycentric: weights of the corners of the triangle at the point.
+    point: position [m].
+    normal: outward unit normal.
+    distance: distance from the origin of the ray, or from the given point [m].
+    """
 
     body: Body | None
-    """Body, or None if the point is on a collider."""
     collider: Collider | None
-    """Collider, or None if the point is on a body."""
     triangle: int
-    """Number of the triangle in Body.surface, or in the mesh of a collider; -1 for exact shapes."""
     barycentric: tuple[float, float, float]
-    """Weights of the corners of the triangle at the point."""
     point: tuple[float, float, float]
-    """Position [m]."""
     normal: tuple[float, float, float]
-    """Outward unit normal."""
     distance: float
-    """Distance from the origin of the ray, or from the given point [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ForceReport:
-    """Forces on a body or a collider, summed over all steps of the last call of advance()."""
+    """Forces on a body or a collider, summed over all steps of the last call of advance().
+
+    impulse: sum of the impulses, shape (3,) [N s].
+    moment_impulse: sum of the moments of the impulses about `moment_point`, shape (3,) [N m s].
+    friction_impulse: tangential part of `impulse`, shape (3,); zero for attachments [N s].
+    pressing_impulse: sum of the magnitudes of the normal impulses [N s].
+    largest_force: largest force of a single step [N].
+    contact_count: number of contacts with an impulse in the last step.
+    most_contacts: largest number of contacts with an impulse in any step.
+    seconds: time for which loads acted [s].
+    moment_point: reference point of moments, as given to measure_forces(), shape (3,) [m].
+    measured: False if the call was too short to show the force, or took no step. Mean values are then NaN.
+    """
 
     impulse: Reals
-    """Sum of the impulses, shape (3,) [N s]."""
     moment_impulse: Reals
-    """Sum of the moments of the impulses about `moment_point`, shape (3,) [N m s]."""
     friction_impulse: Reals
-    """Tangential part of `impulse`, shape (3,); zero for attachments [N s]."""
     pressing_impulse: float
-    """Sum of the magnitudes of the normal impulses [N s]."""
     largest_force: float
-    """Largest force of a single step [N]."""
     contact_count: int
-    """Number of contacts with an impulse in the last step."""
     most_contacts: int
-    """Largest number of contacts with an impulse in any step."""
     seconds: float
-    """Time for which loads acted [s]."""
     moment_point: Reals
-    """Reference point of moments, as given to measure_forces(), shape (3,) [m]."""
     measured: bool
-    """False if the call was too short to show the force, or took no step. Mean values are then NaN."""
 
     @property
     def force(self) -> Reals:
@@ -137,14 +141,16 @@ class ForceReport:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PairForces:
-    """Forces between two objects that touched."""
+    """Forces between two objects that touched.
+
+    first: body.
+    second: other body, which is `first` for contacts of a body with itself, or a collider.
+    on_first: forces of `second` on `first`; those on `second` are opposite.
+    """
 
     first: Body
-    """Body."""
     second: Body | Collider
-    """Other body, which is `first` for contacts of a body with itself, or a collider."""
     on_first: ForceReport
-    """Forces of `second` on `first`; those on `second` are opposite."""
 
 
 class Forces:
@@ -202,7 +208,8 @@ class WorldResults:
     @property
     def contacts(self) -> NDArray[np.void]:
         """Contacts of the last step and contacts between sleeping bodies: a structured array with the fields of
-        contact_dtype, in a fixed order. Every use makes a new array, so keep it:
+        contact_dtype, in a fixed order. Numbers of bodies and colliders shift when an object before them is removed.
+        Every use makes a new array, so keep it:
 
             contacts = world.contacts
             sliding = contacts[contacts["motion"] == skerry.SLIDE]["force"]  # shape (k, 3) [N]

@@ -7,6 +7,7 @@ import dataclasses
 import math
 import os
 import sys
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -31,8 +32,15 @@ from .reports import Energy, StepReport, WorldReport, step_report, world_report
 if hasattr(os, "register_at_fork"):
     # A fork copies no threads, so that worlds would wait for them for ever.
     os.register_at_fork(after_in_child=_core.note_fork)
-# Daemon threads inside the extension module would abort the process.
-atexit.register(_core.end_calls)
+
+
+@atexit.register
+def _end_calls() -> None:
+    """Ends the calls of daemon threads, which would abort the process after the end of Python."""
+    latest = time.monotonic() + 10  # a callback may wait for ever
+    while _core.end_calls() and time.monotonic() < latest:
+        time.sleep(1e-3)
+
 
 _LARGEST_TRUSTED_ERROR = 0.5
 """Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""
@@ -308,6 +316,10 @@ class World(Building, WorldResults, WorldOutput):
             return world_table(self)
         except BusyError:
             return escape(repr(self))
+
+
+_SETTINGS_TEXT = (Settings.__doc__ or "").partition("\n\n")[2]
+World.__init__.__doc__ = f"Makes an empty world. The keywords are the fields of Settings.\n\n{_SETTINGS_TEXT}"
 
 
 def _frames_of_package() -> int:
