@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/problem/check_arrays.h"
 #include "skerry/error.h"
 #include "systems/solver/operators/block_operator.h"
 
@@ -38,7 +39,7 @@ ProblemError measure_problem(const ContactProblem& problem, std::span<const Vec3
 ProblemError problem_error(const ContactProblem& problem, std::span<const Vec3> reaction) {
     if (reaction.size() != problem.q.size())
         Complaint{.file = {},
-                  .object = "problem " + problem.name,
+                  .object = title_of(problem),
                   .field = "reaction",
                   .found = std::to_string(reaction.size()) + " values",
                   .expected = std::to_string(problem.q.size()) + ", one per contact",

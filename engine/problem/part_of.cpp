@@ -14,7 +14,7 @@ ContactProblem part_of(const ContactProblem& problem, std::span<const Index> con
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (contacts[i] <= previous || contacts[i] >= problem.contacts())
             Complaint{.file = {},
-                      .object = "problem " + problem.name,
+                      .object = title_of(problem),
                       .field = "contacts",
                       .found = std::to_string(contacts[i]),
                       .expected =

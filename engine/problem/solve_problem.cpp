@@ -106,12 +106,8 @@ double seconds_of(const ContactProblem& problem, const ProblemSettings& settings
 
 void check(const ContactProblem& problem, const ProblemSettings& settings) {
     const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
-        Complaint{.file = {},
-                  .object = "problem " + problem.name,
-                  .field = field,
-                  .found = found,
-                  .expected = expected,
-                  .hint = {}}
+        Complaint{
+            .file = {}, .object = title_of(problem), .field = field, .found = found, .expected = expected, .hint = {}}
             .raise();
     };
     if (!(settings.tolerance >= 0)) refuse("tolerance", std::to_string(settings.tolerance), "a number >= 0");

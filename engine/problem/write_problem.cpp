@@ -76,7 +76,7 @@ void write_problem(const ContactProblem& problem, const std::filesystem::path& f
     check_arrays(problem);
     const auto refuse = [&](const char* field, const std::string& found, const std::string& expected) {
         Complaint{.file = file.string(),
-                  .object = "problem " + problem.name,
+                  .object = title_of(problem),
                   .field = field,
                   .found = found,
                   .expected = expected,

@@ -231,7 +231,8 @@ void add_run(CLI::App& app, RunOptions& options) {
     command.footer(run_examples);
     CLI::Option* scene =
         command.add_option("SCENE", options.scene, "scene file (JSON); `skerry schema` prints its format");
-    add_number(command, "--seconds", options.seconds, "simulated time [s]; default: \"seconds\" of the scene");
+    add_number(command, "--seconds", options.seconds,
+               "time at which the run ends [s]; default: \"seconds\" of the scene");
     command
         .add_option_function<int>(
             "--threads", [&options](const int& count) { options.overrides.threads = count; },

@@ -84,14 +84,14 @@ public:
     /// Raises SystemExit, which ends a thread without a message, if Python ends and waits for this thread. Needs no
     /// GIL.
     static void raise_at_exit();
-    /// Ends the calls of other threads, and waits for them without the GIL.
-    static void end_calls();
+    /// From now on ends calls of other threads. Returns the number of calls that still run.
+    static int end_calls();
     /// Called in a new process after fork(), which has no other threads.
     static void note_fork() { running = 0; }
 
 private:
     static inline std::atomic<int> running{0};
-    static inline std::atomic<unsigned long> ending{0};  // number of the thread in end_calls(); 0 if none
+    static inline std::atomic<unsigned long> ending{0};  // number of the thread that called end_calls(); 0 if none
 };
 
 /// Calls a function without the GIL.

@@ -1,6 +1,3 @@
-#include <chrono>
-#include <thread>
-
 #include "engine/python/bind.h"
 #include "skerry/error.h"
 
@@ -42,13 +39,9 @@ void CallScope::raise_at_exit() {
     throw nb::python_error();
 }
 
-void CallScope::end_calls() {
+int CallScope::end_calls() {
     ending = PyThread_get_thread_ident();
-    nb::gil_scoped_release released;
-    // A callback may wait for something that never happens. Python then ends without its call.
-    const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (running > 0 && std::chrono::steady_clock::now() < latest)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return running;
 }
 
 }  // namespace skerry::python
@@ -56,6 +49,7 @@ void CallScope::end_calls() {
 NB_MODULE(_core, module) {
     using namespace skerry::python;
     module.doc() = "The C++ interface of Skerry. Import skerry instead.";
+    module.attr("version") = SKERRY_VERSION;
     bind_errors(module);
     bind_settings(module);
     bind_mesh(module);

@@ -101,7 +101,8 @@ private:
 
     [[noreturn]] void complain(const char* name, const nb::object& given, const std::string& expected) const {
         Complaint{.file = {},
-                  .object = nb::cast<std::string>(from_.type().attr("__name__")),
+                  .object = nb::cast<std::string>(nb::hasattr(from_, "of") ? from_.attr("of")
+                                                                           : from_.type().attr("__name__")),
                   .field = name,
                   .found = nb::cast<std::string>(nb::repr(given)),
                   .expected = expected,
@@ -247,6 +248,9 @@ nb::object object_of(const Shape& shape) {
 }
 nb::object object_of(const Pose& pose) {
     return instance_of(pose);
+}
+nb::object object_of(const SurfaceSettings& surface) {
+    return instance_of(surface);
 }
 
 void bind_settings(nb::module_& module) {

@@ -9,7 +9,8 @@
 namespace skerry::python {
 
 /// Reads the attributes of a Python object into a struct of settings. A missing attribute leaves the default. Throws
-/// SceneError that names object and field if a value has the wrong type. Handles of materials and bodies are not read:
+/// SceneError that names object and field if a value has the wrong type. The object is named by its attribute `of`, or
+/// else by its class. Handles of materials and bodies are not read:
 /// Python passes them as arguments.
 void read(nb::handle from, Settings& to);
 void read(nb::handle from, MaterialSettings& to);
@@ -30,8 +31,9 @@ Shape read_shape(nb::handle from);
 nb::dict values_of(const Settings& settings);
 nb::dict values_of(const MaterialSettings& settings);
 
-/// The Python object of a shape, a pose or a motion: an instance of its dataclass.
+/// The Python object of a shape, a pose or surface values: an instance of its dataclass.
 nb::object object_of(const Shape& shape);
 nb::object object_of(const Pose& pose);
+nb::object object_of(const SurfaceSettings& surface);
 
 }  // namespace skerry::python

@@ -22,7 +22,7 @@ nb::object tuple_of_point(const std::optional<Vec3>& point) {
     return point ? nb::object(tuple_of(*point)) : nb::none();
 }
 
-/// Name of the Python class of a probe in skerry/_recorder.py, and the members of the probe.
+/// Name of the Python class of a probe in skerry/_world/probes.py, and the members of the probe.
 nb::tuple values_of(const RecordedProbe& probe) {
     nb::dict values;
     const char* kind = std::visit(

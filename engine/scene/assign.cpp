@@ -1,9 +1,11 @@
 #include "engine/scene/assign.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace skerry {
 
@@ -26,6 +28,7 @@ public:
 
     void carry_out(Json& scene) {
         if (place_.empty()) refuse("no place before \"=\"", "a place in the scene before \"=\"");
+        refuse_new_material(scene);
         Json* at = &scene;
         while (!place_.empty()) at = &inner(*at, next_step());
         Json value = Json::parse(value_, nullptr, false);
@@ -33,14 +36,29 @@ public:
     }
 
 private:
-    [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+    [[noreturn]] void refuse(const std::string& found, const std::string& expected,
+                             const std::string& hint = "write PLACE=VALUE, such as bodies[0].position=[0,0,1]") const {
         Complaint{.file = file_.string(),
                   .object = in_quotes(text_),
                   .field = {},
                   .found = found,
                   .expected = expected,
-                  .hint = "write PLACE=VALUE, such as bodies[0].position=[0,0,1]"}
+                  .hint = hint}
             .raise();
+    }
+
+    /// Refuses a place inside a material that the scene lacks, because no body would use this new material.
+    void refuse_new_material(const Json& scene) const {
+        Assignment rest = *this;
+        if (rest.next_step().key != "materials" || rest.place_.empty()) return;
+        const std::string name = rest.next_step().key;
+        std::vector<std::string> known;
+        if (const auto found = scene.find("materials"); found != scene.end() && found->is_object())
+            for (const auto& [key, value] : found->items()) known.push_back(key);
+        if (rest.place_.empty() || name.empty() || std::ranges::find(known, name) != known.end()) return;
+        refuse("a place in the unknown material " + in_quotes(name),
+               known.empty() ? "a scene that defines materials" : "a place in one of the materials " + listed(known),
+               nearest_hint(name, known));
     }
 
     /// Returns the position of the first "=" outside of quotes.

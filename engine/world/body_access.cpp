@@ -1,4 +1,6 @@
 // Read access to the state of single bodies and colliders.
+#include <Eigen/Dense>
+
 #include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "systems/dynamics/motion/move_colliders.h"
@@ -90,6 +92,52 @@ std::vector<ColliderHandle> World::colliders() const {
     for (std::uint32_t slot : state_->model.colliders.slot)
         handles.push_back(state_->model.collider_map.handle_of_slot(slot));
     return handles;
+}
+
+std::vector<AttachmentHandle> World::attachments() const {
+    state_->settle();
+    const AttachmentTable& table = state_->model.attachments;
+    std::vector<AttachmentHandle> handles;
+    for (std::size_t a = 0; a < table.slot.size(); ++a)
+        if (state_->model.bodies.kind[static_cast<std::size_t>(table.body[a])] == BodyKind::deformable)
+            handles.push_back(state_->model.attachment_map.handle_of_slot(table.slot[a]));
+    return handles;
+}
+
+BodyHandle World::body(AttachmentHandle attachment) const {
+    state_->settle();
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "body"));
+    const auto body = static_cast<std::size_t>(state_->model.attachments.body[row]);
+    return state_->model.body_map.handle_of_slot(state_->model.bodies.slot[body]);
+}
+
+std::vector<Index> World::nodes(AttachmentHandle attachment) const {
+    state_->settle();
+    const AttachmentTable& table = state_->model.attachments;
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "nodes"));
+    const Index first = state_->model.bodies.nodes[static_cast<std::size_t>(table.body[row])].begin;
+    std::vector<Index> numbers;
+    for (const Index node : rows_of(table.node, table.nodes[row])) numbers.push_back(node - first);
+    return numbers;
+}
+
+Twist World::velocity(BodyHandle body) const {
+    state_->settle();
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "velocity"));
+    const NodeMotion motion = motion_of_nodes(state_->model, row, center_of_mass(body));
+    return {motion.momentum / mass(body), motion.inertia.inverse() * motion.angular_momentum};
+}
+
+Twist World::velocity(ColliderHandle collider) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(collider, "velocity"));
+    const RigidMotion& motion = state_->model.colliders.motion[row];
+    return {motion.velocity, motion.angular_velocity};
+}
+
+Twist World::velocity(AttachmentHandle attachment) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(attachment, "velocity"));
+    const RigidMotion& motion = state_->model.attachments.motion[row];
+    return {motion.velocity, motion.angular_velocity};
 }
 
 MotionKey World::pose(BodyHandle body) const {

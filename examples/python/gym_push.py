@@ -1,6 +1,6 @@
 """A Gymnasium environment: a soft finger pushes a puck over a floor to a target.
 
-    pip install skerry[gym]
+    pip install .[gym]  # in the source folder
     python gym_push.py
 
 The hand that holds the finger is the only thing that an agent moves. Its actions are two speeds of the hand. Resets

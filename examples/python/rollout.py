@@ -7,7 +7,7 @@ import skerry as sk
 world = sk.World()
 rubber = sk.Material(young_modulus=5e4, density=500, friction=0.6)
 ball = world.add_body(sk.Mesh.ball(0.05, 6), rubber, position=(0, 0, 0.051), name="ball")
-finger = world.add_collider(sk.Box(size=(0.02, 0.1, 0.1)), position=(-0.065, 0, 0.055), name="finger")
+finger = world.add_collider(sk.Box((0.02, 0.1, 0.1)), position=(-0.065, 0, 0.055), name="finger")
 world.add_collider(sk.Plane())
 
 dt, steps = 0.01, 100

@@ -177,3 +177,53 @@ def test_a_sleeping_body_wakes_when_told() -> None:
     assert "asleep" in world._repr_html_()
     box.wake()
     assert not box.asleep
+
+
+def test_surface_values_that_are_not_given_stay() -> None:
+    world, ball, floor = ball_world()
+    assert ball.surface_values == floor.surface_values == sk.Surface()
+    ball.set_surface(friction=0)
+    ball.set_surface(restitution=0.5)
+    assert ball.surface_values == sk.Surface(friction=0, restitution=0.5)
+    ball.set_surface(static_friction=0.75)
+    assert ball.surface_values == sk.Surface(static_friction=0.75, dynamic_friction=0, restitution=0.5)
+    ball.set_surface(friction=0.25)
+    assert ball.surface_values == sk.Surface(friction=0.25, restitution=0.5)
+    ball.set_surface(friction=None)
+    assert ball.surface_values == sk.Surface(restitution=0.5)
+    ball.set_surface(sk.Surface(friction=1))
+    assert ball.surface_values == sk.Surface(friction=1)
+    floor.set_surface(dynamic_friction=0.25)
+    floor.set_surface(static_friction=0.5)
+    assert floor.surface_values == sk.Surface(static_friction=0.5, dynamic_friction=0.25)
+
+
+def test_all_objects_and_values_of_a_loaded_world_can_be_read() -> None:
+    world, ball, floor = ball_world(gravity=(0, 0, 0))
+    steel = world.add_material(density=7800.0, young_modulus=2e11)
+    box = world.add_body(
+        sk.Mesh.box((0.1, 0.1, 0.1), 1), steel, position=(1, 0, 1), velocity=(1, 0, 0), angular_velocity=(0, 2, 0)
+    )
+    held = ball.attach([4, 2, 7])
+    box.set_loads((0, 0, 3))
+    floor.set_surface(friction=0.25)
+    floor.set_collision_groups(group=2, mask=7)
+    floor.set_velocity((1, 0, 0), (0, 0, 3))
+    np.testing.assert_allclose(box.velocity, (1, 0, 0), atol=1e-12)
+    np.testing.assert_allclose(box.angular_velocity, (0, 2, 0), atol=1e-9)
+    world.advance(1e-4)
+    loaded = sk.World.from_bytes(world.to_bytes())
+    (attachment,) = loaded.attachments
+    ball, box, floor = loaded.bodies["ball"], loaded.bodies[1], loaded.colliders["floor"]
+    assert attachment == held.in_copy(loaded) and attachment.body == ball
+    assert attachment.nodes.tolist() == [4, 2, 7] and repr(attachment) == repr(held)
+    assert ball.attachments == [attachment] and box.attachments == []
+    assert loaded.materials == [ball.material, box.material]
+    assert box.material == steel.in_copy(loaded) and box.material.settings.density == 7800
+    np.testing.assert_array_equal(box.loads, np.tile((0, 0, 3), (box.node_count, 1)))
+    assert floor.surface_values.friction == 0.25
+    assert floor.collision_groups == (2, 7) and ball.collision_groups == (1, 0xFFFFFFFF)
+    np.testing.assert_array_equal((floor.velocity, floor.angular_velocity), ((1, 0, 0), (0, 0, 3)))
+    np.testing.assert_array_equal(attachment.velocity, (0, 0, 0))
+    attachment.remove()
+    assert loaded.attachments == []

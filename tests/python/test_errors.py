@@ -1,5 +1,6 @@
 """Errors: their classes, parts, notes and copies."""
 
+import pathlib
 import pickle
 import re
 import traceback
@@ -36,8 +37,8 @@ def test_a_hint_is_a_note() -> None:
 
 def test_a_value_of_the_wrong_type_names_object_and_field() -> None:
     world = sk.World(threads=1)
-    with pytest.raises(sk.SceneError, match="BodySettings: self_contact: found 'yes', expected True or False"):
-        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, self_contact="yes")  # type: ignore[arg-type]
+    with pytest.raises(sk.SceneError, match="body 'body 0': dynamics: found 'soft', expected one of"):
+        world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, dynamics="soft")  # type: ignore[arg-type]
     assert len(world.bodies) == 0
 
 
@@ -59,8 +60,10 @@ WRONG: dict[str, Callable[[sk.World, sk.Body, sk.Collider], object]] = {
     ),
     "pose: found 1, expected a Pose": lambda world, ball, floor: ball.reset(1),  # type: ignore[arg-type]
     "dynamics: found 1, expected a str": lambda world, ball, floor: ball.set_dynamics(1),  # type: ignore[arg-type]
-    "mask: found -1, expected a whole number from 0": lambda world, ball, floor: ball.set_collision_groups(mask=-1),
-    "on: found 'off', expected a bool": lambda world, ball, floor: world.set_collision(
+    "mask: found 1.5, expected a whole number from 0": lambda world, ball, floor: ball.set_collision_groups(
+        mask=1.5  # type: ignore[arg-type]
+    ),
+    "on: found 'off', expected True or False": lambda world, ball, floor: world.set_collision(
         ball,
         floor,
         "off",  # type: ignore[arg-type]
@@ -116,14 +119,6 @@ def test_a_failed_step_is_reported_by_try_advance() -> None:
     world, ball = failing_world()
     report = world.try_advance(0.01)
     assert not report.ok and report.body == ball and report.body_name == "ball" and "ball" in report.message
-
-
-def test_a_step_error_can_be_pickled() -> None:
-    world, _ = failing_world()
-    with pytest.raises(sk.StepError) as caught:
-        world.advance(0.01)
-    again = pickle.loads(pickle.dumps(caught.value))
-    assert str(again) == str(caught.value) and again.body.name == "ball"
 
 
 def test_a_time_that_is_not_finite_is_refused() -> None:
@@ -183,3 +178,24 @@ def test_a_run_in_which_a_surface_crosses_itself_raises_a_doubt() -> None:
         world.run(0.05)
     (crossing,) = world.report().self_crossings
     assert crossing.body == pair and crossing.last_places > 0
+
+
+def test_a_pickled_step_error_leaves_its_world_behind() -> None:
+    world, _ = failing_world()
+    with pytest.raises(sk.StepError) as caught:
+        world.advance(0.01)
+    data = pickle.dumps(caught.value)
+    again = pickle.loads(data)
+    assert len(data) < 2000 and len(data) < len(world.to_bytes()) / 10
+    assert again.body is None and again.report.body_name == "ball"
+    assert (str(again), again.node, again.element) == (str(caught.value), caught.value.node, caught.value.element)
+    assert caught.value.body is not None
+
+
+def test_a_world_that_could_not_be_loaded_is_not_saved(tmp_path: pathlib.Path) -> None:
+    world, ball, _ = ball_world()
+    ball.set_velocity((1e200, 0, 0))
+    world.try_advance(0.01)
+    with pytest.raises(sk.SceneError, match="save: .*: found inf at row"):
+        world.save(tmp_path / "world")
+    assert not list(tmp_path.iterdir())

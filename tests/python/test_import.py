@@ -1,6 +1,9 @@
 """Importing the package, and leaving Python with worlds that still live."""
 
+import dataclasses
 import inspect
+import pathlib
+import re
 import subprocess
 import sys
 
@@ -28,6 +31,33 @@ def test_every_public_class_and_function_is_documented() -> None:
     public = [getattr(skerry, name) for name in skerry.__all__]
     assert sum(map(inspect.isclass, public)) > 20
     assert [found for found in public if inspect.isroutine(found) or inspect.isclass(found) if not found.__doc__] == []
+
+
+def test_the_docstring_of_a_record_names_its_fields() -> None:
+    import skerry
+
+    records = [kind for name in skerry.__all__ if dataclasses.is_dataclass(kind := getattr(skerry, name))]
+    assert len(records) > 30
+    for record in records:
+        for field in dataclasses.fields(record):
+            assert re.search(rf"^ *{field.name}: \S", inspect.getdoc(record) or "", re.MULTILINE), (record, field.name)
+    for record in (skerry.Material, skerry.Settings, skerry.Motor, skerry.JointState, skerry.StepReport, skerry.Sphere):
+        assert "[" in (record.__doc__ or ""), record
+
+
+def test_the_docstring_of_a_new_world_names_the_settings() -> None:
+    import skerry
+
+    for field in dataclasses.fields(skerry.Settings):
+        assert f"\n    {field.name}: " in (skerry.World.__init__.__doc__ or ""), field.name
+
+
+def test_the_version_is_that_of_the_source() -> None:
+    import skerry
+
+    source = pathlib.Path(__file__).resolve().parents[2] / "CMakeLists.txt"
+    found = re.search(r"project\(skerry VERSION ([0-9.]+)", source.read_text())
+    assert found and skerry.__version__ == found[1]
 
 
 def test_python_ends_silently_with_a_living_world() -> None:

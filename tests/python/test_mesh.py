@@ -226,3 +226,50 @@ def test_malformed_files_of_other_programs_are_refused_by_name() -> None:
     for path in (Path(DATA or "") / "meshes" / "malformed").iterdir():
         with pytest.raises(sk.SceneError, match=path.name):
             sk.Mesh.read(path)
+
+
+@pytest.mark.parametrize(
+    ("make", "object", "field", "found"),
+    [
+        (lambda: sk.Mesh.ball(1, 0), "ball", "resolution", "0"),
+        (lambda: sk.Mesh.box((1, 0, 1), 2), "box", "size", "0"),
+        (lambda: sk.Mesh.box((1, 1, 1), 2**20), "box", "cells", "a mesh of about 6.91753e+18 elements"),
+        (lambda: sk.Mesh.cylinder(1, np.inf, 4), "cylinder", "height", "inf"),
+        (lambda: sk.Mesh.lathe([(1, 0), (1, -1)], 4), "lathe", "profile", "z = -1 at point 1"),
+        (lambda: sk.Mesh.table(leg=0.2), "table", "leg", "0.2"),
+    ],
+)
+def test_a_wrong_size_of_a_shape_is_named(make: Any, object: str, field: str, found: str) -> None:
+    with pytest.raises(sk.SceneError, match=f"^{object}: {field}: found ") as caught:
+        make()
+    assert (caught.value.object, caught.value.field, caught.value.found) == (object, field, found)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: sk.Mesh.ball(1, 4.0), "resolution: found 4.0, expected a whole number"),  # type: ignore[arg-type]
+        (lambda: sk.Mesh.ball("1", 4), "radius: found '1', expected a number"),  # type: ignore[arg-type]
+        (lambda: sk.Mesh.table(cells_per_leg=1.5), "cells_per_leg: found 1.5"),  # type: ignore[arg-type]
+        (lambda: sk.Mesh.read(b"a.msh"), "path: found b'a.msh', expected a path"),  # type: ignore[arg-type]
+        (lambda: sk.read_surface(3), "path: found 3, expected a path"),  # type: ignore[arg-type]
+        (lambda: sk.Mesh.from_meshio("x"), "mesh: found 'x', expected a meshio.Mesh"),
+        (lambda: sk.Mesh.from_pyvista("x"), "grid: found 'x', expected a pyvista.UnstructuredGrid"),
+        (lambda: sk.Mesh.from_gmsh("x"), "model: found 'x', expected gmsh.model"),
+    ],
+)
+def test_an_argument_of_a_wrong_type_is_named(make: Any, message: str) -> None:
+    with pytest.raises(TypeError, match=f"^{message}"):
+        make()
+
+
+def test_numbers_of_numpy_are_numbers_of_cells() -> None:
+    assert sk.Mesh.box((1, 1, 1), np.int64(2)) == sk.Mesh.box((1, 1, 1), (2, 2, 2))  # type: ignore[arg-type]
+    assert sk.Mesh.ball(np.float64(1), np.int32(4)) == sk.Mesh.ball(1, 4)  # type: ignore[arg-type]
+
+
+def test_a_written_mesh_without_labels_returns_with_the_label_1(tmp_path: Path) -> None:
+    for labels in ([7, 9], None):
+        mesh = sk.Mesh(NODES, TETRAHEDRA, labels=labels)
+        mesh.write(tmp_path / "two.msh")
+        assert sk.Mesh.read(tmp_path / "two.msh") == sk.Mesh(NODES, TETRAHEDRA, labels=labels or [1, 1])

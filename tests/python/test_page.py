@@ -64,6 +64,7 @@ def test_a_film_leaves_no_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     with pytest.raises(ValueError, match="every: found -1"):
         world.record(every=-1)
     left = world.record()
+    left.__enter__()
     assert len(list(tmp_path.iterdir())) == 1
     del film, left, world
     gc.collect()
@@ -105,3 +106,17 @@ def test_a_browser_runs_the_page_inside_a_notebook(tmp_path: Path) -> None:
     )
     title = re.search("<title>(.*?)</title>", done.stdout)
     assert title is not None and re.fullmatch(r"[1-9]\d* canvases at about:srcdoc", title[1])
+
+
+def test_a_film_records_only_in_its_block() -> None:
+    world, _, _ = ball_world()
+    film = world.record()
+    world.advance(0.1)
+    assert len(film) == 0 and not world._followers
+    with pytest.raises(RuntimeError, match="film: found no frames, expected a `with` block"):
+        film.show()
+    with film:
+        world.advance(0.1)
+    assert len(film) > 1
+    with pytest.raises(RuntimeError, match="film: found a film that was already recorded"), film:
+        pass

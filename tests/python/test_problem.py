@@ -3,12 +3,14 @@
 import os
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import skerry as sk
 from skerry import _core, _problem
+from worlds import ball_world
 
 W = np.array(
     [
@@ -62,13 +64,15 @@ def test_the_solution_obeys_coulombs_law() -> None:
 
 
 def test_rows_and_columns_of_a_block_keep_their_meaning() -> None:
-    matrix = np.eye(3)
-    matrix[1, 0] = 0.5  # the normal impulse moves the contact along the first tangent
-    problem = sk.Problem.from_dense(matrix, [[-1, 0, 0]], 0.0)
-    assert problem.velocity([[1, 0, 0]])[0].tolist() == [0, 0.5, 0]
-    assert sk.problem_error(problem, [[1, 0, 0]]).absolute == pytest.approx(0)
-    rough = sk.Problem.from_dense(matrix, [[-1, 0, 0]], 1.0)
-    assert sk.problem_error(rough, [[1, 0, 0]]).absolute > 0.1
+    matrix = np.eye(6)
+    # The normal impulse of the second contact moves the first one along its first tangent.
+    matrix[1, 3] = matrix[3, 1] = 0.5
+    q, impulses = [[-1, 0, 0], [-1, 0, 0]], [[1, 0, 0], [1, 0, 0]]
+    problem = sk.Problem.from_dense(matrix, q, 0.0)
+    assert problem.velocity(impulses).tolist() == [[0, 0.5, 0], [0, 0, 0]]
+    assert sk.problem_error(problem, impulses).absolute == pytest.approx(0)
+    rough = sk.Problem.from_dense(matrix, q, 1.0)
+    assert sk.problem_error(rough, impulses).absolute > 0.1
 
 
 @pytest.mark.parametrize("method", ["ags", "pgs", "newton"])
@@ -207,3 +211,67 @@ def test_problems_of_the_fclib_collection_are_solved(name: str) -> None:
     assert sk.problem_error(problem, solution.reaction).relative <= 1e-6
     pytest.importorskip("h5py")
     assert _problem._read_with_h5py(str(path)) == problem
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "value"), [(0, 1, 1e14), (0, 6, 0.4), (1, 3, 0.1)], ids=["diagonal block", "pair", "single block"]
+)
+def test_a_matrix_that_is_not_symmetric_is_refused(row: int, column: int, value: float) -> None:
+    wrong, rounded = W.copy(), W.copy()
+    wrong[row, column], rounded[row, column] = value, W[row, column] + 1e-3
+    sk.Problem.from_dense(rounded, Q, MU)
+    with pytest.raises(sk.SceneError, match="block: found a matrix W that is not symmetric in the rows of contact 0"):
+        sk.Problem.from_dense(wrong, Q, MU)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"W": np.full((9, 9), np.nan)}, "block: found a value that is not finite"),
+        ({"q": np.full((3, 3), np.inf)}, "q: found a value that is not finite"),
+        ({"mu": -0.5}, "mu: found -0.5"),
+        ({"mu": np.nan}, "mu: found nan"),
+    ],
+)
+def test_values_out_of_range_are_refused(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(sk.SceneError, match=f"^problem: {message}"):
+        sk.Problem.from_dense(**{"W": W, "q": Q, "mu": MU, **change})
+
+
+def test_an_argument_of_a_wrong_type_is_named() -> None:
+    with pytest.raises(TypeError, match="^problem: found 'x', expected a Problem"):
+        sk.solve("x")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="^problem: found 'x', expected a Problem"):
+        sk.problem_error("x", [])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="^W: found 'x', expected a sparse matrix of SciPy"):
+        sk.Problem.from_bsr("x", Q, MU)
+    with pytest.raises(TypeError, match="^path: found 3, expected a path"):
+        sk.Problem.read(3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="^name: found 3, expected a str"):
+        sk.Problem.from_dense(W, Q, MU, name=3)  # type: ignore[arg-type]
+
+
+def test_a_second_block_of_contact_problems_is_refused() -> None:
+    world, _, _ = ball_world()
+    world.advance(0.045)
+
+    def look(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError), world.contact_problems():
+            pass
+
+    with world.contact_problems() as problems:
+        with pytest.raises(sk.SceneError, match="found a block that is already active"), world.contact_problems():
+            pass
+        world.watch_steps(look)
+        world.advance(0.01)
+        world.watch_steps(None)
+        first = len(problems)
+        world.advance(0.01)
+    assert 0 < first < len(problems)
+
+    def look_outside(report: sk.StepReport) -> None:
+        with pytest.raises(sk.SceneError, match="callback"), world.contact_problems():
+            pass
+
+    world.watch_steps(look_outside)
+    world.advance(0.001)

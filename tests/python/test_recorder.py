@@ -172,3 +172,88 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     with pytest.raises(sk.SceneError, match="file"), world.vtk(tmp_path / "file"):
         pass
     world.advance(0.01)
+
+
+def test_a_point_probe_has_four_nodes_and_weights() -> None:
+    world = sk.World(threads=1)
+    ball = world.add_body(sk.Mesh.ball(0.1, 4), sk.Material())
+    with pytest.raises(TypeError, match=r"^PointProbe\.node: found an array of the shape \(1,\), expected \(4,\)"):
+        sk.PointProbe(ball, node=(0,), weight=(1, 0, 0, 0))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^PointProbe\.weight: found an array of the shape \(1,\), expected \(4,\)"):
+        sk.PointProbe(ball, node=(0, -1, -1, -1), weight=(1,))  # type: ignore[arg-type]
+
+
+def test_a_recorder_counts_the_steps_of_a_call_that_ends_with_an_exception() -> None:
+    world, ball, _ = ball_world()
+    world.advance(0.045)
+    probes: dict[str, sk.Probe] = {"push": sk.ForceProbe(ball), "ball": sk.BodyProbe(ball)}
+    with world.recorder(probes) as recorder:
+        start = world.time
+        momentum = ball.mass * recorder.table()["ball.velocity_z"][0]
+        raised = False
+
+        def interrupt(report: sk.StepReport) -> None:
+            if world.time > start + 0.005:
+                raise KeyboardInterrupt
+
+        world.watch_steps(interrupt)
+        try:
+            world.advance(0.01)
+        except KeyboardInterrupt:
+            raised = True
+        world.watch_steps(None)
+        assert raised and len(recorder) == 2
+        world.advance(0.01)
+    table = recorder.table()
+    intervals = np.diff(table["time"])
+    pushed = float(np.sum(table["push.force_z"][1:] * intervals))
+    gained = ball.mass * table["ball.velocity_z"][-1] - momentum
+    # The velocity after a step of the leapfrog method is half a step off.
+    assert pushed == pytest.approx(gained + ball.mass * G * float(np.sum(intervals)), rel=0.02)
+
+
+def test_a_call_inside_a_callback_leaves_a_recorder_as_it_is() -> None:
+    def recorded(nested: bool) -> np.ndarray:
+        world, ball, _ = ball_world()
+        world.advance(0.045)
+
+        def look(report: sk.StepReport) -> None:
+            with pytest.raises(sk.SceneError, match="advance"):
+                world.advance(0.01)
+
+        with world.recorder({"push": sk.ForceProbe(ball)}) as recorder:
+            if nested:
+                world.watch_steps(look)
+            world.advance(0.01)
+        return recorder.table()["push.force_z"]
+
+    np.testing.assert_array_equal(recorded(True), recorded(False))
+
+
+def test_a_step_is_not_taken_if_a_recorder_could_not_record_it() -> None:
+    world, ball, floor = ball_world()
+    other = world.add_body(sk.Mesh.ball(0.05, 4), RUBBER, position=(1, 0, 1), name="other")
+    with world.recorder({"pair": sk.ForceProbe(ball, by=other)}) as recorder:
+        world.advance(0.01)
+        world.measure_forces(on=False)
+        with pytest.raises(sk.SceneError, match="recorder: measures_forces: found False, expected True"):
+            world.advance(0.01)
+        world.measure_forces()
+        other.remove()
+        with pytest.raises(sk.SceneError, match="recorder: probe 'pair': found an object that was removed"):
+            world.advance(0.01)
+        assert world.time == pytest.approx(0.01) and len(recorder) == 2
+    assert world.advance(0.01).ok
+
+
+def test_a_world_does_not_jump_in_time_while_a_recorder_follows_it() -> None:
+    world, ball, _ = ball_world()
+    saved = world.copy()
+    with world.recorder({"push": sk.ForceProbe(ball)}) as recorder:
+        world.advance(0.01)
+        with pytest.raises(sk.SceneError, match="reset: saved: found a recorder of 'push' in its `with` block"):
+            world.reset(saved)
+        world.advance(0.01)
+    assert len(recorder) == 3
+    world.reset(saved)
+    assert world.time == 0

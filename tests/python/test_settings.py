@@ -108,3 +108,13 @@ def test_a_value_of_another_type_is_refused_by_the_engine_with_its_field() -> No
         _core.World(sk.Settings(integrator="rk4"))  # type: ignore[arg-type]
     with pytest.raises(sk.SceneError, match="Settings: threads: found 'two', expected a whole number"):
         _core.World(sk.Settings(threads="two"))  # type: ignore[arg-type]
+
+
+def test_the_sizes_of_a_shape_may_be_given_by_position() -> None:
+    assert sk.Sphere(0.1) == sk.Sphere(radius=0.1)
+    assert sk.Plane((0, 1, 0), (0, 2, 0)) == sk.Plane(normal=(0, 1, 0), point=(0, 2, 0))
+    assert sk.Box((1, 2, 3)) == sk.Box(size=(1, 2, 3))
+    assert sk.Capsule(0.1, 2) == sk.Capsule(radius=0.1, length=2)
+    assert sk.Cylinder(0.1, 2) == sk.Cylinder(radius=0.1, height=2)
+    assert sk.Bucket(0.1, 2, 0.01) == sk.Bucket(radius=0.1, height=2, thickness=0.01)
+    assert sk.SurfaceMesh(np.eye(3), [[0, 1, 2]]) == sk.SurfaceMesh(nodes=np.eye(3), triangles=[[0, 1, 2]])

@@ -37,7 +37,8 @@ def test_cases_may_be_listed_and_differ_in_length() -> None:
 
 
 def test_refused_and_failed_cases_leave_the_others_alone() -> None:
-    found = sk.sweep(SCENE, {"materials.rubber.poisson_ratio": [0.3, 0.7]}, seconds=0.02)
+    with pytest.warns(sk.Doubt, match="sweep: 1 of 2 cases refused; case 1: .*poisson_ratio"):
+        found = sk.sweep(SCENE, {"materials.rubber.poisson_ratio": [0.3, 0.7]}, seconds=0.02)
     assert found["status"].tolist() == ["ok", "refused"]
     assert "poisson_ratio" in found["message"][1]
     assert np.isnan(found["ball.position_z"][1]).all() and np.isfinite(found["ball.position_z"][0]).all()
@@ -66,3 +67,17 @@ def test_an_interrupt_ends_a_sweep() -> None:
     with pytest.raises(KeyboardInterrupt):
         # This takes an hour.
         sk.sweep(changed(settings={"sleep": False}, probes=[]), {"name": list("abcd")}, seconds=1e6, jobs=2)
+
+
+def test_a_wrong_argument_is_named() -> None:
+    with pytest.raises(sk.SceneError, match="^sweep: jobs: found -1, expected a whole number"):
+        sk.sweep(SCENE, {"seconds": [0.1]}, jobs=-1)
+    with pytest.raises(sk.SceneError, match="^sweep: seconds: found nan, expected a finite time"):
+        sk.sweep(SCENE, {"seconds": [0.1]}, seconds=float("nan"))
+    with pytest.raises(TypeError, match="^grid: found 3"):
+        sk.sweep(SCENE, 3)  # type: ignore[arg-type]
+
+
+def test_a_place_in_an_unknown_material_is_refused() -> None:
+    with pytest.raises(sk.SceneError, match='the unknown material "rubbr"'):
+        sk.sweep(SCENE, {"materials.rubbr.friction": [0.1, 0.2]})

@@ -5,6 +5,7 @@ import dataclasses
 import json
 import pathlib
 import pickle
+import re
 import warnings
 from typing import Any
 
@@ -213,7 +214,7 @@ def test_a_saved_world_continues_with_the_same_bits(tmp_path: pathlib.Path) -> N
     other = sk.World.load(tmp_path / "a.skerry", threads=2)
     assert other.settings == dataclasses.replace(world.settings, threads=2)
     assert sk.World.load(tmp_path / "a.skerry", backend="serial").settings.backend == "serial"
-    with pytest.raises(sk.SceneError, match="LoadSettings: backend: found 'mpi', expected one of 'tbb'"):
+    with pytest.raises(sk.SceneError, match="load: backend: found 'mpi', expected one of 'tbb'"):
         sk.World.load(tmp_path / "a.skerry", backend="mpi")  # type: ignore[arg-type]
     for each in (world, other):
         each.advance(0.05)
@@ -248,8 +249,10 @@ def test_a_run_of_a_negative_time_is_refused() -> None:
 
 def test_a_run_shows_its_progress(capsys: pytest.CaptureFixture[str]) -> None:
     world, _, _ = ball_world()
-    world.run(0.02, dt=0.01, progress=True)
-    assert capsys.readouterr().err == "\r0.01 s, 50 %\r0.02 s, 100 %\n"
+    world.run(0.13, dt=0.065, progress=True)
+    lines = capsys.readouterr().err.rstrip("\n").split("\r")[1:]
+    assert [line.rstrip() for line in lines] == ["0.065 s, 50 %", "0.13 s, 100 %"]
+    assert len(lines[0]) == len(lines[1]) >= 20  # a shorter line covers the line before it
 
 
 def test_a_report_has_all_values_of_the_engine() -> None:
@@ -459,3 +462,62 @@ def test_a_reset_to_another_world_is_refused() -> None:
     world, _, _ = ball_world()
     with pytest.raises(sk.SceneError):
         world.reset(ball_world()[0])
+
+
+@pytest.mark.parametrize("stop", [False, np.bool_(False)])
+def test_a_truth_value_of_numpy_ends_a_run(stop: object) -> None:
+    world, _, _ = ball_world()
+    world.run(1, dt=0.01, each=lambda world: stop)
+    assert world.time == pytest.approx(0.01)
+    assert world.advance(1, check=lambda report: stop).status == "stopped"
+    world.run(0.02, dt=0.01, each=lambda world: None)
+    assert world.time == pytest.approx(0.03)
+
+
+class Arena(sk.World):
+    """A world of a program."""
+
+    def __init__(self, size: float) -> None:
+        super().__init__(threads=1)
+        self.size = size
+
+
+class Unfinished(sk.World):
+    """A world that forgets a call."""
+
+    def __init__(self) -> None:
+        pass
+
+
+def test_copies_have_the_class_of_their_world(tmp_path: pathlib.Path) -> None:
+    arena = Arena(3)
+    arena.advance(0.1)
+    arena.save(tmp_path / "world")
+    copies = [arena.copy(), copy.copy(arena), copy.deepcopy(arena), pickle.loads(pickle.dumps(arena))]
+    copies += [Arena.from_bytes(arena.to_bytes()), Arena.load(tmp_path / "world")]
+    for twin in copies:
+        assert type(twin) is Arena and twin.state_hash == arena.state_hash
+        assert not hasattr(twin, "size")
+    assert type(sk.World.from_bytes(bytearray(arena.to_bytes()))) is sk.World
+    with pytest.raises(AttributeError, match="Unfinished: .* did not call super"):
+        Unfinished().advance(0.1)
+
+
+def test_reports_have_short_texts() -> None:
+    world, ball, _ = ball_world()
+    report = world.advance(0.06)
+    assert re.fullmatch(r"<skerry.StepReport ok, \d+ steps, \d+ contacts, worst error \S+>", repr(report))
+    text = repr(world.report())
+    assert re.fullmatch(r"<skerry.WorldReport at 0.06 s, \d+ steps, 1 bodies, worst error \S+>", text)
+    velocities = ball.velocities
+    velocities[0] = (1e100, 0, 0)
+    ball.velocities = velocities
+    report = world.try_advance(0.01)
+    assert report.message and report.message in repr(report)
+
+
+def test_a_trace_that_cannot_be_written_is_refused_at_the_start(tmp_path: pathlib.Path) -> None:
+    world, _, _ = ball_world()
+    with pytest.raises(FileNotFoundError), world.trace(tmp_path / "none" / "trace.json"):
+        world.advance(0.01)
+    assert world.time == 0

@@ -181,7 +181,7 @@ TEST_CASE("keys of motors are refused by number, and change nothing", "[scene][j
         CHECK(arm.world.state_hash() == before);
     };
     refused({.keys = {{.time = 1, .speed = 1}, {.time = 1, .speed = 2}}},
-            "motor.keys[1].time: found 1.000000 s, expected a time after that of the key before, 1.000000 s");
+            "motor.keys[1].time: found 1 s, expected a time after that of the key before, 1 s");
     refused({.keys = {{.time = 0, .speed = 1}, {.time = 1, .position = 2}}}, "motor.keys[1]: found a position");
     refused({.keys = {{.time = 0}}}, "motor.keys[0]: found neither a speed nor a position");
     refused({.speed = 1, .keys = {{.time = 0, .speed = 1}}}, "motor: found more than one of speed, position and keys");

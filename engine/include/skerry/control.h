@@ -1,6 +1,7 @@
 // Types for the live control of a running world between two calls of World::advance (docs/control.md).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "components/types.h"
@@ -12,6 +13,18 @@ namespace skerry {
 struct Pose {
     Vec3 position = Vec3::Zero();  // [m]
     Vec3 rotation = Vec3::Zero();  // rotation axis times angle [rad]
+};
+
+/// Velocities of a rigid motion.
+struct Twist {
+    Vec3 velocity = Vec3::Zero();          // of the centre of mass of a body, or of the origin of a pose [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
+};
+
+/// Collision groups of an object, and groups that it can touch, both as bits. See BodySettings::collision_group.
+struct CollisionGroups {
+    std::uint32_t group = 0;
+    std::uint32_t mask = 0;
 };
 
 /// Friction and restitution of one body or collider. For a body, missing values are those of its material. For a

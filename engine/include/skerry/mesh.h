@@ -34,7 +34,7 @@ struct SurfaceMesh {
 
 /// Built-in meshes with positive tetrahedra. Unless stated otherwise a mesh is centred at the origin, its axis is z,
 /// and `resolution` is the number of elements along the smallest extent. Lengths are in metres. The functions throw
-/// std::invalid_argument for sizes that are not positive and for meshes too large for 32-bit indices.
+/// SceneError for sizes that are not positive and for meshes too large for 32-bit indices.
 namespace mesh {
 
 /// A box of the given edge lengths, divided into `cells` = (i, j, k) cells along x, y and z with six tetrahedra each.

@@ -167,6 +167,14 @@ public:
     MotionKey pose(AttachmentHandle attachment) const;
     const Shape& shape(ColliderHandle collider) const;
     const std::string& name(ColliderHandle collider) const;
+    std::vector<AttachmentHandle> attachments() const;            // in the order added
+    BodyHandle body(AttachmentHandle attachment) const;           // body of the attached nodes
+    std::vector<Index> nodes(AttachmentHandle attachment) const;  // numbers of the attached nodes within the body
+    /// Velocities of a rigid motion: for a body the motion with its momentum and angular momentum, for a collider or an
+    /// attachment the motion in the last step.
+    Twist velocity(BodyHandle body) const;
+    Twist velocity(ColliderHandle collider) const;
+    Twist velocity(AttachmentHandle attachment) const;
 
     // Live control (docs/control.md); allowed between calls of advance. In callbacks of advance these functions throw
     // SceneError. A change costs only the update of the changed object; data derived from the whole world stay valid.
@@ -220,15 +228,23 @@ public:
     void reset(const World& saved);
     /// Sets external forces on the nodes of a body [N]. These forces act until they are set again.
     void set_loads(BodyHandle body, std::span<const Vec3> load);
+    std::span<const Vec3> loads(BodyHandle body) const;  // external forces on the nodes [N]
     /// Reads or changes a material. Bodies of this material keep their shapes and velocities and get new masses, stable
     /// steps and clusters. Throws SceneError if the material model would change, and for values with which one of these
     /// bodies has no stable step. The kind of smoothed elements stays as chosen by Poisson's ratio when the body was
     /// added.
     MaterialSettings material(MaterialHandle material) const;
     void set_material(MaterialHandle material, const MaterialSettings& settings);
+    std::vector<MaterialHandle> materials() const;   // in the order added
+    MaterialHandle material(BodyHandle body) const;  // BodySettings::material
+    /// Returns the values that were set for the object. Other values are missing.
+    SurfaceSettings surface_properties(BodyHandle body) const;
+    SurfaceSettings surface_properties(ColliderHandle collider) const;
     void set_surface_properties(BodyHandle body, const SurfaceSettings& surface);
     void set_surface_properties(ColliderHandle collider, const SurfaceSettings& surface);
     /// See BodySettings::collision_group.
+    CollisionGroups collision_groups(BodyHandle body) const;
+    CollisionGroups collision_groups(ColliderHandle collider) const;
     void set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask);
     void set_collision_groups(ColliderHandle collider, std::uint32_t group, std::uint32_t mask);
     /// Switches the collision of a pair on or off. Initially it is on for all pairs that the collision groups admit.

@@ -1,11 +1,12 @@
 #include "engine/mesh/shapes/add_tetrahedron.h"
 
 #include <cmath>
-#include <stdexcept>
+#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "engine/mesh/tetrahedron.h"
+#include "skerry/error.h"
 
 namespace skerry::mesh {
 
@@ -14,25 +15,36 @@ void add_tetrahedron(Mesh& mesh, std::array<Index, 4> nodes) {
     mesh.tetrahedra.push_back(nodes);
 }
 
-void require_size(const char* name, Real value) {
-    if (!(std::isfinite(value) && value > 0))
-        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
-                                    ", expected a length > 0 (m)");
+void refuse(const char* shape, const char* field, std::string found, std::string expected) {
+    Complaint{.file = {},
+              .object = shape,
+              .field = field,
+              .found = std::move(found),
+              .expected = std::move(expected),
+              .hint = {}}
+        .raise();
 }
 
-void require_count(const char* name, int value) {
-    if (value < 1)
-        throw std::invalid_argument(std::string(name) + ": found " + std::to_string(value) +
-                                    ", expected an integer >= 1");
+void require_size(const char* shape, const char* field, Real value) {
+    if (!(std::isfinite(value) && value > 0)) refuse(shape, field, shown(value), "a length > 0 (m)");
 }
 
-void require_fits(const char* name, double tetrahedra) {
+void require_count(const char* shape, const char* field, int value) {
+    if (value < 1) refuse(shape, field, std::to_string(value), "a whole number >= 1");
+}
+
+void require_fits(const char* shape, const char* field, double tetrahedra) {
     // The table of triangle corners has four rows per tetrahedron, and row numbers have 32 bits.
     constexpr int most = 0x7fffffff / 4;
     if (!(tetrahedra <= most))
-        throw std::invalid_argument(std::string(name) + ": found a mesh of about " + std::to_string(tetrahedra) +
-                                    " elements, expected at most " + std::to_string(most) +
-                                    " (indices have 32 bits; use a coarser mesh)");
+        refuse(shape, field, "a mesh of about " + shown(tetrahedra) + " elements",
+               "at most " + std::to_string(most) + ", because indices have 32 bits");
+}
+
+std::string shown(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
 }
 
 }  // namespace skerry::mesh

@@ -119,10 +119,10 @@ private:
 }  // namespace
 
 Mesh ball(Real radius, int resolution) {
-    require_size("ball radius", radius);
-    require_count("ball resolution", resolution);
+    require_size("ball", "radius", radius);
+    require_count("ball", "resolution", resolution);
     const int shells = resolution / 2 + resolution % 2;
-    require_fits("ball resolution", 20.0 * shells * shells * shells);
+    require_fits("ball", "resolution", 20.0 * shells * shells * shells);
     return BallBuilder(radius, shells).build();
 }
 

@@ -8,11 +8,11 @@ Mesh box(const Vec3& size, const std::array<int, 3>& cells) {
     double count = 6;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Real length = size[static_cast<Eigen::Index>(axis)];
-        require_size("box size", length);
-        require_count("box cells", cells[axis]);
+        require_size("box", "size", length);
+        require_count("box", "cells", cells[axis]);
         count *= cells[axis];
     }
-    require_fits("box cells", count);
+    require_fits("box", "cells", count);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Real half = size[static_cast<Eigen::Index>(axis)] / 2;
         append_lines(-half, half, cells[axis], lines[axis]);

@@ -66,8 +66,8 @@ private:
 }  // namespace
 
 Mesh capsule_picture(Real radius, Real length) {
-    require_size("capsule radius", radius);
-    require_size("capsule length", length);
+    require_size("capsule", "radius", radius);
+    require_size("capsule", "length", length);
     return CapsuleBuilder(radius, length).build();
 }
 

@@ -16,8 +16,8 @@ Vec3 on_rim(Real radius, Real z, int k) {
 }  // namespace
 
 Mesh cylinder_picture(Real radius, Real height) {
-    require_size("cylinder radius", radius);
-    require_size("cylinder height", height);
+    require_size("cylinder", "radius", radius);
+    require_size("cylinder", "height", height);
     const Real half = height / 2;
     Mesh mesh;
     mesh.nodes = {Vec3::Zero(), {0, 0, half}};

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 
 #include "engine/mesh/shapes/add_tetrahedron.h"
@@ -22,14 +21,12 @@ constexpr Real least_layer = 0.6;
 constexpr Real point_radius = 0.3;  // largest radius of an end that closes to a point, divided by ring spacing
 
 void check_profile(std::span<const ProfilePoint> profile) {
-    if (profile.size() < 2)
-        throw std::invalid_argument("lathe profile: found " + std::to_string(profile.size()) +
-                                    " points, expected at least 2");
+    if (profile.size() < 2) refuse("lathe", "profile", std::to_string(profile.size()) + " points", "at least 2");
     for (std::size_t i = 0; i < profile.size(); ++i) {
-        require_size("lathe radius", profile[i][0]);
+        require_size("lathe profile", "radius", profile[i][0]);
         if (!std::isfinite(profile[i][1]) || (i > 0 && !(profile[i][1] > profile[i - 1][1])))
-            throw std::invalid_argument("lathe profile: found z = " + std::to_string(profile[i][1]) + " at point " +
-                                        std::to_string(i) + ", expected finite z in ascending order (m)");
+            refuse("lathe", "profile", "z = " + shown(profile[i][1]) + " at point " + std::to_string(i),
+                   "finite z in ascending order (m)");
     }
 }
 
@@ -73,7 +70,7 @@ std::vector<Real> find_planes(std::span<const ProfilePoint> profile, Real spacin
         // A body with two pointed ends needs at least one disc between these ends.
         if (breaks.size() == 2 && pointed(profile.front()) && pointed(profile.back()))
             layers = std::max(layers, Real{2});
-        require_fits("lathe layers", layers);
+        require_fits("lathe", "layers", layers);
         const auto count = static_cast<int>(layers);
         for (int i = 1; i < count; ++i) planes.push_back(breaks[b] + (breaks[b + 1] - breaks[b]) * i / count);
         planes.push_back(breaks[b + 1]);
@@ -109,22 +106,23 @@ std::vector<Disc> plan_discs(std::span<const ProfilePoint> profile, Real spacing
 
 Mesh lathe(std::span<const ProfilePoint> profile, int resolution) {
     check_profile(profile);
-    require_count("lathe resolution", resolution);
+    require_count("lathe", "resolution", resolution);
     const Real widest = (*std::max_element(profile.begin(), profile.end()))[0];
     const int rings = resolution / 2 + resolution % 2;
     const Real spacing = widest / rings;
-    require_fits("lathe resolution", 18.0 * rings * rings * ((profile.back()[1] - profile.front()[1]) / spacing + 2));
+    require_fits("lathe", "resolution",
+                 18.0 * rings * rings * ((profile.back()[1] - profile.front()[1]) / spacing + 2));
     return stack_discs(plan_discs(profile, spacing, rings));
 }
 
 Mesh cylinder(Real radius, Real height, int resolution) {
-    require_size("cylinder radius", radius);
-    require_size("cylinder height", height);
+    require_size("cylinder", "radius", radius);
+    require_size("cylinder", "height", height);
     return lathe(std::array<ProfilePoint, 2>{{{radius, -height / 2}, {radius, height / 2}}}, resolution);
 }
 
 Mesh skittle(Real height, int resolution) {
-    require_size("skittle height", height);
+    require_size("skittle", "height", height);
     // Outline of a ninepin: foot, belly at 0.3 of the height, neck at 0.7, head. Radius and z are relative to the
     // height.
     std::array<ProfilePoint, 12> profile{{{0.110, 0.00},

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "engine/mesh/shapes/add_tetrahedron.h"
 #include "engine/mesh/shapes/fill_grid.h"
@@ -11,33 +10,32 @@ namespace {
 /// Number of cells with edges of about `cell` that fit into `length`; at least one. `cell` and `length` are in metres.
 int cells_in(Real length, Real cell) {
     const Real count = std::round(length / cell);
-    require_fits("table cells", count);
+    require_fits("table", "cells", count);
     return std::max(1, static_cast<int>(count));
 }
 
 }  // namespace
 
 Mesh table(const TableShape& shape) {
-    require_size("table length", shape.length);
-    require_size("table width", shape.width);
-    require_size("table height", shape.height);
-    require_size("table thickness", shape.thickness);
-    require_size("table leg", shape.leg);
-    require_count("table cells per leg", shape.cells_per_leg);
+    require_size("table", "length", shape.length);
+    require_size("table", "width", shape.width);
+    require_size("table", "height", shape.height);
+    require_size("table", "thickness", shape.thickness);
+    require_size("table", "leg", shape.leg);
+    require_count("table", "cells_per_leg", shape.cells_per_leg);
     if (!(2 * shape.leg < shape.length && 2 * shape.leg < shape.width))
-        throw std::invalid_argument("table leg: found " + std::to_string(shape.leg) +
-                                    ", expected less than half the length and half the width of the table (m)");
+        refuse("table", "leg", shown(shape.leg), "less than half the length and half the width of the table (m)");
     if (!(shape.thickness < shape.height))
-        throw std::invalid_argument("table thickness: found " + std::to_string(shape.thickness) +
-                                    ", expected less than the height of the table (m)");
+        refuse("table", "thickness", shown(shape.thickness), "less than the height of the table (m)");
 
     const Real cell = shape.leg / shape.cells_per_leg;
     const std::array<Real, 2> top{shape.length, shape.width};
     std::array<int, 2> between;  // number of cells between two legs, first along x, then along y
     for (std::size_t axis = 0; axis < 2; ++axis) between[axis] = cells_in(top[axis] - 2 * shape.leg, cell);
     const int leg_layers = cells_in(shape.height - shape.thickness, cell), top_layers = cells_in(shape.thickness, cell);
-    require_fits("table cells", 6.0 * (between[0] + 2.0 * shape.cells_per_leg) *
-                                    (between[1] + 2.0 * shape.cells_per_leg) * (double{0} + leg_layers + top_layers));
+    require_fits("table", "cells",
+                 6.0 * (between[0] + 2.0 * shape.cells_per_leg) * (between[1] + 2.0 * shape.cells_per_leg) *
+                     (double{0} + leg_layers + top_layers));
 
     GridLines lines;
     for (std::size_t axis = 0; axis < 2; ++axis) {

@@ -1,6 +1,5 @@
 #include "engine/output/series/probe_columns.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,7 +8,6 @@
 
 #include "engine/world/complaint.h"
 #include "engine/world/control/control.h"
-#include "engine/world/edit/rigid_bodies.h"
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
 #include "systems/dynamics/checks/volume_ratios.h"
@@ -52,28 +50,6 @@ Motion3 motion_of(const World& world, const BodyProbe& probe) {
     for (auto n = static_cast<std::size_t>(nodes.begin); n < static_cast<std::size_t>(nodes.end); ++n)
         momentum += model.nodes.mass[n] * model.nodes.velocity[n];
     return {world.center_of_mass(probe.body), momentum / world.mass(probe.body)};
-}
-
-/// Linear and angular velocity [m/s, rad/s].
-struct Twist {
-    Vec3 velocity, angular_velocity;
-};
-
-Twist twist_of(const World& world, BodyHandle body) {
-    const NodeMotion motion = motion_of_nodes(
-        WorldAccess::state_of(world).model,
-        static_cast<std::size_t>(WorldAccess::state_of(world).model.row(body, "sample")), world.center_of_mass(body));
-    return {motion.momentum / world.mass(body), motion.inertia.inverse() * motion.angular_momentum};
-}
-Twist twist_of(const World& world, ColliderHandle collider) {
-    const Model& model = WorldAccess::state_of(world).model;
-    const RigidMotion& motion = model.colliders.motion[static_cast<std::size_t>(model.row(collider, "sample"))];
-    return {motion.velocity, motion.angular_velocity};
-}
-Twist twist_of(const World& world, AttachmentHandle attachment) {
-    const Model& model = WorldAccess::state_of(world).model;
-    const RigidMotion& motion = model.attachments.motion[static_cast<std::size_t>(model.row(attachment, "sample"))];
-    return {motion.velocity, motion.angular_velocity};
 }
 
 ForceReport force_of(const Forces& forces, const BodyForceProbe& probe) {
@@ -205,7 +181,7 @@ void put_values(const World& world, TrackedProbe& probe, std::vector<Real>& valu
                 put_vector(now.rotation, values);
             },
             [&](const VelocityProbe& velocity) {
-                const Twist now = std::visit([&](auto object) { return twist_of(world, object); }, velocity.object);
+                const Twist now = std::visit([&](auto object) { return world.velocity(object); }, velocity.object);
                 put_vector(now.velocity, values);
                 put_vector(now.angular_velocity, values);
             },

@@ -11,27 +11,12 @@ namespace skerry {
 
 namespace {
 
-std::vector<std::string> keys_of(const Json& json, const char* key) {
-    std::vector<std::string> names;
-    if (const auto found = json.find(key); found != json.end() && found->is_object())
-        for (const auto& [name, value] : found->items()) names.push_back(name);
-    return names;
-}
-
-/// Sets a place of a scene to a value. Refuses a place inside a material that the scene lacks, because no body would
-/// use this new material.
+/// Sets a place of a scene to a value.
 void try_place(const Place& of, const std::string& place, const Json& value, const std::filesystem::path& scene,
                Json& json) {
     if (place.find('=') != std::string::npos)
         of.refuse("the place " + in_quotes(place), "a place without \"=\" and a value");
-    const std::vector<std::string> before = keys_of(json, "materials");
     called_at(of, [&] { assign(place + "=" + value.dump(), scene, json); });
-    for (const std::string& name : keys_of(json, "materials"))
-        if (std::ranges::find(before, name) == before.end() && !value.is_object())
-            of.refuse("the place " + in_quotes(place) + " in a material that " + scene.string() + " does not define",
-                      before.empty() ? "a scene file that defines materials"
-                                     : "a place in one of the materials " + listed(before),
-                      nearest_hint(name, before));
 }
 
 /// Throws SceneError if none of the first cases gives a readable scene, because then the sweep itself is wrong.

@@ -1,25 +1,10 @@
 """Skerry: deformable bodies in frictional contact."""
 
+from ._core import version as __version__
 from ._errors import BusyError, Doubt, SceneError, StepError
 from ._mesh import Mesh, MeshReport, read_surface
 from ._problem import Problem, ProblemError, Solution, StepProblem, problem_error, solve
-from ._recorder import (
-    BodyProbe,
-    EnergyProbe,
-    Film,
-    ForceProbe,
-    JointProbe,
-    NodesProbe,
-    Page,
-    PointProbe,
-    PoseProbe,
-    Probe,
-    ReactionProbe,
-    Recorder,
-    StressProbe,
-    VelocityProbe,
-    VolumeProbe,
-)
+from ._recorder import Film, Page, Recorder
 from ._results import (
     OPEN,
     SLIDE,
@@ -81,6 +66,20 @@ from ._world import (
     StepReport,
     World,
     WorldReport,
+)
+from ._world.probes import (
+    BodyProbe,
+    EnergyProbe,
+    ForceProbe,
+    JointProbe,
+    NodesProbe,
+    PointProbe,
+    PoseProbe,
+    Probe,
+    ReactionProbe,
+    StressProbe,
+    VelocityProbe,
+    VolumeProbe,
 )
 
 __all__ = [
@@ -163,6 +162,7 @@ __all__ = [
     "VolumeProbe",
     "World",
     "WorldReport",
+    "__version__",
     "contact_dtype",
     "hit_dtype",
     "load_scene",

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import operator
+import os
+import unicodedata
 from collections.abc import Sequence
 from typing import Any, Protocol, SupportsFloat, SupportsIndex, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._errors import scene_error
+
 Checked = TypeVar("Checked")
+
+Reals: TypeAlias = NDArray[np.float64]
 
 Vector: TypeAlias = tuple[float, float, float]
 """A point or a vector as the dataclasses of the package hold it."""
@@ -34,6 +41,22 @@ def shape_text(shape: Sequence[int | str]) -> str:
     return "(" + ", ".join(str(length) for length in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
+def numbers(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArray[np.float64]:
+    """Array of float64 of any shape. The error names the shape that the caller expects. Texts, complex numbers, other
+    objects and masked arrays are refused, because the conversion would lose something."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise TypeError(f"{name}: found a masked array, expected an array without a mask")
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise TypeError(
+            f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}"
+        ) from error
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}")
+    return array.astype(np.float64, copy=False)
+
+
 def require_shape(array: NDArray[Any], name: str, shape: Sequence[int | str]) -> None:
     """Raises TypeError that names both shapes, unless the array has the given shape."""
     fits = array.ndim == len(shape) and all(
@@ -45,19 +68,23 @@ def require_shape(array: NDArray[Any], name: str, shape: Sequence[int | str]) ->
 
 def real_array(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArray[np.float64]:
     """C-contiguous array of float64 with the given shape. An empty list counts as an array without rows."""
-    try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise TypeError(
-            f"{name}: found {_shortened(value)}, expected numbers of the shape {shape_text(shape)}"
-        ) from error
-    array = _without_rows(array, value, shape)
+    array = _without_rows(numbers(value, name, shape), value, shape)
     require_shape(array, name, shape)
-    return array
+    return np.ascontiguousarray(array)
+
+
+def real_rows(value: ArrayLike, name: str, count: int) -> NDArray[np.float64]:
+    """C-contiguous array of float64 of the shape (count, 3), for which one row of three numbers may stand."""
+    given = numbers(value, name, (count, 3))
+    if given.shape == (3,):
+        given = np.broadcast_to(given, (count, 3))
+    return real_array(given, name, (count, 3))
 
 
 def index_array(value: ArrayLike, name: str, shape: Sequence[int | str]) -> NDArray[np.int32]:
     """C-contiguous array of int32 with the given shape. Numbers that are not whole are refused."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise TypeError(f"{name}: found a masked array, expected an array without a mask")
     try:
         given = np.asarray(value)
     except ValueError as error:
@@ -97,9 +124,42 @@ def real(value: SupportsFloat, name: str) -> float:
 
 def whole(value: SupportsIndex, name: str) -> int:
     """A whole number from 0 to 4294967295."""
-    if not hasattr(value, "__index__") or not 0 <= operator.index(value) < 2**32:
-        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number from 0 to 4294967295")
-    return operator.index(value)
+    expected = "a whole number from 0 to 4294967295"
+    if not hasattr(value, "__index__"):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
+    number = operator.index(value)
+    if not 0 <= number < 2**32:
+        raise scene_error("", name, str(number), expected)
+    return number
+
+
+def flag(value: object, name: str) -> bool:
+    """A truth value of Python or NumPy."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected True or False")
+    return bool(value)
+
+
+def is_false(value: object) -> bool:
+    """True for False of Python or NumPy, with which a function that is called back ends a run. None and 0 are not."""
+    return isinstance(value, (bool, np.bool_)) and not value
+
+
+def name_text(value: object, name: str) -> str:
+    """A text that can name something. Empty texts, control characters and halves of surrogate pairs are refused."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a text")
+    if not value or any(unicodedata.category(letter) in ("Cc", "Cs") for letter in value):
+        raise scene_error("", name, ascii(value), "a text of at least one character, without control characters")
+    return value
+
+
+def seconds(value: SupportsFloat, object: str, name: str, *, zero: bool = True) -> float:
+    """A finite time, >= 0 or > 0 [s]."""
+    number = real(value, f"{object}: {name}")
+    if not (math.isfinite(number) and (number > 0 or (zero and number == 0))):
+        raise scene_error(object, name, str(number), f"a finite time {'>=' if zero else '>'} 0 [s]")
+    return number
 
 
 def checked(value: Checked, name: str, *kinds: type) -> Checked:
@@ -108,6 +168,30 @@ def checked(value: Checked, name: str, *kinds: type) -> Checked:
         expected = " or ".join(f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}" for kind in kinds)
         raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
     return value
+
+
+def counted(value: SupportsIndex, name: str) -> int:
+    """A whole number that fits into 32 bits. The extension module checks its range."""
+    if not hasattr(value, "__index__"):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected a whole number")
+    number = operator.index(value)
+    if not -(2**31) <= number < 2**31:
+        raise scene_error("", name, str(number), "a number of 32 bits")
+    return number
+
+
+def path_text(value: str | os.PathLike[str], name: str, expected: str = "a path") -> str:
+    """Text of a path."""
+    text = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(text, str):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
+    return text
+
+
+def require_attributes(value: object, name: str, expected: str, *attributes: str) -> None:
+    """Raises TypeError unless an object of another package has the given attributes."""
+    if not all(hasattr(value, attribute) for attribute in attributes):
+        raise TypeError(f"{name}: found {_shortened(value)}, expected {expected}")
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

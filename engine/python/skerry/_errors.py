@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ class StepError(RuntimeError):
 
     @property
     def body(self) -> Body | None:
-        """Body that caused the failure."""
+        """Body that caused the failure; None in an error that was pickled."""
         return self.report.body
 
     @property
@@ -73,7 +74,8 @@ class StepError(RuntimeError):
         return self.report.node
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (StepError, (self.report,))
+        """A pickled error has no body, because a body holds its whole world; the report keeps the names."""
+        return (StepError, (dataclasses.replace(self.report, body=None, inverted_body=None),))
 
 
 class BusyError(RuntimeError):

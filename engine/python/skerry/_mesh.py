@@ -12,7 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Vector, VectorLike, index_array, read_only, real_array
+from ._arrays import (
+    Vector,
+    VectorLike,
+    counted,
+    index_array,
+    path_text,
+    read_only,
+    real,
+    real_array,
+    require_attributes,
+)
 from ._errors import Doubt, import_package, scene_error
 from ._settings import SurfaceMesh
 
@@ -26,46 +36,48 @@ _VTK_TETRAHEDRON, _VTK_CURVED = 10, (24, 71)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshReport:
-    """Statistics of a mesh, as `skerry inspect` prints them."""
+    """Statistics of a mesh, as `skerry inspect` prints them.
+
+    nodes: number of nodes.
+    tetrahedra: number of tetrahedra.
+    boundary_triangles: number of triangles of the boundary.
+    components: number of connected parts.
+    lower: lower corner of the bounding box [m].
+    upper: upper corner of the bounding box [m].
+    volume: volume [m^3].
+    mean_edge: mean edge length [m].
+    min_edge: smallest edge length [m].
+    max_edge: largest edge length [m].
+    min_altitude: smallest altitude of a tetrahedron, which limits the step length [m].
+    min_quality: smallest quality of a tetrahedron: 1 for a regular one, below 0 for an inverted one.
+    mean_quality: mean quality of the tetrahedra.
+    inverted: number of tetrahedra of negative volume.
+    flat: number of tetrahedra of zero volume.
+    slivers: number of tetrahedra of positive volume with a quality below 0.1.
+    closed_manifold: True if every boundary edge has two triangles, and the triangles at every node form one ring.
+    boundary_fault: first fault of the boundary, and number of faults; empty if there are none.
+    labels: number of tetrahedra with each label; empty if the mesh has no labels.
+    """
 
     nodes: int
-    """Number of nodes."""
     tetrahedra: int
-    """Number of tetrahedra."""
     boundary_triangles: int
-    """Number of triangles of the boundary."""
     components: int
-    """Number of connected parts."""
     lower: Vector
-    """Lower corner of the bounding box [m]."""
     upper: Vector
-    """Upper corner of the bounding box [m]."""
     volume: float
-    """Volume [m^3]."""
     mean_edge: float
-    """Mean edge length [m]."""
     min_edge: float
-    """Smallest edge length [m]."""
     max_edge: float
-    """Largest edge length [m]."""
     min_altitude: float
-    """Smallest altitude of a tetrahedron, which limits the step length [m]."""
     min_quality: float
-    """Smallest quality of a tetrahedron: 1 for a regular one, below 0 for an inverted one."""
     mean_quality: float
-    """Mean quality of the tetrahedra."""
     inverted: int
-    """Number of tetrahedra of negative volume."""
     flat: int
-    """Number of tetrahedra of zero volume."""
     slivers: int
-    """Number of tetrahedra of positive volume with a quality below 0.1."""
     closed_manifold: bool
-    """True if every boundary edge has two triangles, and the triangles at every node form one ring."""
     boundary_fault: str
-    """First fault of the boundary, and number of faults; empty if there are none."""
     labels: Mapping[int, int]
-    """Number of tetrahedra with each label; empty if the mesh has no labels."""
 
     def __repr__(self) -> str:
         lines = [f"{field.name}: {_value_text(getattr(self, field.name))}" for field in fields(self)]
@@ -121,14 +133,15 @@ class Mesh:
         Only linear tetrahedra are used, and unused nodes are dropped. Labels are physical groups (Gmsh), the cell data
         region, gmsh:physical, medit:ref or CellEntityIds (VTK), or the last attribute (TetGen). Inverted tetrahedra are
         turned, with a warning Doubt. SceneError: the file cannot be read, or has no tetrahedra."""
-        core, notes = _core.read_mesh(os.fspath(path))
+        core, notes = _core.read_mesh(path_text(path, "path"))
         _warn(notes)
         return Mesh._of(core)
 
     def write(self, path: Path) -> None:
-        """Writes the mesh as Gmsh 2.2 text with all digits, so that read() returns an equal mesh. The name must end in
-        .msh. An existing file is replaced completely or not at all."""
-        _core.write_mesh(os.fspath(path), self._core)
+        """Writes the mesh as Gmsh 2.2 text with all digits. read() returns an equal mesh, except that a mesh without
+        labels gets the label 1 everywhere. The name must end in .msh. An existing file is replaced completely or not at
+        all."""
+        _core.write_mesh(path_text(path, "path"), self._core)
 
     # Shapes.
 
@@ -142,23 +155,25 @@ class Mesh:
     @staticmethod
     def ball(radius: float, resolution: int) -> Mesh:
         """A ball around the origin with `resolution` elements across the diameter; radius in [m]."""
-        return Mesh._of(_core.ball(radius, resolution))
+        return Mesh._of(_core.ball(real(radius, "radius"), counted(resolution, "resolution")))
 
     @staticmethod
     def cylinder(radius: float, height: float, resolution: int) -> Mesh:
         """A cylinder around the origin, along z, with `resolution` elements across the diameter; lengths in [m]."""
-        return Mesh._of(_core.cylinder(radius, height, resolution))
+        sizes = real(radius, "radius"), real(height, "height")
+        return Mesh._of(_core.cylinder(*sizes, counted(resolution, "resolution")))
 
     @staticmethod
     def lathe(profile: ArrayLike, resolution: int) -> Mesh:
         """A solid of revolution about z. `profile`, shape (k, 2), lists radius and z [m] from bottom to top. There are
         `resolution` elements across the largest diameter."""
-        return Mesh._of(_core.lathe(real_array(profile, "profile", ("k", 2)), resolution))
+        outline = real_array(profile, "profile", ("k", 2))
+        return Mesh._of(_core.lathe(outline, counted(resolution, "resolution")))
 
     @staticmethod
     def skittle(height: float, resolution: int) -> Mesh:
         """A ninepin that stands on z = 0; height in [m]."""
-        return Mesh._of(_core.skittle(height, resolution))
+        return Mesh._of(_core.skittle(real(height, "height"), counted(resolution, "resolution")))
 
     @staticmethod
     def table(
@@ -172,7 +187,9 @@ class Mesh:
     ) -> Mesh:
         """A table that stands on z = 0: a top of length (x), width (y) and thickness (z) on four square legs with the
         edge length `leg`, divided into `cells_per_leg` cells. `height` includes the top. All lengths in [m]."""
-        return Mesh._of(_core.table(length, width, height, thickness, leg, cells_per_leg))
+        sizes = {"length": length, "width": width, "height": height, "thickness": thickness, "leg": leg}
+        length, width, height, thickness, leg = (real(size, name) for name, size in sizes.items())
+        return Mesh._of(_core.table(length, width, height, thickness, leg, counted(cells_per_leg, "cells_per_leg")))
 
     # Other packages.
 
@@ -180,6 +197,7 @@ class Mesh:
     def from_meshio(mesh: Any) -> Mesh:
         """Mesh of a meshio.Mesh. Labels are the first cell data named region, gmsh:physical, medit:ref or
         CellEntityIds that hold whole numbers. Cells that are not tetrahedra and unused nodes are dropped."""
+        require_attributes(mesh, "mesh", "a meshio.Mesh", "cells", "cell_data", "points")
         blocks = [number for number, block in enumerate(mesh.cells) if block.type == "tetra"]
         curved = sum(len(block.data) for block in mesh.cells if block.type in ("tetra10", "tetra20", "tetra35"))
         _require_linear("meshio mesh", curved)
@@ -198,6 +216,7 @@ class Mesh:
     def from_pyvista(grid: Any) -> Mesh:
         """Mesh of a pyvista.UnstructuredGrid. Labels are found as by from_meshio(). Cells that are not tetrahedra and
         unused nodes are dropped."""
+        require_attributes(grid, "grid", "a pyvista.UnstructuredGrid", "celltypes", "cells_dict", "cell_data", "points")
         kinds = np.asarray(grid.celltypes)
         _require_linear("PyVista grid", int(np.isin(kinds, _VTK_CURVED).sum()))
         chosen = kinds == _VTK_TETRAHEDRON
@@ -218,6 +237,7 @@ class Mesh:
         """Mesh of the current model of Gmsh: Mesh.from_gmsh(gmsh.model). The label of a tetrahedron is the number of
         its physical group (the first, if its volume is in several), and 0 outside of all groups; if no tetrahedron is
         in a group, it is the number of its volume."""
+        require_attributes(model, "model", "gmsh.model", "mesh", "getEntities", "getPhysicalGroupsForEntity")
         tags, positions, _ = model.mesh.getNodes()
         place = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
         place[np.asarray(tags, dtype=np.int64)] = np.arange(len(tags))
@@ -310,7 +330,7 @@ class Mesh:
 def read_surface(path: Path) -> SurfaceMesh:
     """Reads a triangle surface from a file in one of the formats of Mesh.read(), or from Wavefront .obj or .stl. The
     surface of a tetrahedral mesh is its boundary."""
-    (nodes, triangles), notes = _core.read_surface(os.fspath(path))
+    (nodes, triangles), notes = _core.read_surface(path_text(path, "path"))
     _warn(notes)
     return SurfaceMesh(nodes=nodes, triangles=triangles)
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import index_array, read_only, real_array
+from ._arrays import checked, index_array, path_text, read_only, real_array, require_attributes
 from ._errors import import_package, scene_error
 from ._settings import Friction, ProblemSettings, SolverMethod
 
@@ -23,7 +23,8 @@ Indices: TypeAlias = NDArray[np.int32]
 
 class Problem:
     """A local contact problem u = W r + q with relative velocities u and impulses r, which have the components (normal,
-    tangent 1, tangent 2) for each contact. W is stored in compressed rows of blocks. A problem cannot be changed.
+    tangent 1, tangent 2) for each contact. W is symmetric and stored in compressed rows of blocks. A problem cannot be
+    changed.
 
     row_offset: number of the first block of each row, and the number of all blocks, shape (c + 1,).
     column: column of each block, shape (z,), ascending in each row; each row has its diagonal block.
@@ -51,6 +52,7 @@ class Problem:
         velocities = real_array(q, "q", ("c", 3))
         friction = real_array(np.full(len(velocities), mu) if np.ndim(mu) == 0 else mu, "mu", (len(velocities),))
         columns, blocks = index_array(column, "column", ("z",)), real_array(block, "block", ("z", 3, 3))
+        checked(name, "name", str), checked(description, "description", str)
         self._hold(_core.new_problem(name, description, offsets, columns, blocks, velocities, friction))
 
     def _hold(self, core: Any) -> None:
@@ -74,6 +76,7 @@ class Problem:
     ) -> Problem:
         """Problem of a sparse matrix of SciPy, such as scipy.sparse.bsr_array, of the shape (3 c, 3 c). q: shape (c, 3)
         or (3 c,) [m/s]. mu: shape (c,), or one for all."""
+        require_attributes(W, "W", "a sparse matrix of SciPy", "tobsr")
         blocks = W.tobsr(blocksize=(3, 3))
         rows = np.repeat(np.arange(len(blocks.indptr) - 1), np.diff(blocks.indptr))
         return _problem_of_blocks(blocks.shape, rows, blocks.indices, blocks.data, q, mu, name, description)
@@ -102,18 +105,18 @@ class Problem:
     def read(path: Path) -> Problem:
         """Reads a problem from an FCLIB file (HDF5). A global problem is condensed to its contacts. If Skerry was built
         without HDF5, the package h5py reads local problems."""
-        if _core.has_hdf5:
-            return Problem._of(_core.read_problem(os.fspath(path)))
-        return _read_with_h5py(os.fspath(path))
+        file = path_text(path, "path")
+        return Problem._of(_core.read_problem(file)) if _core.has_hdf5 else _read_with_h5py(file)
 
     def write(self, path: Path, reaction: ArrayLike | None = None) -> None:
         """Writes the problem as an FCLIB file, with a solution if `reaction` (c, 3) [N s] is given. If Skerry was built
         without HDF5, the package h5py writes the file."""
         given = None if reaction is None else self._reaction(reaction)
+        file = path_text(path, "path")
         if _core.has_hdf5:
-            _core.write_problem(self._core, os.fspath(path), given)
+            _core.write_problem(self._core, file, given)
         else:
-            _write_with_h5py(self, os.fspath(path), given)
+            _write_with_h5py(self, file, given)
 
     # Contents.
 
@@ -205,30 +208,32 @@ class Problem:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Solution:
-    """Solution of a contact problem."""
+    """Solution of a contact problem.
+
+    reaction: impulses of the contacts, shape (c, 3) [N s].
+    converged: True if `error` is at most the tolerance.
+    iterations: iterations of the region that needed most.
+    error: relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|) with the natural map residual e.
+    error_absolute: norm |e| of the natural map residual.
+    error_over_q: relative error |e| / |q|.
+    energy_gap: violation of Coulomb's law, summed over all contacts; 0 for an exact solution [J].
+    regions: number of independent regions.
+    largest_region: number of contacts of the largest region.
+    unconverged: number of regions that reached the iteration limit.
+    seconds: computing time of the solve; a short solve is repeated [s].
+    """
 
     reaction: Reals
-    """Impulses of the contacts, shape (c, 3) [N s]."""
     converged: bool
-    """True if `error` is at most the tolerance."""
     iterations: int
-    """Iterations of the region that needed most."""
     error: float
-    """Relative error as in FCLIB and Siconos: |e| / max(|q|, |r|, |u|) with the natural map residual e."""
     error_absolute: float
-    """Norm |e| of the natural map residual."""
     error_over_q: float
-    """Relative error |e| / |q|."""
     energy_gap: float
-    """Violation of Coulomb's law, summed over all contacts; 0 for an exact solution [J]."""
     regions: int
-    """Number of independent regions."""
     largest_region: int
-    """Number of contacts of the largest region."""
     unconverged: int
-    """Number of regions that reached the iteration limit."""
     seconds: float
-    """Computing time of the solve; a short solve is repeated [s]."""
 
     def __repr__(self) -> str:
         state = "converged" if self.converged else "not converged"
@@ -237,36 +242,40 @@ class Solution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProblemError:
-    """Errors of given impulses."""
+    """Errors of given impulses.
+
+    absolute: norm |e| of the natural map residual e.
+    relative: relative error |e| / max(|q|, |r|, |u|).
+    over_q: relative error |e| / |q|.
+    energy_gap: violation of Coulomb's law, summed over all contacts [J].
+    """
 
     absolute: float
-    """Norm |e| of the natural map residual e."""
     relative: float
-    """Relative error |e| / max(|q|, |r|, |u|)."""
     over_q: float
-    """Relative error |e| / |q|."""
     energy_gap: float
-    """Violation of Coulomb's law, summed over all contacts [J]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StepProblem:
-    """The contact problem of one step of a world, as the solver received it."""
+    """The contact problem of one step of a world, as the solver received it.
+
+    step: number of the step, counted from 1.
+    time: time at the start of the step [s].
+    step_size: length of the step [s].
+    problem: the problem, without contacts that no impulse can move.
+    impulse: impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s].
+    contact: number of each contact in World.contacts, shape (c,).
+    region: region of each contact, shape (c,).
+    """
 
     step: int
-    """Number of the step, counted from 1."""
     time: float
-    """Time at the start of the step [s]."""
     step_size: float
-    """Length of the step [s]."""
     problem: Problem
-    """The problem, without contacts that no impulse can move."""
     impulse: Reals
-    """Impulses that the solver found, in the contact frames of `problem`, shape (c, 3) [N s]."""
     contact: Indices
-    """Number of each contact in World.contacts, shape (c,)."""
     region: Indices
-    """Region of each contact, shape (c,)."""
 
 
 def solve(
@@ -288,29 +297,33 @@ def solve(
     settings = ProblemSettings(
         method=method, friction=friction, tolerance=tolerance, max_iterations=max_iterations, relaxation=relaxation
     )
-    if not isinstance(problem, Problem):
-        raise TypeError(f"problem: found {problem!r}, expected a Problem")
-    return Solution(**_core.solve(problem._core, settings))
+    return Solution(**_core.solve(checked(problem, "problem", Problem)._core, settings))
 
 
 def problem_error(problem: Problem, reaction: ArrayLike) -> ProblemError:
     """Errors of given impulses (c, 3) [N s], as in FCLIB and Siconos."""
-    return ProblemError(**_core.problem_error(problem._core, problem._reaction(reaction)))
+    core = checked(problem, "problem", Problem)._core
+    return ProblemError(**_core.problem_error(core, problem._reaction(reaction)))
 
 
 @contextmanager
-def contact_problems(core: Any, every: int) -> Iterator[list[StepProblem]]:
-    """Collects the problems of the steps of a world of the extension module."""
+def contact_problems(world: Any, every: int) -> Iterator[list[StepProblem]]:
+    """Collects the problems of the steps of a world."""
+    world._core.require_between_steps()
+    if world._collecting:
+        raise scene_error("contact_problems", "", "a block that is already active", "one block at a time")
     problems: list[StepProblem] = []
 
     def take(values: dict[str, Any]) -> None:
         problems.append(StepProblem(**{**values, "problem": Problem._of(values["problem"])}))
 
-    core.watch_problems(take, every)
+    world._core.watch_problems(take, every)
+    world._collecting = True
     try:
         yield problems
     finally:
-        core.watch_problems(None, 1)
+        world._collecting = False
+        world._core.watch_problems(None, 1)
 
 
 def _same_problem(row_offset: Any, column: Any, block: Any, q: Any, mu: Any, name: str, description: str) -> Problem:

@@ -10,218 +10,90 @@ import tempfile
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import Vector, VectorLike, index_array, real_array
-from ._settings import Field, held
+from ._arrays import Reals, path_text, seconds
+from ._errors import scene_error
 
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from ._world import Body, Collider, Joint, World
-    from ._world.objects import MovedObject, PosedObject
+    from ._world import World
+    from ._world.probes import Probe
 
 Path: TypeAlias = str | os.PathLike[str]
-Reals: TypeAlias = NDArray[np.float64]
 
 _SLACK = 1e-9  # rounding error of a time, as a fraction of the time between two frames
 
 
-@dataclass(frozen=True, slots=True)
-class PointProbe:
-    """Position, displacement and velocity of a point of a body, which Body.probe() finds."""
+class Follower(Protocol):
+    """Something that a world calls in its `with` block."""
 
-    body: Body
-    """Body of the point."""
-    _: KW_ONLY
-    node: tuple[int, int, int, int]
-    """Nodes between which the point lies; -1 where the weight is 0."""
-    weight: tuple[float, float, float, float]
-    """Weight of each of these nodes."""
-    origin: Vector | None = None
-    """Position from which the displacement is measured [m]; None: the position when the recorder is made."""
+    def require_ready(self) -> None:
+        """Called before each call of advance(). Raises SceneError if follow() would fail after it."""
 
+    def follow(self) -> None:
+        """Called after each call of advance(), also after one that ends with an exception."""
 
-@dataclass(frozen=True, slots=True)
-class BodyProbe:
-    """Position, displacement and velocity of the centre of mass of a body."""
-
-    body: Body
-    """The body."""
-    _: KW_ONLY
-    origin: Vector | None = None
-    """Position from which the displacement is measured [m]; None: the position when the recorder is made."""
-
-
-@dataclass(frozen=True, slots=True)
-class ForceProbe:
-    """Contact forces on a body or a collider."""
-
-    on: Body | Collider
-    """Object on which the forces act."""
-    by: Body | Collider | None = None
-    """Only forces of this object; None: the forces of all contacts."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReactionProbe:
-    """Force of an attachment on its body."""
-
-    attachment: MovedObject
-    """The attachment."""
-
-
-@dataclass(frozen=True, slots=True)
-class JointProbe:
-    """Force and moment of a joint, and for a hinge or slider its coordinate and its speed."""
-
-    joint: Joint
-    """The joint."""
-
-
-@dataclass(frozen=True, slots=True)
-class EnergyProbe:
-    """Kinetic, elastic, potential and dissipated energy of the world."""
-
-
-@dataclass(frozen=True, slots=True)
-class StressProbe:
-    """Largest von Mises stress at some nodes of a body."""
-
-    body: Body
-    """The body."""
-    nodes: Field[ArrayLike, tuple[int, ...]] = held(())
-    """Numbers of the nodes; none: all nodes."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "nodes", tuple(index_array(self.nodes, "StressProbe.nodes", ("j",)).tolist()))
-
-
-@dataclass(frozen=True, slots=True)
-class VolumeProbe:
-    """Smallest ratio of present volume to rest volume among the tetrahedra of a body."""
-
-    body: Body
-    """The body."""
-
-
-@dataclass(frozen=True, slots=True)
-class PoseProbe:
-    """Pose of a body, a collider or an attachment."""
-
-    object: PosedObject
-    """The object."""
-
-
-@dataclass(frozen=True, slots=True)
-class VelocityProbe:
-    """Velocity and angular velocity of a body, a collider or an attachment."""
-
-    object: PosedObject
-    """The object."""
-
-
-@dataclass(frozen=True, slots=True)
-class NodesProbe:
-    """Positions of all nodes of a body."""
-
-    body: Body
-    """The body."""
-
-
-Probe: TypeAlias = (
-    PointProbe
-    | BodyProbe
-    | ForceProbe
-    | ReactionProbe
-    | JointProbe
-    | EnergyProbe
-    | StressProbe
-    | VolumeProbe
-    | PoseProbe
-    | VelocityProbe
-    | NodesProbe
-)
-"""A quantity that a recorder records."""
-
-
-def recorded_probes(probes: Mapping[str, Probe]) -> list[Any]:
-    """Probes by name for the extension module."""
-    return [_recorded(name, probe) for name, probe in probes.items()]
-
-
-def _recorded(name: str, probe: Probe) -> Any:
-    match probe:
-        case PointProbe():
-            return _core.point_probe(name, probe.body._handle, probe.node, probe.weight, probe.origin)
-        case BodyProbe():
-            return _core.body_probe(name, probe.body._handle, probe.origin)
-        case ForceProbe():
-            return _core.force_probe(name, probe.on._handle, None if probe.by is None else probe.by._handle)
-        case ReactionProbe():
-            return _core.reaction_probe(name, probe.attachment._handle)
-        case JointProbe():
-            return _core.joint_probe(name, probe.joint._handle)
-        case EnergyProbe():
-            return _core.energy_probe(name)
-        case StressProbe():
-            return _core.stress_probe(name, probe.body._handle, list(probe.nodes))
-        case VolumeProbe():
-            return _core.volume_probe(name, probe.body._handle)
-        case PoseProbe():
-            return _core.pose_probe(name, probe.object._handle)
-        case VelocityProbe():
-            return _core.velocity_probe(name, probe.object._handle)
-        case NodesProbe():
-            return _core.nodes_probe(name, probe.body._handle)
-    raise TypeError(f"probe '{name}': found {probe!r}, expected a probe such as Body.probe(point) or EnergyProbe()")
-
-
-def probe_of(world: World, recorded: Any) -> Probe:
-    """The Python object of a probe of the extension module."""
-    kind, values = recorded.values
-    given = {field: _object_of(world, value) for field, value in values.items()}
-    for field in ("node", "weight", "nodes"):
-        if field in given:
-            given[field] = tuple(given[field])
-    probe: Probe = globals()[kind](**given)
-    return probe
-
-
-def _object_of(world: World, value: Any) -> Any:
-    """The object of a handle; other values as they are."""
-    from ._world.objects import MovedObject
-
-    if isinstance(value, _core.BodyHandle):
-        return world._body(value)
-    if isinstance(value, _core.ColliderHandle):
-        return world._collider(value)
-    if isinstance(value, _core.JointHandle):
-        return world._joint(value)
-    return MovedObject(world, value, "attachment") if isinstance(value, _core.AttachmentHandle) else value
-
-
-def point_probe(body: Body, point: VectorLike) -> PointProbe:
-    """Probe for the material point that is now at `point` (3,) [m]."""
-    _, values = _core.probe_point(body.world._core, body._handle, real_array(point, "point", (3,)))
-    return PointProbe(body, node=tuple(values["node"]), weight=tuple(values["weight"]))
+    def require_no_jump(self) -> None:
+        """Called before the world continues from another state. Raises SceneError if it must not."""
 
 
 class Recorder:
     """Records time series of a world. World.recorder() makes it. In a `with` block it samples by itself after every
     call of advance(); otherwise call sample()."""
 
-    __slots__ = ("_core", "_world")
+    __slots__ = ("_core", "_handles", "_measures", "_world")
 
-    def __init__(self, world: World, probes: Mapping[str, Probe] | Sequence[Any], every: float) -> None:
-        given = recorded_probes(probes) if isinstance(probes, Mapping) else list(probes)
+    def __init__(self, world: World, probes: Mapping[str, Probe], every: float) -> None:
+        from ._world.probes import ForceProbe, ReactionProbe, recorded_probes
+
+        given = recorded_probes(probes, world)
         self._world = world
-        self._core = _core.Recorder(world._core, given, every)
+        self._core = _core.Recorder(world._core, given, seconds(every, "recorder", "every"))
+        kinds = (_core.BodyHandle, _core.ColliderHandle, _core.AttachmentHandle, _core.JointHandle)
+        self._handles = [
+            (name, value)
+            for name, probe in zip(probes, given, strict=True)
+            for value in probe.values[1].values()
+            if isinstance(value, kinds)
+        ]
+        self._measures = any(isinstance(probe, (ForceProbe, ReactionProbe)) for probe in probes.values())
+
+    def require_ready(self) -> None:
+        """Raises SceneError if the next sample would fail."""
+        for name, handle in self._handles:
+            if not self._world._core.alive(handle):
+                raise scene_error(
+                    f"recorder: probe '{name}'",
+                    "",
+                    "an object that was removed",
+                    "an object of the world",
+                    "leave the `with` block before you remove a recorded object",
+                )
+        if self._measures and not self._world.measures_forces:
+            raise scene_error("recorder", "measures_forces", "False", "True, because a probe records forces")
+
+    def _names(self) -> list[str]:
+        return list(dict.fromkeys(probe for probe, *_ in self._core.columns() if probe))
+
+    def follow(self) -> None:
+        """Takes a sample. The world calls it in the `with` block."""
+        self.sample()
+
+    def require_no_jump(self) -> None:
+        """Raises SceneError, because the rows are in the order of time."""
+        raise scene_error(
+            "reset",
+            "saved",
+            f"a recorder of {', '.join(repr(name) for name in self._names())} in its `with` block",
+            "no active recorder",
+            "leave the `with` block before reset(saved), and make another recorder after it",
+        )
 
     def sample(self) -> None:
         """Takes a sample, which becomes a row if it is due. Must be called after every call of advance(), so that no
@@ -230,13 +102,13 @@ class Recorder:
 
     def __enter__(self) -> Recorder:
         self.sample()
-        self._world._followers.append(self.sample)
+        self._world._followers.append(self)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._world._followers.remove(self.sample)
+        self._world._followers.remove(self)
 
     def table(self) -> dict[str, Reals]:
         """The rows recorded so far by column: "time" and "PROBE.QUANTITY", such as "tip.position_z". Forces in a row
@@ -256,15 +128,15 @@ class Recorder:
 
     def to_csv(self, path: Path) -> None:
         """Writes a CSV file with headings and units, and all digits. A file is replaced completely or not at all."""
-        self._core.write_csv(os.fspath(path))
+        self._core.write_csv(path_text(path, "path"))
 
     def to_hdf5(self, path: Path) -> None:
         """Writes an HDF5 file with a data set PROBE/QUANTITY for each column. SceneError: the package has no HDF5."""
-        self._core.write_hdf5(os.fspath(path))
+        self._core.write_hdf5(path_text(path, "path"))
 
     def stream_csv(self, path: Path) -> None:
         """Writes the rows so far to a CSV file, and from now on each new row at once."""
-        self._core.stream_csv(os.fspath(path))
+        self._core.stream_csv(path_text(path, "path"))
 
     def _rows(self) -> Reals:
         rows: Reals = self._core.table().reshape(-1, len(self._core.columns()))
@@ -281,15 +153,13 @@ class _Frames:
     """Calls `add` at the start, at multiples of `every` [s], and at the end if the last call was earlier."""
 
     def __init__(self, world: World, every: float, add: Callable[[], None]) -> None:
-        if not (every >= 0 and math.isfinite(every)):
-            raise ValueError(f"every: found {every}, expected a time >= 0 (s)")
         self._world, self._every, self._add = world, every, add
         self._last = -math.inf
         self._take()
-        world._followers.append(self._follow)
+        world._followers.append(self)
 
     def end(self) -> None:
-        self._world._followers.remove(self._follow)
+        self._world._followers.remove(self)
         if self._world.time > self._last:
             self._take()
 
@@ -297,7 +167,13 @@ class _Frames:
         self._add()
         self._last = self._world.time
 
-    def _follow(self) -> None:
+    def require_ready(self) -> None:
+        """A frame can be added at any time."""
+
+    def require_no_jump(self) -> None:
+        """Frames may go back in time."""
+
+    def follow(self) -> None:
         if self._every == 0 or self._number(self._world.time) > self._number(self._last):
             self._take()
 
@@ -335,7 +211,7 @@ class Page:
 
 
 class Film:
-    """Collects frames of a run for a page. World.record() makes it:
+    """Collects frames of a run for a page, in a `with` block. World.record() makes it:
 
         with world.record() as film:
             world.run(2)
@@ -344,18 +220,34 @@ class Film:
 
     Frames are kept in the compressed form of the page."""
 
-    __slots__ = ("__weakref__", "_count", "_file", "_frames", "_page", "_remove_folder", "_world", "_writer")
+    __slots__ = (
+        "__weakref__",
+        "_count",
+        "_every",
+        "_file",
+        "_frames",
+        "_page",
+        "_remove_folder",
+        "_title",
+        "_world",
+        "_writer",
+    )
 
     def __init__(self, world: World, title: str, every: float) -> None:
-        self._world = world
+        self._world, self._title, self._every = world, title, seconds(every, "record", "every")
         self._page: str | None = None
+        self._frames: _Frames | None = None
         self._count = 0
+
+    def _begin(self) -> None:
+        if self._frames is not None:
+            raise RuntimeError("film: found a film that was already recorded, expected a new one of World.record()")
         folder = tempfile.mkdtemp(prefix="skerry")
         self._remove_folder = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self._file = os.path.join(folder, "page.html")
         try:
-            self._writer: Any = _core.PageWriter(self._file, title)
-            self._frames = _Frames(world, every, self._add)
+            self._writer: Any = _core.PageWriter(self._file, self._title)
+            self._frames = _Frames(self._world, self._every, self._add)
         except BaseException:
             self._remove_folder()
             raise
@@ -368,6 +260,8 @@ class Film:
         """Ends the film. The end of the `with` block does this."""
         if self._page is not None:
             return
+        if self._frames is None:
+            raise RuntimeError("film: found no frames, expected a `with` block: with world.record() as film: ...")
         try:
             self._frames.end()
             self._writer.close(self._world._core)
@@ -390,6 +284,7 @@ class Film:
         return self._count
 
     def __enter__(self) -> Film:
+        self._begin()
         return self
 
     def __exit__(
@@ -418,13 +313,15 @@ class WorldOutput:
         return Recorder(self, probes, every)  # type: ignore[arg-type]
 
     def record(self, *, every: float = 1 / 60, title: str = "skerry") -> Film:
-        """Records a film in a `with` block, see class Film. every: time between frames; 0: one frame for each call of
-        advance() [s]."""
+        """Records a film, which starts and ends with a `with` block, see class Film. every: time between frames; 0: one
+        frame for each call of advance() [s]."""
         return Film(self, title, every)  # type: ignore[arg-type]
 
     def show(self, *, title: str = "skerry", height: int = 560) -> Page:
         """The present state as a page, for notebooks; `height` in pixels."""
-        return self.record(title=title).show(height=height)
+        with self.record(title=title) as film:
+            pass
+        return film.show(height=height)
 
     @contextmanager
     def vtk(
@@ -434,10 +331,10 @@ class WorldOutput:
         colliders. every: time between frames; 0: one for each call of advance() [s]. materials: names of the materials,
         in the order added."""
         world: World = self  # type: ignore[assignment]
-        writer = _core.VtkWriter(os.fspath(folder), name)
+        writer = _core.VtkWriter(path_text(folder, "folder"), name)
         if materials:
             writer.name_materials(list(materials))
-        frames = _Frames(world, every, lambda: writer.add_frame(world._core))
+        frames = _Frames(world, seconds(every, "vtk", "every"), lambda: writer.add_frame(world._core))
         try:
             yield
         finally:

@@ -6,18 +6,16 @@ import math
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import VectorLike, real_array
+from ._arrays import Reals, VectorLike, flag, numbers, real, real_array, real_rows, whole
 from ._problem import StepProblem, contact_problems
 
 if TYPE_CHECKING:
     from ._world import Attachment, Body, Collider, World
-
-Reals: TypeAlias = NDArray[np.float64]
 
 OPEN, STICK, SLIDE = 0, 1, 2
 """Values of the field `motion` of a contact."""
@@ -61,48 +59,52 @@ hit_dtype = np.dtype(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurfaceHit:
-    """A point of the surface of a body or a collider."""
+    """A point of the surface of a body or a collider.
+
+    body: body, or None if the point is on a collider.
+    collider: collider, or None if the point is on a body.
+    triangle: number of the triangle in Body.surface, or in the mesh of a collider; -1 for exact shapes.
+    barycentric: weights of the corners of the triangle at the point.
+    point: position [m].
+    normal: outward unit normal.
+    distance: distance from the origin of the ray, or from the given point [m].
+    """
 
     body: Body | None
-    """Body, or None if the point is on a collider."""
     collider: Collider | None
-    """Collider, or None if the point is on a body."""
     triangle: int
-    """Number of the triangle in Body.surface, or in the mesh of a collider; -1 for exact shapes."""
     barycentric: tuple[float, float, float]
-    """Weights of the corners of the triangle at the point."""
     point: tuple[float, float, float]
-    """Position [m]."""
     normal: tuple[float, float, float]
-    """Outward unit normal."""
     distance: float
-    """Distance from the origin of the ray, or from the given point [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ForceReport:
-    """Forces on a body or a collider, summed over all steps of the last call of advance()."""
+    """Forces on a body or a collider, summed over all steps of the last call of advance().
+
+    impulse: sum of the impulses, shape (3,) [N s].
+    moment_impulse: sum of the moments of the impulses about `moment_point`, shape (3,) [N m s].
+    friction_impulse: tangential part of `impulse`, shape (3,); zero for attachments [N s].
+    pressing_impulse: sum of the magnitudes of the normal impulses [N s].
+    largest_force: largest force of a single step [N].
+    contact_count: number of contacts with an impulse in the last step.
+    most_contacts: largest number of contacts with an impulse in any step.
+    seconds: time for which loads acted [s].
+    moment_point: reference point of moments, as given to measure_forces(), shape (3,) [m].
+    measured: False if the call was too short to show the force, or took no step. Mean values are then NaN.
+    """
 
     impulse: Reals
-    """Sum of the impulses, shape (3,) [N s]."""
     moment_impulse: Reals
-    """Sum of the moments of the impulses about `moment_point`, shape (3,) [N m s]."""
     friction_impulse: Reals
-    """Tangential part of `impulse`, shape (3,); zero for attachments [N s]."""
     pressing_impulse: float
-    """Sum of the magnitudes of the normal impulses [N s]."""
     largest_force: float
-    """Largest force of a single step [N]."""
     contact_count: int
-    """Number of contacts with an impulse in the last step."""
     most_contacts: int
-    """Largest number of contacts with an impulse in any step."""
     seconds: float
-    """Time for which loads acted [s]."""
     moment_point: Reals
-    """Reference point of moments, as given to measure_forces(), shape (3,) [m]."""
     measured: bool
-    """False if the call was too short to show the force, or took no step. Mean values are then NaN."""
 
     @property
     def force(self) -> Reals:
@@ -139,14 +141,16 @@ class ForceReport:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PairForces:
-    """Forces between two objects that touched."""
+    """Forces between two objects that touched.
+
+    first: body.
+    second: other body, which is `first` for contacts of a body with itself, or a collider.
+    on_first: forces of `second` on `first`; those on `second` are opposite.
+    """
 
     first: Body
-    """Body."""
     second: Body | Collider
-    """Other body, which is `first` for contacts of a body with itself, or a collider."""
     on_first: ForceReport
-    """Forces of `second` on `first`; those on `second` are opposite."""
 
 
 class Forces:
@@ -162,12 +166,20 @@ class Forces:
 
     def on(self, on: Body | Collider, by: Body | Collider | None = None) -> ForceReport:
         """Contact forces on a body or a collider, summed over all contacts, or over those with the object `by`."""
-        handles = [_handle_of(on, "on")] if by is None else [_handle_of(on, "on"), _handle_of(by, "by")]
+        from ._world import Body, Collider
+
+        own = self._world._own
+        handles = [own(on, "on", Body, Collider)]
+        if by is not None:
+            kinds = (Body, Collider) if isinstance(on, Body) else (Body,)
+            handles.append(own(by, "by", *kinds))
         return ForceReport(**self._world._core.forces_on(*handles))
 
     def by(self, attachment: Attachment) -> ForceReport:
         """Forces of an attachment on its body, which keep the attached nodes on their prescribed motion."""
-        return ForceReport(**self._world._core.forces_by(_handle_of(attachment, "attachment")))
+        from ._world import Attachment
+
+        return ForceReport(**self._world._core.forces_by(self._world._own(attachment, "attachment", Attachment)))
 
     def pairs(self) -> list[PairForces]:
         """All pairs of objects that touched: first bodies with colliders, then bodies with bodies."""
@@ -189,13 +201,15 @@ class WorldResults:
 
     if TYPE_CHECKING:
         _core: Any
+        _own: Any
         bodies: Any
         colliders: Any
 
     @property
     def contacts(self) -> NDArray[np.void]:
         """Contacts of the last step and contacts between sleeping bodies: a structured array with the fields of
-        contact_dtype, in a fixed order. Every use makes a new array, so keep it:
+        contact_dtype, in a fixed order. Numbers of bodies and colliders shift when an object before them is removed.
+        Every use makes a new array, so keep it:
 
             contacts = world.contacts
             sliding = contacts[contacts["motion"] == skerry.SLIDE]["force"]  # shape (k, 3) [N]
@@ -218,13 +232,14 @@ class WorldResults:
         with world.contact_problems() as problems:
             world.advance(0.1)
         solution = skerry.solve(problems[0].problem)
-        """
-        return contact_problems(self._core, every)
+
+        Only one such block may be active at a time."""
+        return contact_problems(self, whole(every, "every"))
 
     def measure_forces(self, point: VectorLike = (0.0, 0.0, 0.0), *, on: bool = True) -> None:
         """From now on each call of advance() sums the forces of contacts and attachments, with moments about `point`,
         shape (3,) [m]. on=False ends this. Steps do not change. A loaded world does not measure."""
-        self._core.measure_forces(on, real_array(point, "point", (3,)))
+        self._core.measure_forces(flag(on, "on"), real_array(point, "point", (3,)))
 
     @property
     def measures_forces(self) -> bool:
@@ -277,8 +292,8 @@ class WorldResults:
         """Casts many rays like cast_ray(). origins, directions: shape (n, 3), or (3,) for all rays. The result is a
         structured array (n,) with the fields of hit_dtype."""
         starts, ways = _rows_of_both(origins, "origins", directions, "directions")
-        filters = (bodies, colliders, groups, [_handle_of(left_out, "but") for left_out in but])
-        rows: NDArray[np.void] = self._core.cast_rays(starts, ways, max_distance, *filters).view(hit_dtype)
+        filters = self._filters(max_distance, bodies, colliders, groups, but)
+        rows: NDArray[np.void] = self._core.cast_rays(starts, ways, *filters).view(hit_dtype)
         return rows
 
     def nearest_point(
@@ -316,9 +331,25 @@ class WorldResults:
         """Finds the nearest points of surfaces for many points, shape (n, 3). The result is a structured array (n,)
         with the fields of hit_dtype."""
         given = real_array(points, "points", ("n", 3))
-        filters = (bodies, colliders, groups, [_handle_of(left_out, "but") for left_out in but])
-        rows: NDArray[np.void] = self._core.nearest_points(given, max_distance, *filters).view(hit_dtype)
+        filters = self._filters(max_distance, bodies, colliders, groups, but)
+        rows: NDArray[np.void] = self._core.nearest_points(given, *filters).view(hit_dtype)
         return rows
+
+    def _filters(
+        self, max_distance: float, bodies: bool, colliders: bool, groups: int, but: Iterable[Body | Collider]
+    ) -> tuple[Any, ...]:
+        """Arguments of a query after its points, for the extension module."""
+        from ._world import Body, Collider
+
+        if not isinstance(but, Iterable):
+            raise TypeError(f"but: found {but!r}, expected a list of bodies and colliders")
+        return (
+            real(max_distance, "max_distance"),
+            flag(bodies, "bodies"),
+            flag(colliders, "colliders"),
+            whole(groups, "groups"),
+            [self._own(left_out, "but", Body, Collider) for left_out in but],
+        )
 
     def _hit(self, row: np.void) -> SurfaceHit | None:
         if math.isinf(row["distance"]):
@@ -334,19 +365,9 @@ class WorldResults:
         )
 
 
-def _handle_of(found: Any, name: str) -> Any:
-    if not hasattr(found, "_handle"):
-        raise TypeError(f"{name}: found {found!r}, expected an object of a world")
-    return found._handle
-
-
 def _rows_of_both(first: ArrayLike, name: str, second: ArrayLike, other: str) -> tuple[Reals, Reals]:
     """Two arrays of the shape (n, 3), of which one may be given as one row for all."""
-    many = max(np.shape(first), np.shape(second), key=len)
-    shape = (many[0] if len(many) == 2 else 1, 3)
-    return _rows(first, name, shape), _rows(second, other, shape)
-
-
-def _rows(value: ArrayLike, name: str, shape: tuple[int, int]) -> Reals:
-    given = real_array(value, name, (3,) if np.ndim(value) == 1 else shape)
-    return np.ascontiguousarray(np.broadcast_to(given, shape))
+    one, two = numbers(first, name, ("n", 3)), numbers(second, other, ("n", 3))
+    many = max(one.shape, two.shape, key=len)
+    count = many[0] if len(many) == 2 else 1
+    return real_rows(one, name, count), real_rows(two, other, count)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Mapping, Sequence
-from operator import index
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import real, real_array, shape_text
+from ._arrays import checked, counted, flag, real, real_array, shape_text
 from ._errors import Doubt, scene_error
-from ._recorder import NodesProbe, Probe, recorded_probes
 from ._world import Attachment, Body, Collider, Joint, World
+from ._world.probes import NodesProbe, Probe, recorded_probes
 
 Reals: TypeAlias = NDArray[np.float64]
 
@@ -65,7 +64,8 @@ def rollout(
     name of a collider or a body, or a pair of an object and a quantity:
     - colliders and attachments: "pose" (default), position and rotation vector at the end of the interval (6,)
       [m, rad]; "velocity" (6,) [m/s, rad/s]
-    - bodies: "force" (default), a force at the centre of mass (3,) [N]; "loads", forces on the nodes (n, 3) [N]
+    - bodies: "force" (default), a force at the centre of mass (3,) [N], which set_loads() distributes over the nodes in
+      proportion to their masses; "loads", the forces of set_loads() (n, 3) [N]
     - joints with a motor: "coordinate" (default) or "speed", one number
     - the world: "gravity" (3,) [m/s^2]
 
@@ -89,15 +89,15 @@ def rollout(
 
     TypeError: an array has the wrong shape. SceneError: an object, a quantity or a value is wrong; no world has run
     then. BusyError: another thread uses one of the worlds."""
-    copies = [worlds] if isinstance(worlds, World) else list(worlds)
+    copies = [worlds] if isinstance(worlds, World) else list(checked(worlds, "rollout: worlds", World, Iterable))
     if not copies:
         raise scene_error("rollout", "worlds", "an empty list", "at least one world")
     for world in copies:
-        if not isinstance(world, World):
-            raise TypeError(f"rollout: worlds: found {world!r}, expected a World")
-    given = [_Values(copies[0], key, values) for key, values in (controls or {}).items()]
+        checked(world, "rollout: worlds", World)
+    wanted = checked({} if controls is None else controls, "rollout: controls", Mapping)
+    given = [_Values(copies, key, values) for key, values in wanted.items()]
     count = _common(given, "number of worlds", 0, None if isinstance(worlds, World) else len(copies))
-    intervals = _common(given, "number of intervals", 1, None if steps is None else index(steps))
+    intervals = _common(given, "number of intervals", 1, None if steps is None else counted(steps, "rollout: steps"))
     if intervals is None or intervals < 1:
         raise scene_error("rollout", "steps", str(intervals), "a number of intervals >= 1, or a control that has it")
     if isinstance(worlds, World):
@@ -109,8 +109,8 @@ def rollout(
         recorded_probes(probes),
         real(dt, "dt"),
         intervals,
-        threads,
-        keep_worlds,
+        counted(threads, "rollout: threads"),
+        flag(keep_worlds, "rollout: keep_worlds"),
         _show if progress else None,
     )
     if progress:
@@ -123,16 +123,16 @@ def rollout(
     result["message"], result["distrust"] = np.array(messages, dtype=np.str_), np.array(distrust, dtype=np.str_)
     result["ok"] = result["message"] == ""
     result.worlds = tuple(World._of(core) for core in values["worlds"])
-    _warn("stopped", messages)
-    _warn("cannot be trusted", distrust)
+    warn_of("rollout", "world", "stopped", messages)
+    warn_of("rollout", "world", "cannot be trusted", distrust)
     return result
 
 
-def _warn(state: str, reasons: Sequence[str]) -> None:
-    """Warns of the worlds that have a reason."""
-    worlds = [number for number, reason in enumerate(reasons) if reason]
-    if worlds:
-        text = f"rollout: {len(worlds)} of {len(reasons)} worlds {state}; world {worlds[0]}: {reasons[worlds[0]]}"
+def warn_of(call: str, kind: str, state: str, reasons: Sequence[str]) -> None:
+    """Warns of the worlds or cases that have a reason."""
+    found = [number for number, reason in enumerate(reasons) if reason]
+    if found:
+        text = f"{call}: {len(found)} of {len(reasons)} {kind}s {state}; {kind} {found[0]}: {reasons[found[0]]}"
         warnings.warn(text, Doubt, stacklevel=3)
 
 
@@ -159,14 +159,16 @@ def _common(controls: Sequence[_Values], what: str, place: int, given: int | Non
 class _Values:
     """The values of a control."""
 
-    def __init__(self, world: World, key: Any, values: ArrayLike) -> None:
-        named, quantity = key if isinstance(key, tuple) else (key, None)
-        target = _object_named(world, named) if isinstance(named, str) else named
+    def __init__(self, worlds: Sequence[World], key: Any, values: ArrayLike) -> None:
+        named, quantity = key if isinstance(key, tuple) and len(key) == 2 else (key, None)
+        target = _object_named(worlds[0], named) if isinstance(named, str) else named
         shapes = next((_CONTROLS[kind] for kind in _CONTROLS if isinstance(target, kind)), None)
         if shapes is None:
             classes = ", ".join(kind.__name__ for kind in _CONTROLS)
             raise TypeError(f"controls: found {named!r}, expected a name or an object of one of {classes}")
         label = "world" if isinstance(target, World) else target._label
+        if isinstance(target, World) and all(target is not world for world in worlds):
+            raise scene_error("controls", "gravity", "another world", "one of the given worlds")
         self.quantity = next(iter(shapes)) if quantity is None else quantity
         if self.quantity not in shapes:
             expected = "one of " + ", ".join(f"'{known}'" for known in shapes)
@@ -175,9 +177,17 @@ class _Values:
         self.handle = None if isinstance(target, World) else target._handle
         nodes = target.node_count if isinstance(target, Body) else 0
         shape = tuple(nodes if length < 0 else length for length in shapes[self.quantity])
-        leading = ("B", "T") if np.ndim(values) == len(shape) + 2 else ("T",)
+        leading = ("B", "T") if _depth(values) == len(shape) + 2 else ("T",)
         self.array = real_array(values, self.name, (*leading, *shape))
         self.lengths = (self.array.shape[0] if len(leading) == 2 else None, self.array.shape[len(leading) - 1])
+
+
+def _depth(values: ArrayLike) -> int:
+    """Number of dimensions of an array; 0 for rows of different lengths."""
+    try:
+        return np.ndim(values)
+    except ValueError:
+        return 0
 
 
 def _arrays_of(name: str, probe: Probe, columns: list[str], series: Reals) -> dict[str, Reals]:

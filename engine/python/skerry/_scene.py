@@ -14,8 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._recorder import Probe, Recorder, probe_of
+from ._arrays import counted, path_text, seconds
+from ._errors import scene_error
+from ._recorder import Recorder
 from ._world import Body, World
+from ._world.probes import Probe, probe_of
 
 Path: TypeAlias = str | os.PathLike[str]
 Json: TypeAlias = Any
@@ -27,14 +30,16 @@ _SLACK = 1e-9  # rounding error when a run is divided into frames, as a fraction
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactProbe:
-    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table."""
+    """Nodes of a body whose contacts the program `skerry run` reports, such as the feet of a table.
+
+    name: name.
+    body: body.
+    nodes: numbers of the nodes, shape (j,).
+    """
 
     name: str
-    """Name."""
     body: Body
-    """Body."""
     nodes: NDArray[np.int32]
-    """Numbers of the nodes, shape (j,)."""
 
 
 class Scene:
@@ -62,7 +67,7 @@ class Scene:
         self.materials: tuple[str, ...] = tuple(values["materials"])
         """Names of the materials, in the order added."""
         self.seconds: float = values["seconds"]
-        """Duration of a run [s]."""
+        """Time at which a run ends [s]."""
         self.frame_step: float = values["frame_step"]
         """Time between two frames of output [s]."""
         self.probe_step: float = values["probe_step"]
@@ -77,7 +82,7 @@ class Scene:
 
     def run(
         self,
-        seconds: float | None = None,
+        until: float | None = None,
         *,
         csv: Path | None = None,
         page: Path | None = None,
@@ -87,17 +92,16 @@ class Scene:
         """Runs the scene and returns the recorder of its probes. The world takes the steps of `skerry run`, and
         continues from its present time.
 
-        seconds: time at which the run ends, default: that of the scene [s]. csv: file of the time series, written row
-        by row. page: file of a page that plays the run. vtk: folder of frames for ParaView. progress: writes the time
-        to the standard error output.
+        until: time at which the run ends, as with `skerry run --seconds`, default: `seconds` of the scene [s].
+        World.run() takes a duration instead. csv: file of the time series, written row by row. page: file of a page
+        that plays the run. vtk: folder of frames for ParaView. progress: writes the time to the standard error output.
 
         StepError: a step could not be completed; all outputs then end there."""
-        world, end = self.world, self.seconds if seconds is None else seconds
-        if not (end >= 0 and math.isfinite(end)):
-            raise ValueError(f"seconds: found {end}, expected a time >= 0 (s)")
+        world, end = self.world, self.seconds if until is None else seconds(until, "Scene.run", "until")
         with ExitStack() as outputs:
             if page is not None:
-                outputs.callback(world.record(title=self.name, every=self.frame_step).save, page)
+                film = outputs.enter_context(world.record(title=self.name, every=self.frame_step))
+                outputs.callback(film.save, page)
             if vtk is not None:
                 name = os.path.basename(os.path.normpath(vtk))
                 outputs.enter_context(
@@ -152,13 +156,21 @@ def load_scene(
     that a mapping names, default: the present one.
 
     SceneError: names the place, the value found and the value expected; for an unknown key the nearest known one."""
-    assignments = [f"{place}={_json_text(value, place)}" for place, value in (overrides or {}).items()]
+    if not isinstance(overrides, Mapping | None):
+        raise TypeError(f"overrides: found {overrides!r}, expected a mapping from places to values")
+    assignments = [f"{place}={json.dumps(_plain(value, str(place)))}" for place, value in (overrides or {}).items()]
+    count = None if threads is None else counted(threads, "threads")
     if isinstance(scene, Mapping):
-        base = os.fspath(os.getcwd() if folder is None else folder)
-        return Scene(_core.load_scene_text(_json_text(scene, "scene"), base, assignments, threads))
+        base = os.getcwd() if folder is None else path_text(folder, "folder")
+        return Scene(_core.load_scene_text(json.dumps(_plain(scene, "")), base, assignments, count))
     if folder is not None:
         raise TypeError("folder: found a folder together with a file, whose folder is used; expected none")
-    return Scene(_core.load_scene(os.fspath(scene), assignments, threads))
+    file = path_text(scene, "scene", "a path of a JSON file or a mapping")
+    if file.lstrip().startswith("{"):
+        raise TypeError(
+            "scene: found a text in JSON, expected a path of a JSON file or a mapping, such as json.loads(text)"
+        )
+    return Scene(_core.load_scene(file, assignments, count))
 
 
 def scene_schema() -> dict[str, Any]:
@@ -167,22 +179,24 @@ def scene_schema() -> dict[str, Any]:
     return schema
 
 
-def _json_text(value: Json, place: str) -> str:
-    try:
-        return json.dumps(value, default=_plain, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise TypeError(
-            f"{place}: found a value that JSON does not have ({error}), expected one that it has"
-        ) from error
-
-
-def _plain(value: Any) -> Any:
-    """A NumPy array or number as a list or a number, and a path as a text."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
+def _plain(value: Json, place: str) -> Json:
+    """The value of a place with the types of the module json. A path becomes a text."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            raise scene_error("scene", place, f"{value}", "a finite number")
+        return value
     if isinstance(value, Mapping):
-        return dict(value)
-    return os.fspath(value)
+        for key in value:
+            if not isinstance(key, str):
+                raise TypeError(f"scene: found the key {key!r} in {place or 'the scene'}, expected a text")
+        return {key: _plain(inner, f"{place}.{key}" if place else key) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner, f"{place}[{number}]") for number, inner in enumerate(value)]
+    return path_text(value, f"scene: {place}", "a value of JSON")
 
 
 def _multiples(step: float, after: float, before: float) -> list[float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
@@ -13,8 +13,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
+from ._arrays import checked, whole
 from ._errors import SceneError, StepError
 from ._recorder import Recorder
+from ._rollout import warn_of
 from ._scene import Json, Path, load_scene
 
 Case: TypeAlias = Mapping[str, Json]
@@ -48,7 +51,7 @@ def sweep(
 
     scene, folder: as for load_scene(). grid: values by place, of which all combinations are run, the last place varying
     fastest; or a list of cases, each with values by place. jobs: number of cases that run at once, with one thread
-    each, default: the number of processors. seconds: duration of the runs, default: that of the scene [s].
+    each, default: the number of processors. seconds: time at which the runs end, default: that of the scene [s].
 
     The result has:
     - each place: its values, shape (B,) or (B, ...)
@@ -57,12 +60,14 @@ def sweep(
     - "state_hash": hash of the world at the end
     - "time" and each column of the probes: shape (B, T); NaN after the end of a case, and everywhere if it was refused
 
-    The numbers are those of one run after the other. SceneError: all cases are refused; it is the error of the first.
+    Cases that are refused, fail or cannot be trusted become warnings. The numbers are those of one run after the other.
+    SceneError: all cases are refused; it is the error of the first.
     """
     cases = _cases(grid)
+    end = None if seconds is None else _arrays.seconds(seconds, "sweep", "seconds")
     stop = threading.Event()
-    with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
-        futures = [pool.submit(_run_case, scene, case, seconds, folder, stop) for case in cases]
+    with ThreadPoolExecutor((0 if jobs is None else whole(jobs, "sweep: jobs")) or os.cpu_count() or 1) as pool:
+        futures = [pool.submit(_run_case, scene, case, end, folder, stop) for case in cases]
         try:
             while wait(futures, timeout=0.1).not_done:
                 pass  # Python raises KeyboardInterrupt here
@@ -73,15 +78,19 @@ def sweep(
             raise
     if results and all(result.error is not None for result in results):
         raise next(result.error for result in results if result.error is not None)
+    for status in ("refused", "failed"):
+        warn_of("sweep", "case", status, [result.message if result.status == status else "" for result in results])
+    warn_of("sweep", "case", "cannot be trusted", [result.distrust for result in results])
     return {**_values(cases), **_columns(results)}
 
 
 def _cases(grid: Mapping[str, Sequence[Json]] | Sequence[Case]) -> list[Case]:
     if not isinstance(grid, Mapping):
-        for number, case in enumerate(grid):
+        cases = list(checked(grid, "grid", Mapping, Iterable))
+        for number, case in enumerate(cases):
             if not isinstance(case, Mapping):
                 raise TypeError(f"grid[{number}]: found {case!r}, expected the values of a case by place")
-        return list(grid)
+        return cases
     for place, values in grid.items():
         if isinstance(values, str) or not hasattr(values, "__len__"):
             raise TypeError(f"{place}: found {values!r}, expected a list of values")

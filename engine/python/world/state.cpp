@@ -40,6 +40,10 @@ nb::object pose_object(const MotionKey& pose) {
     return object_of(Pose{.position = pose.position, .rotation = pose.rotation});
 }
 
+nb::ndarray<nb::numpy, Real> vector_array(const Vec3& vector) {
+    return python::array_of<Real>(std::span<const Real>(vector.data(), 3));
+}
+
 /// Bodies or colliders of this name, in the order of the world.
 template <class HandleType>
 std::vector<HandleType> named(const World& world, const std::vector<HandleType>& all, const std::string& name) {
@@ -101,14 +105,45 @@ void bind_body_state(WorldClass& type) {
         .def("dynamics_choice",
              guarded([](World& world, const BodyHandle& body) { return values_of(world.dynamics_choice(body)); }))
         .def("mass", guarded([](World& world, const BodyHandle& body) { return world.mass(body); }))
-        .def("center_of_mass", guarded([](World& world, const BodyHandle& body) {
-                 const Vec3 center = world.center_of_mass(body);
-                 return python::array_of<Real>(std::span<const Real>(center.data(), 3));
-             }))
+        .def("center_of_mass",
+             guarded([](World& world, const BodyHandle& body) { return vector_array(world.center_of_mass(body)); }))
         .def("contact_distance",
              guarded([](World& world, const BodyHandle& body) { return world.contact_distance(body); }))
         .def("asleep", guarded([](World& world, const BodyHandle& body) { return world.asleep(body); }))
         .def("mean_edge", guarded([](World& world, const BodyHandle& body) { return world.mean_edge(body); }));
+}
+
+nb::tuple tuple_of(const Twist& twist) {
+    return nb::make_tuple(vector_array(twist.velocity), vector_array(twist.angular_velocity));
+}
+
+/// Binds the getters of values that the user sets for an object of the given kind.
+template <class HandleType>
+void bind_given_values(WorldClass& type) {
+    type.def("velocity",
+             guarded([](World& world, const HandleType& object) { return tuple_of(world.velocity(object)); }));
+    if constexpr (!std::is_same_v<HandleType, AttachmentHandle>)
+        type.def("surface_properties", guarded([](World& world, const HandleType& object) {
+                     return object_of(world.surface_properties(object));
+                 }))
+            .def("collision_groups", guarded([](World& world, const HandleType& object) {
+                     const CollisionGroups groups = world.collision_groups(object);
+                     return nb::make_tuple(groups.group, groups.mask);
+                 }));
+}
+
+void bind_links(WorldClass& type) {
+    type.def("attachments", guarded([](World& world) { return world.attachments(); }))
+        .def("body_of",
+             guarded([](World& world, const AttachmentHandle& attachment) { return world.body(attachment); }))
+        .def("nodes_of", guarded([](World& world, const AttachmentHandle& attachment) {
+                 const std::vector<Index> nodes = world.nodes(attachment);
+                 return python::array_of<Index>(std::span<const Index>(nodes));
+             }))
+        .def("materials", guarded([](World& world) { return world.materials(); }))
+        .def("material_of", guarded([](World& world, const BodyHandle& body) { return world.material(body); }))
+        .def("loads",
+             guarded([](World& world, const BodyHandle& body) { return python::array_of(world.loads(body)); }));
 }
 
 void bind_fields(WorldClass& type) {
@@ -129,6 +164,10 @@ void bind_state(WorldClass& type) {
     bind_world_state(type);
     bind_body_state(type);
     bind_fields(type);
+    bind_links(type);
+    bind_given_values<BodyHandle>(type);
+    bind_given_values<ColliderHandle>(type);
+    bind_given_values<AttachmentHandle>(type);
 }
 
 }  // namespace skerry::python

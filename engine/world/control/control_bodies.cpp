@@ -179,6 +179,12 @@ void World::set_velocity(BodyHandle body, const Vec3& velocity, const Vec3& angu
     set_velocities(body, of_nodes);
 }
 
+std::span<const Vec3> World::loads(BodyHandle body) const {
+    state_->settle();
+    return rows_of(state_->model.nodes.load,
+                   state_->model.bodies.nodes[static_cast<std::size_t>(state_->model.row(body, "loads"))]);
+}
+
 void World::set_loads(BodyHandle body, std::span<const Vec3> load) {
     state_->require_between_steps("set_loads");
     Model& model = state_->model;

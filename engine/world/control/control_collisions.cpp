@@ -83,6 +83,18 @@ void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled) {
     enable_if(disabled.key, [&](const PairSlots& pair) { return pair.is_collider && pair.second == collider.slot; });
 }
 
+CollisionGroups World::collision_groups(BodyHandle body) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "collision_groups"));
+    const CollisionFilter& filter = state_->model.bodies.filter[row];
+    return {filter.group, filter.mask};
+}
+
+CollisionGroups World::collision_groups(ColliderHandle collider) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(collider, "collision_groups"));
+    const CollisionFilter& filter = state_->model.colliders.filter[row];
+    return {filter.group, filter.mask};
+}
+
 void World::set_collision_groups(BodyHandle body, std::uint32_t group, std::uint32_t mask) {
     state_->require_between_steps("set_collision_groups");
     Model& model = state_->model;

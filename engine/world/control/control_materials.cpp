@@ -101,7 +101,30 @@ void require_changeable(const MaterialRow& now, const MaterialRow& next) {
                    ", because the law of an existing material cannot change; for another law, add a new material");
 }
 
+/// The properties that are set; a negative property is not.
+SurfaceSettings set_values_of(const SurfaceProperties& surface) {
+    const auto given = [](Real value) { return value < 0 ? std::optional<Real>() : value; };
+    if (surface.static_friction == surface.dynamic_friction)
+        return {.friction = given(surface.dynamic_friction), .restitution = given(surface.restitution)};
+    return {.static_friction = given(surface.static_friction),
+            .dynamic_friction = given(surface.dynamic_friction),
+            .restitution = given(surface.restitution)};
+}
+
 }  // namespace
+
+std::vector<MaterialHandle> World::materials() const {
+    std::vector<MaterialHandle> handles;
+    for (const std::uint32_t slot : state_->model.materials.slot)
+        handles.push_back(state_->model.material_map.handle_of_slot(slot));
+    return handles;
+}
+
+MaterialHandle World::material(BodyHandle body) const {
+    const Model& model = state_->model;
+    const Index row = model.bodies.material[static_cast<std::size_t>(model.row(body, "material"))];
+    return model.material_map.handle_of_slot(model.materials.slot[static_cast<std::size_t>(row)]);
+}
 
 MaterialSettings World::material(MaterialHandle material) const {
     const auto row = static_cast<std::size_t>(state_->model.row(material, "material"));
@@ -165,12 +188,22 @@ void World::set_material(MaterialHandle material, const MaterialSettings& settin
     for (const std::size_t body : bodies) model.wake(body);
 }
 
+SurfaceSettings World::surface_properties(BodyHandle body) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(body, "surface_properties"));
+    return set_values_of(state_->model.bodies.surface[row]);
+}
+
+SurfaceSettings World::surface_properties(ColliderHandle collider) const {
+    const auto row = static_cast<std::size_t>(state_->model.row(collider, "surface_properties"));
+    return set_values_of(state_->model.colliders.surface[row]);
+}
+
 void World::set_surface_properties(BodyHandle body, const SurfaceSettings& surface) {
     state_->require_between_steps("set_surface_properties");
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(body, "set_surface_properties"));
     validate(surface, "body '" + model.body_records[row].name + "'");
-    const SurfaceProperties next = surface_properties(surface);
+    const SurfaceProperties next = skerry::surface_properties(surface);
     if (model.bodies.surface[row] == next) return;
     model.bodies.surface[row] = next;
     model.wake(row);
@@ -181,7 +214,7 @@ void World::set_surface_properties(ColliderHandle collider, const SurfaceSetting
     Model& model = state_->model;
     const auto row = static_cast<std::size_t>(model.row(collider, "set_surface_properties"));
     validate(surface, "collider '" + model.collider_records[row].name + "'");
-    const SurfaceProperties next = surface_properties(surface);
+    const SurfaceProperties next = skerry::surface_properties(surface);
     if (model.colliders.surface[row] == next) return;
     model.colliders.surface[row] = next;
     state_->edits.places.add_collider(model, row, time());  // wakes bodies that lie on the collider

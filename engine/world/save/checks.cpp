@@ -1,12 +1,53 @@
 #include "engine/world/save/checks.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
 
 #include "engine/world/complaint.h"
 
 namespace skerry {
 
 namespace {
+
+/// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
+/// lane.
+bool may_be_infinite(std::string_view path) {
+    constexpr std::array<std::string_view, 18> paths{"watch/step",
+                                                     "watch/look/in_frame",
+                                                     "watch/look/highest",
+                                                     "tetrahedra/altitude",
+                                                     "tetrahedra/uninverted_until",
+                                                     "bodies/uninverted_until",
+                                                     "bodies/rest_step",
+                                                     "bodies/stable_step",
+                                                     "bodies/cluster_step",
+                                                     "bodies/travel",
+                                                     "colliders/travel",
+                                                     "pairs/valid_until",
+                                                     "pairs/candidates/asleep_until",
+                                                     "search/body_valid_until",
+                                                     "search/collider_valid_until",
+                                                     "joints/lower",
+                                                     "joints/upper",
+                                                     "joints/motor"};
+    return std::find(paths.begin(), paths.end(), path) != paths.end();
+}
+
+template <class Number>
+std::optional<WrongReal> find_wrong(bool infinite, std::size_t width, const std::byte* rows, std::size_t stride,
+                                    std::size_t count) {
+    for (std::size_t row = 0; row < count; ++row)
+        for (std::size_t i = 0; i < width; ++i) {
+            Number number;
+            std::memcpy(&number, rows + row * stride + i * sizeof number, sizeof number);
+            if (std::isnan(number) || (std::isinf(number) && !infinite))
+                return WrongReal{.found = std::to_string(number), .row = row};
+        }
+    return {};
+}
 
 std::string text_of(Real value) {
     return short_text(value);
@@ -24,6 +65,14 @@ void expect_numbers(const SavedFile& file, std::string_view path, std::span<cons
 }
 
 }  // namespace
+
+std::optional<WrongReal> find_wrong_real(std::string_view path, const RowType& type, const std::byte* rows,
+                                         std::size_t stride, std::size_t count) {
+    if (!is_real(type.number)) return {};
+    const bool infinite = may_be_infinite(path);
+    return type.number == NumberType::real ? find_wrong<Real>(infinite, type.width, rows, stride, count)
+                                           : find_wrong<float>(infinite, type.width, rows, stride, count);
+}
 
 std::string at_row(const std::string& found, std::size_t row) {
     return found + " at row " + std::to_string(row);

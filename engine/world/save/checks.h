@@ -2,7 +2,9 @@
 // table. Errors name the file and the data set.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +30,19 @@ void check_clock(const SavedFile& file, const Clock& clock, Real kick);
 /// Returns text for messages, such as "5 at row 7".
 std::string at_row(const std::string& found, std::size_t row);
 std::string at_row(Index found, std::size_t row);
+
+inline bool is_real(NumberType number) {
+    return number == NumberType::real || number == NumberType::single;
+}
+
+struct WrongReal {
+    std::string found;
+    std::size_t row;
+};
+/// Finds the first real number that a saved world must not have: NaN, or infinity in a column where it has no meaning.
+/// `stride`: distance between two rows [bytes].
+std::optional<WrongReal> find_wrong_real(std::string_view path, const RowType& type, const std::byte* rows,
+                                         std::size_t stride, std::size_t count);
 
 /// Checks that a column has the expected number of rows.
 void expect_size(const SavedFile& file, std::string_view path, std::size_t found, std::size_t expected);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -21,34 +20,9 @@ namespace skerry {
 
 namespace {
 
-/// True for columns that may contain infinity. It stands for a bound that does not exist, or is the value in an unused
-/// lane.
-bool may_be_infinite(std::string_view path) {
-    constexpr std::array<std::string_view, 18> paths{"watch/step",
-                                                     "watch/look/in_frame",
-                                                     "watch/look/highest",
-                                                     "tetrahedra/altitude",
-                                                     "tetrahedra/uninverted_until",
-                                                     "bodies/uninverted_until",
-                                                     "bodies/rest_step",
-                                                     "bodies/stable_step",
-                                                     "bodies/cluster_step",
-                                                     "bodies/travel",
-                                                     "colliders/travel",
-                                                     "pairs/valid_until",
-                                                     "pairs/candidates/asleep_until",
-                                                     "search/body_valid_until",
-                                                     "search/collider_valid_until",
-                                                     "joints/lower",
-                                                     "joints/upper",
-                                                     "joints/motor"};
-    return std::find(paths.begin(), paths.end(), path) != paths.end();
-}
-
 std::string kind_of_array(NumberType number, std::size_t width) {
-    const bool reals = number == NumberType::real || number == NumberType::single;
-    return (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") + (reals ? "reals" : "integers") +
-           " of " + std::to_string(bytes_of(number)) + " bytes";
+    return (width == 1 ? "a column of " : "rows of " + std::to_string(width) + " ") +
+           (is_real(number) ? "reals" : "integers") + " of " + std::to_string(bytes_of(number)) + " bytes";
 }
 
 /// The archive (see list_state.h) that reads from a file.
@@ -102,22 +76,9 @@ private:
         unread_.erase(path);
     }
     void check(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
-        if (type.number == NumberType::real)
-            check_reals<Real>(path, type, rows, count);
-        else if (type.number == NumberType::single)
-            check_reals<float>(path, type, rows, count);
-        else if (type.values > 0)
-            check_values(path, type, rows, count);
-    }
-    template <class Number>
-    void check_reals(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
-        const bool infinite = may_be_infinite(path);
-        for (std::size_t i = 0; i < count * type.width; ++i) {
-            Number number;
-            std::memcpy(&number, rows + i * sizeof number, sizeof number);
-            if (std::isnan(number) || (std::isinf(number) && !infinite))
-                refuse(path, std::to_string(number), i / type.width, "finite numbers");
-        }
+        if (const auto wrong = find_wrong_real(path, type, rows, type.width * bytes_of(type.number), count))
+            refuse(path, wrong->found, wrong->row, "finite numbers");
+        if (type.values > 0 && !is_real(type.number)) check_values(path, type, rows, count);
     }
     void check_values(const std::string& path, const RowType& type, const std::byte* rows, std::size_t count) const {
         for (std::size_t i = 0; i < count * type.width; ++i) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/output/write_file.h"
+#include "engine/world/save/checks.h"
 #include "engine/world/save/list_state.h"
 #include "engine/world/save/saved_file.h"
 #include "engine/world/save/world_file.h"
@@ -28,11 +29,23 @@ private:
     void add(const std::string& path, const RowType& type, const std::byte* first, std::size_t stride,
              std::size_t rows) {
         if (type.members == nullptr) {
+            if (const auto wrong = find_wrong_real(path, type, first, stride, rows)) refuse(path, *wrong);
             arrays_.push_back({path, type.number, rows, type.width, first, stride});
             return;
         }
         for (const Member& member : type.members())
             add(path + "/" + member.name, *member.type, rows == 0 ? nullptr : first + member.offset, stride, rows);
+    }
+
+    /// A file with this number could not be loaded.
+    [[noreturn]] static void refuse(const std::string& path, const WrongReal& wrong) {
+        Complaint{.file = {},
+                  .object = "save",
+                  .field = path,
+                  .found = at_row(wrong.found, wrong.row),
+                  .expected = "finite numbers",
+                  .hint = "a position, a velocity or a load of the world is too large"}
+            .raise();
     }
 
     std::vector<ArraySource> arrays_;

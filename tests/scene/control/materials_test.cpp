@@ -1,6 +1,8 @@
 // Changes of materials and surface properties during the run.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 #include "engine/world/world_state.h"
 #include "tests/support/worlds.h"
 
@@ -160,6 +162,53 @@ TEST_CASE("what elements have forgotten stays as it is once losses are off", "[s
         REQUIRE(world.advance(0.5 * world.stable_step()).steps == 1);
         CHECK(first() == forgotten);
     }
+}
+
+TEST_CASE("values that were set for objects can be read, also in a loaded world", "[scene]") {
+    World world({.gravity = Vec3::Zero()});
+    const MaterialHandle soft = world.add_material({.young_modulus = 1e5}), hard = world.add_material({});
+    const BodyHandle first = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = soft, .name = "first"});
+    const BodyHandle body = world.add_body(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1}), {.material = hard,
+                                                                                   .position = {1, 0, 0},
+                                                                                   .velocity = {0, 2, 0},
+                                                                                   .angular_velocity = {0, 0, 3},
+                                                                                   .name = "body"});
+    const ColliderHandle wheel = world.add_collider(mesh::boundary(mesh::box({0.1, 0.1, 0.1}, {1, 1, 1})),
+                                                    {.position = {0, 0, 2}, .name = "wheel"});
+    const std::vector<Index> held{5, 1, 3};
+    const AttachmentHandle attachment = world.attach(first, held);
+    std::vector<Vec3> loads(world.positions(body).size(), Vec3(0, 0, 1));
+    world.set_loads(body, loads);
+    world.set_surface_properties(body, {.friction = 0.25});
+    world.set_surface_properties(wheel, {.static_friction = 0.5, .dynamic_friction = 0.25, .restitution = 0.125});
+    world.set_collision_groups(body, 4, 6);
+    world.set_collision_groups(wheel, 2, 7);
+    CHECK(world.velocity(body).velocity.isApprox(Vec3(0, 2, 0)));
+    CHECK(world.velocity(body).angular_velocity.isApprox(Vec3(0, 0, 3)));
+    world.set_velocity(wheel, {1, 0, 0}, {0, 1, 0});
+    world.set_velocity(attachment, {0, 0.5, 0});
+    REQUIRE(world.advance(1e-4).ok());
+    const World loaded = World::from_bytes(world.to_bytes());
+    CHECK(loaded.attachments() == std::vector{attachment});  // without the nodes of the mesh collider
+    CHECK(loaded.body(attachment) == first);
+    CHECK(loaded.nodes(attachment) == held);
+    CHECK(loaded.materials() == std::vector{soft, hard});
+    CHECK(loaded.material(first) == soft);
+    CHECK(loaded.material(body) == hard);
+    CHECK(std::ranges::equal(loaded.loads(body), loads));
+    CHECK(loaded.surface_properties(body).friction == 0.25);
+    CHECK_FALSE(loaded.surface_properties(body).restitution.has_value());
+    CHECK_FALSE(loaded.surface_properties(first).friction.has_value());
+    CHECK(loaded.surface_properties(wheel).static_friction == 0.5);
+    CHECK(loaded.surface_properties(wheel).dynamic_friction == 0.25);
+    CHECK(loaded.surface_properties(wheel).restitution == 0.125);
+    CHECK(loaded.collision_groups(body).group == 4);
+    CHECK(loaded.collision_groups(body).mask == 6);
+    CHECK(loaded.collision_groups(wheel).group == 2);
+    CHECK(loaded.collision_groups(wheel).mask == 7);
+    CHECK(loaded.velocity(wheel).velocity == Vec3(1, 0, 0));
+    CHECK(loaded.velocity(wheel).angular_velocity == Vec3(0, 1, 0));
+    CHECK(loaded.velocity(attachment).velocity == Vec3(0, 0.5, 0));
 }
 
 }  // namespace skerry::test::control_materials_test

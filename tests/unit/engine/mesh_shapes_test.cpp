@@ -3,9 +3,9 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <stdexcept>
 
 #include "engine/mesh/require_positive.h"
+#include "skerry/error.h"
 #include "skerry/mesh.h"
 
 namespace skerry::test::mesh_shapes_test {
@@ -180,28 +180,31 @@ TEST_CASE("the same call gives the same mesh", "[unit][determinism]") {
 
 TEST_CASE("sizes that are not positive and meshes too large to index are refused", "[unit]") {
     const Real nan = std::nan("");
-    CHECK_THROWS_AS(mesh::box({1, 0, 1}, {1, 1, 1}), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::box({1, nan, 1}, {1, 1, 1}), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::box({1, 1, 1}, {1, 0, 1}), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::box({1, 1, 1}, {100000, 100000, 100000}), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::ball(-1, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::ball(1, 0), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::ball(1, 1000000000), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::cylinder(1, 0, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::cylinder(1e-9, 1e9, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::skittle(nan, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::lathe({}, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::lathe(std::array<std::array<Real, 2>, 2>{{{1, 0}, {1, 0}}}, 4), std::invalid_argument);
-    CHECK_THROWS_AS(mesh::lathe(std::array<std::array<Real, 2>, 2>{{{1, 0}, {0, 1}}}, 4), std::invalid_argument);
+    CHECK_THROWS_AS(mesh::box({1, 0, 1}, {1, 1, 1}), SceneError);
+    CHECK_THROWS_AS(mesh::box({1, nan, 1}, {1, 1, 1}), SceneError);
+    CHECK_THROWS_AS(mesh::box({1, 1, 1}, {1, 0, 1}), SceneError);
+    CHECK_THROWS_AS(mesh::box({1, 1, 1}, {100000, 100000, 100000}), SceneError);
+    CHECK_THROWS_AS(mesh::ball(-1, 4), SceneError);
+    CHECK_THROWS_AS(mesh::ball(1, 0), SceneError);
+    CHECK_THROWS_AS(mesh::ball(1, 1000000000), SceneError);
+    CHECK_THROWS_AS(mesh::cylinder(1, 0, 4), SceneError);
+    CHECK_THROWS_AS(mesh::cylinder(1e-9, 1e9, 4), SceneError);
+    CHECK_THROWS_AS(mesh::skittle(nan, 4), SceneError);
+    CHECK_THROWS_AS(mesh::lathe({}, 4), SceneError);
+    CHECK_THROWS_AS(mesh::lathe(std::array<std::array<Real, 2>, 2>{{{1, 0}, {1, 0}}}, 4), SceneError);
+    CHECK_THROWS_AS(mesh::lathe(std::array<std::array<Real, 2>, 2>{{{1, 0}, {0, 1}}}, 4), SceneError);
     mesh::TableShape wide_legs;
     wide_legs.leg = 0.2;
-    CHECK_THROWS_AS(mesh::table(wide_legs), std::invalid_argument);
+    CHECK_THROWS_AS(mesh::table(wide_legs), SceneError);
     mesh::TableShape thick;
     thick.thickness = 0.3;
-    CHECK_THROWS_AS(mesh::table(thick), std::invalid_argument);
+    CHECK_THROWS_AS(mesh::table(thick), SceneError);
     mesh::TableShape fine;
     fine.cells_per_leg = 2000000;
-    CHECK_THROWS_AS(mesh::table(fine), std::invalid_argument);
+    CHECK_THROWS_AS(mesh::table(fine), SceneError);
+    CHECK_THROWS_WITH(mesh::box({1, 1, 1}, {1 << 20, 1 << 20, 1 << 20}),
+                      "box: cells: found a mesh of about 6.91753e+18 elements, expected at most 536870911, because "
+                      "indices have 32 bits");
 }
 
 TEST_CASE("what draws a sphere begins with its middle and corners around it, and lies on it", "[unit]") {

@@ -143,6 +143,10 @@ TEST_CASE("what cannot be written is refused and leaves what was there", "[unit]
     broken.block.back()(2, 1) = infinity;
     CHECK(refusal_to_write(broken, path).find("block: found a value that is not finite") != std::string::npos);
     broken = problem;
+    broken.block[1](0, 1) += 1;
+    CHECK(refusal_to_write(broken, path).find("found a matrix W that is not symmetric in the rows of contact 0") !=
+          std::string::npos);
+    broken = problem;
     broken.column[0] = broken.column[1];
     CHECK(refusal_to_write(broken, path).find("columns that do not ascend in row 0") != std::string::npos);
     CHECK(bytes_of(path) == "old");

@@ -139,7 +139,7 @@ TEST_CASE("worlds of a rollout must be copies of one world", "[unit]") {
         rollout(std::vector<const World*>{&yard.world, &removed}, calls(1, {{PoseControl{yard.clamp}, poses}}));
     } catch (const SceneError& error) {
         CHECK(error.complaint().object == "controls[0]: number of values per interval");
-        CHECK(error.complaint().field == "world 1");
+        CHECK(error.complaint().field == "world 1: attachment");
         CHECK_FALSE(error.complaint().expected.empty());
     }
     refused({&added, &more}, calls(1, {{NodeForceControl{small}, forces}}),

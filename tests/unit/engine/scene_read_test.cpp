@@ -366,6 +366,10 @@ TEST_CASE("assignments that cannot be carried out are refused by what is wrong w
         {"probes[0].name=x", "no value"},
         {"seconds.value=1", "an object"},
         {"second=3", "unknown key"},
+        {"materials.rubbr.E=1e5",
+         "found a place in the unknown material \"rubbr\", expected a place in one of the materials \"rubber\" (did "
+         "you "
+         "mean \"rubber\"?)"},
         {"seconds=long", "seconds: found the text \"long\""},
     };
     for (const auto& [assignment, said] : mistakes) {

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._arrays import VectorLike, checked, index_array, real_array, require_shape
-from .._recorder import PointProbe, point_probe
+from .._arrays import VectorLike, checked, flag, index_array, real, real_array, real_rows, require_shape
 from .._settings import Dynamics, ElementKind, Motion, Pose
+from .material import MaterialHandle
 from .objects import MovedObject, TouchingObject
+from .probes import PointProbe, point_probe
 from .reports import DynamicsEstimate
 
 if TYPE_CHECKING:
@@ -173,16 +174,18 @@ class Body(TouchingObject):
         x = self.positions
         chosen = np.ones(len(x), dtype=np.bool_)
         if box is not None:
-            lower, upper = (real_array(corner, "box", (3,)) for corner in box)
+            lower, upper = real_array(box, "box", (2, 3))  # type: ignore[arg-type]
             chosen &= np.all((x >= lower) & (x <= upper), axis=1)
         if sphere is not None:
-            center, radius = sphere
-            chosen &= np.linalg.norm(x - real_array(center, "sphere", (3,)), axis=1) <= radius
+            if not isinstance(sphere, Sequence) or len(sphere) != 2:
+                raise TypeError(f"sphere: found {sphere!r}, expected a centre and a radius")
+            center, radius = real_array(sphere[0], "sphere: centre", (3,)), real(sphere[1], "sphere: radius")
+            chosen &= np.linalg.norm(x - center, axis=1) <= radius
         if below is not None:
-            chosen &= x[:, 2] <= below
+            chosen &= x[:, 2] <= real(below, "below")
         if above is not None:
-            chosen &= x[:, 2] >= above
-        if surface:
+            chosen &= x[:, 2] >= real(above, "above")
+        if flag(surface, "surface"):
             on_surface = np.zeros(len(x), dtype=np.bool_)
             on_surface[self.surface.ravel()] = True
             chosen &= on_surface
@@ -218,10 +221,24 @@ class Body(TouchingObject):
     def set_loads(self, loads: ArrayLike) -> None:
         """Sets the external forces on the nodes, shape (n, 3) or (3,) for the same force on each [N]. They act until
         they are set again."""
-        given = np.asarray(loads, dtype=np.float64)
-        if given.shape == (3,):
-            given = np.broadcast_to(given, (self.node_count, 3))
-        self._core.set_loads(self._handle, self._rows(given, "loads"))
+        self._core.set_loads(self._handle, real_rows(loads, "loads", self.node_count))
+
+    @property
+    def loads(self) -> Reals:
+        """External forces on the nodes that were set, a copy of shape (n, 3) [N]."""
+        loads: Reals = self._core.loads(self._handle)
+        return loads
+
+    @property
+    def material(self) -> MaterialHandle:
+        """Material of the body, without those of tetrahedra with a label."""
+        return MaterialHandle(self._world, self._core.material_of(self._handle))
+
+    @property
+    def attachments(self) -> list[Attachment]:
+        """The attachments of the body in the order added."""
+        handle = self._handle
+        return [attachment for attachment in self._world.attachments if attachment._body_handle == handle]
 
     def reset(self, pose: Pose | None = None) -> None:
         """Puts the body back into its rest shape, without velocity and memory, at its first pose or at the given one.
@@ -281,6 +298,12 @@ class Attachment(MovedObject):
     def body(self) -> Body:
         """The body."""
         return Body(self._world, self._body_handle, self._body_name)
+
+    @property
+    def nodes(self) -> Indices:
+        """Numbers of the attached nodes within the body, shape (j,)."""
+        nodes: Indices = self._core.nodes_of(self._handle)
+        return nodes
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (self._world, self._given_handle, self.body, self._node_count))

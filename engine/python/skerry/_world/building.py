@@ -7,11 +7,13 @@ from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from .._arrays import RotationLike, VectorLike, checked, index_array, read_only, vector
+from .._arrays import RotationLike, VectorLike, checked, flag, index_array, name_text, read_only, real, vector, whole
 from .._arrays import rotation as rotation_vector
-from .._errors import SceneError
+from .._errors import scene_error
 from .._mesh import Mesh
 from .._settings import (
+    Box,
+    Bucket,
     Capsule,
     Cylinder,
     Dynamics,
@@ -20,8 +22,10 @@ from .._settings import (
     Material,
     Motion,
     Motor,
+    Plane,
     Shape,
     Sphere,
+    SurfaceMesh,
 )
 from .body import Attachment, Body, Indices
 from .changes import MaterialChanges
@@ -32,38 +36,67 @@ from .objects import Objects, PosedObject
 from .reports import StepReport
 
 if TYPE_CHECKING:
+    from .._recorder import Follower
     from .world import World
 
 
-class BodySettings(SimpleNamespace):
-    """Arguments of add_body() for the extension module."""
+_SHAPES = (Plane, Sphere, Box, Capsule, Cylinder, Bucket, SurfaceMesh)
 
 
-class ColliderSettings(SimpleNamespace):
-    """Arguments of add_collider() for the extension module."""
-
-
-class JointSettings(SimpleNamespace):
-    """Arguments of add_joint() for the extension module."""
+class Arguments(SimpleNamespace):
+    """Arguments of a call for the extension module. Its messages name the object by the attribute `of`."""
 
 
 class Building:
     """The part of World that adds, finds and removes objects."""
 
-    __slots__ = ("__weakref__", "_core", "_doubts", "_followers", "_materials", "_mesh_arrays", "_watch")
+    __slots__ = (
+        "__weakref__",
+        "_advancing",
+        "_collecting",
+        "_core",
+        "_doubts",
+        "_followers",
+        "_materials",
+        "_mesh_arrays",
+        "_watch",
+    )
 
     @property
     def _self(self) -> World:
         """The world, which is the only subclass."""
         return cast("World", self)
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Called for an attribute that does not exist."""
+            if name == "_core":
+                name = "_core, because its __init__() did not call super().__init__()"
+            raise AttributeError(f"{type(self).__name__}: found no attribute {name}")
+
     def _hold(self, core: Any) -> None:
         self._core = core
+        self._advancing = False
+        self._collecting = False  # True within contact_problems()
         self._watch: Callable[[StepReport], object] | None = None
-        self._followers: list[Callable[[], None]] = []  # called after each call of advance()
+        self._followers: list[Follower] = []
         self._doubts: set[tuple[str, ...]] = set()
         self._materials: dict[Material, Any] = {}
         self._mesh_arrays: dict[Any, tuple[Indices, Indices]] = {}
+
+    def _own(self, given: Any, name: str, *kinds: type) -> Any:
+        """Handle of an argument that must be an object of this world, of one of the given classes. The handle of an
+        object of a copy would name an object of this world, too, so that it must not get further."""
+        if checked(given, name, *kinds)._world is not self:
+            raise scene_error(
+                "",
+                name,
+                f"{given._label}, which belongs to another world",
+                "an object of this world",
+                "object.in_copy(world) is the object in a copy of its world",
+            )
+        return given._handle
 
     def add_material(self, material: Material | None = None, /, **changes: Unpack[MaterialChanges]) -> MaterialHandle:
         """Adds a material: add_material(Material(density=900)) or add_material(density=900). SceneError: a value is out
@@ -99,19 +132,22 @@ class Building:
         itself. contact_distance: default 2 % of the mean edge length of the surface [m]. collision_group,
         collision_mask: see Body.set_collision_groups(). name: unique in the world, default "body N".
 
-        SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use."""
-        given = BodySettings(
+        SceneError: a value is out of range, or a body has this name. BufferError: arrays of views() are in use. Ctrl-C
+        raises KeyboardInterrupt at the end of the call, when the body is already added."""
+        name = self._new_name(name, "body", self.bodies)
+        given = Arguments(
+            of=f"body '{name}'",
             position=vector(position, "position"),
             rotation=rotation_vector(rotation, "rotation"),
             velocity=vector(velocity, "velocity"),
             angular_velocity=vector(angular_velocity, "angular_velocity"),
             dynamics=dynamics,
             element=element,
-            self_contact=self_contact,
-            contact_distance=contact_distance,
-            collision_group=collision_group,
-            collision_mask=collision_mask,
-            name=self._new_name(name, "body", self.bodies),
+            self_contact=flag(self_contact, "self_contact"),
+            contact_distance=None if contact_distance is None else real(contact_distance, "contact_distance"),
+            collision_group=whole(collision_group, "collision_group"),
+            collision_mask=whole(collision_mask, "collision_mask"),
+            name=name,
         )
         if isinstance(mesh, (Sphere, Capsule, Cylinder)):
             handle = self._core.add_round_body(mesh, self._material(material), given)
@@ -151,20 +187,23 @@ class Building:
         "collider N".
 
         SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
-        given = ColliderSettings(
+        name = self._new_name(name, "collider", self.colliders)
+        given = Arguments(
+            of=f"collider '{name}'",
             position=vector(position, "position"),
             rotation=rotation_vector(rotation, "rotation"),
-            motion=motion or Motion(),
+            motion=checked(motion or Motion(), "motion", Motion),
             friction=friction,
             static_friction=static_friction,
             dynamic_friction=dynamic_friction,
             restitution=restitution,
-            contact_distance=contact_distance,
-            collision_group=collision_group,
-            collision_mask=collision_mask,
-            name=self._new_name(name, "collider", self.colliders),
+            contact_distance=real(contact_distance, "contact_distance"),
+            collision_group=whole(collision_group, "collision_group"),
+            collision_mask=whole(collision_mask, "collision_mask"),
+            name=name,
         )
-        return Collider(self._self, self._core.add_collider(shape, given), given.name)
+        handle = self._core.add_collider(checked(shape, "shape", *_SHAPES), given)
+        return Collider(self._self, handle, name)
 
     def add_joint(
         self,
@@ -184,24 +223,23 @@ class Building:
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
         slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
         bodies_touch: True: the two bodies may collide. SceneError: a body is not rigid, or a value is out of range."""
-        given = JointSettings(
+        given = Arguments(
+            of="joint",
             kind=kind,
             point=vector(point, "point"),
             axis=vector(axis, "axis"),
             lower=lower,
             upper=upper,
             motor=motor,
-            bodies_touch=bodies_touch,
+            bodies_touch=flag(bodies_touch, "bodies_touch"),
         )
-        checked(first, "first", Body)
-        if second is not None:
-            checked(second, "second", Body)
-        handle = self._core.add_joint(first._handle, None if second is None else second._handle, given)
-        return self._joint(handle)
+        one = self._own(first, "first", Body)
+        other = None if second is None else self._own(second, "second", Body)
+        return self._joint(self._core.add_joint(one, other, given))
 
     def remove(self, removed: PosedObject | Joint) -> None:
         """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = checked(removed, "removed", Body, Collider, Attachment, Joint)._handle
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -217,8 +255,22 @@ class Building:
 
     @property
     def joints(self) -> list[Joint]:
-        """The joints in the order added."""
+        """The joints in the order added. They have no names."""
         return [self._joint(handle) for handle in self._core.joints()]
+
+    @property
+    def attachments(self) -> list[Attachment]:
+        """The attachments in the order added. They have no names."""
+        return [self._attachment(handle) for handle in self._core.attachments()]
+
+    @property
+    def materials(self) -> list[MaterialHandle]:
+        """The materials in the order added. They have no names."""
+        return [MaterialHandle(self._self, handle) for handle in self._core.materials()]
+
+    def _attachment(self, handle: Any) -> Attachment:
+        body = self._body(self._core.body_of(handle))
+        return Attachment(self._self, handle, body, len(self._core.nodes_of(handle)))
 
     def _body(self, handle: Any, name: str | None = None) -> Body:
         return Body(self._self, handle, self._core.name(handle) if name is None else name)
@@ -244,7 +296,7 @@ class Building:
 
     def _material(self, material: Material | MaterialHandle) -> Any:
         if isinstance(material, MaterialHandle):
-            return material._handle
+            return self._own(material, "material", MaterialHandle)
         if not isinstance(material, Material):
             raise TypeError(f"material: found {material!r}, expected a Material or a MaterialHandle")
         if material not in self._materials:
@@ -261,12 +313,6 @@ class Building:
             while (free := f"{kind} {number}") in objects:
                 number += 1
             return free
-        if name in objects:
-            raise SceneError(
-                f"{kind} '{name}': name: found the name of another {kind}, expected a new name",
-                object=f"{kind} '{name}'",
-                field="name",
-                found=f"the name of another {kind}",
-                expected="a new name",
-            )
+        if name_text(name, "name") in objects:
+            raise scene_error(f"{kind} '{name}'", "name", f"the name of another {kind}", "a new name")
         return name

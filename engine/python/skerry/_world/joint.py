@@ -16,32 +16,35 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointState:
     """Present pose and motion of a joint. Force and moment are those of the last step; they act on the first body and
-    are given in world axes."""
+    are given in world axes.
+
+    kind: kind of the joint.
+    first: the first body.
+    second: the second body; None if the first body is joined to the world.
+    point: point of the joint on the first body [m].
+    axis: axis of the joint on the second body.
+    coordinate: angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or
+        m].
+    speed: rate of `coordinate` [rad/s or m/s].
+    force: force at `point` [N].
+    moment: moment [N m].
+    motor: moment or force along the axis that the motor exerts [N m or N].
+    limit: moment or force along the axis that the limits exert [N m or N].
+    error: distance between the two points that the joint should keep together [m].
+    """
 
     kind: JointKind
-    """Kind of the joint."""
     first: Body
-    """The first body."""
     second: Body | None
-    """The second body; None if the first body is joined to the world."""
     point: Vector
-    """Point of the joint on the first body [m]."""
     axis: Vector
-    """Axis of the joint on the second body."""
     coordinate: float
-    """Angle of a hinge, counting full revolutions, or displacement of a slider; 0 when it was added [rad or m]."""
     speed: float
-    """Rate of `coordinate` [rad/s or m/s]."""
     force: Vector
-    """Force at `point` [N]."""
     moment: Vector
-    """Moment [N m]."""
     motor: float
-    """Moment or force along the axis that the motor exerts [N m or N]."""
     limit: float
-    """Moment or force along the axis that the limits exert [N m or N]."""
     error: float
-    """Distance between the two points that the joint should keep together [m]."""
 
 
 class Joint(WorldObject):

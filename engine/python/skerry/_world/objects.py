@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
 from typing import TYPE_CHECKING, Any, Generic, Self, SupportsIndex, TypeVar, Unpack
 
-from .._arrays import VectorLike, checked, real, real_array, whole
+from .._arrays import Reals, VectorLike, checked, real, real_array, whole
 from .._errors import BusyError, SceneError
 from .._settings import Pose, Surface
 from .changes import SurfaceChanges
@@ -40,8 +40,10 @@ class WorldObject:
 
     def in_copy(self, world: World) -> Self:
         """The same object in a copy of its world, also in a loaded one. SceneError: the copy does not have it."""
+        from .world import World
+
         twin = copy.copy(self)
-        twin._world = world
+        twin._world = checked(world, "world", World)
         if not twin.alive:
             raise SceneError(
                 f"{self._label}: found a world without it, expected a copy of its world",
@@ -102,6 +104,20 @@ class PosedObject(WorldObject):
     def pose(self, pose: Pose) -> None:
         self._core.set_pose(self._handle, checked(pose, "pose", Pose))
 
+    @property
+    def velocity(self) -> Reals:
+        """Velocity, shape (3,) [m/s]: of the centre of mass of a body; of the origin of the pose of a collider or an
+        attachment in the last step."""
+        velocity: Reals = self._core.velocity(self._handle)[0]
+        return velocity
+
+    @property
+    def angular_velocity(self) -> Reals:
+        """Angular velocity, shape (3,) [rad/s]. For a deformable body, that of the motion with its angular
+        momentum."""
+        angular_velocity: Reals = self._core.velocity(self._handle)[1]
+        return angular_velocity
+
     def set_velocity(self, velocity: VectorLike, angular_velocity: VectorLike = (0.0, 0.0, 0.0)) -> None:
         """Sets the velocities, each of shape (3,) [m/s, rad/s]. A collider or an attachment keeps them until they are
         set again, and turns about the origin of its pose. A body gets the velocities of a rigid motion about its centre
@@ -141,11 +157,30 @@ class TouchingObject(PosedObject):
         """Name."""
         return self._name
 
+    @property
+    def surface_values(self) -> Surface:
+        """Friction and restitution that were set. None stands for the value of the material of a body, and for a
+        collider for the value of the body that touches it."""
+        surface: Surface = self._core.surface_properties(self._handle)
+        return surface
+
     def set_surface(self, surface: Surface | None = None, /, **values: Unpack[SurfaceChanges]) -> None:
-        """Sets friction and restitution: set_surface(friction=0.3). Values that are not given are those of the material
-        of a body, and for a collider those of the body that touches it."""
-        given = checked(surface or Surface(), "surface", Surface)
+        """Replaces `surface_values`, or some of them: set_surface(friction=0.3). A new `friction` replaces the static
+        and the dynamic friction."""
+        given = self.surface_values if surface is None else checked(surface, "surface", Surface)
+        if "friction" in values:
+            given = dataclasses.replace(given, static_friction=None, dynamic_friction=None)
+        elif "static_friction" in values or "dynamic_friction" in values:
+            both = {"static_friction": given.friction, "dynamic_friction": given.friction}
+            kept = {name: value for name, value in both.items() if getattr(given, name) is None}
+            given = dataclasses.replace(given, friction=None, **kept)
         self._core.set_surface_properties(self._handle, dataclasses.replace(given, **values))
+
+    @property
+    def collision_groups(self) -> tuple[int, int]:
+        """The group and the mask of set_collision_groups()."""
+        group, mask = self._core.collision_groups(self._handle)
+        return (group, mask)
 
     def set_collision_groups(self, *, group: int = 1, mask: int = 0xFFFFFFFF) -> None:
         """Sets the collision groups of the object, and the groups that it can touch, both as bits. Two objects can
@@ -189,6 +224,8 @@ class Objects(Mapping[str, Item], Generic[Item]):
             if key._given_handle in handles:
                 return self._make(key._given_handle)
             raise KeyError(f"the world has no {key._label}")
+        if not isinstance(key, SupportsIndex):
+            raise TypeError(f"{self._kind}: found the key {key!r}, expected a name, a number or an object of a world")
         try:
             return self._make(handles[key])
         except IndexError:

@@ -21,386 +21,421 @@ OverlapKind: TypeAlias = Literal["crossing", "inside", "around", "coincident"]
 
 @dataclass(frozen=True, kw_only=True)
 class StepReport:
-    """Report of one call of World.advance()."""
+    """Report of one call of World.advance().
+
+    status: "ok", "stopped" if the call was asked to end, or the reason why a step could not be completed.
+    message: description of the failure: the body and the reason. Empty if `ok`.
+    warning: names the body that is unstable at Settings.step_size, and the first element that turned inside out.
+    body: body that caused the failure.
+    body_name: name of `body`.
+    node: number of the node within `body` that caused the failure.
+    element: number of the element within `body` that caused the failure; `node` is one of its corners.
+    value: measured value that caused the failure. "too_fast": norm of the change of the element's deformation gradient.
+        "too_far": rounding error of positions over mean edge length. "too_stiff": stable step [s].
+    step_size: length of the last step [s].
+    steps: number of steps that were completed.
+    shortened: number of attempts at a step that were repeated with a shorter step.
+    retried: number of attempts at a step that were repeated because surfaces crossed.
+    limited: number of steps shorter than Settings.step_size, because the body `limited_by` is unstable at that length.
+    limited_step: longest step that the body `limited_by` allowed [s].
+    limited_by: name of the body that is unstable at Settings.step_size.
+    contacts: number of contacts of the last step, without those between sleeping bodies.
+    regions: number of contact regions of the last step.
+    largest_region: number of contacts of the largest region of the last step.
+    unconverged: number of regions that the solver did not converge in, summed over the steps.
+    worst_error: largest relative solver error of a region in any step.
+    worst_region: number of contacts of the region with `worst_error`.
+    max_penetration: largest overlap of surfaces in any step [m].
+    max_gap_violation: largest penetration into the contact distance in any step [m].
+    held_penetration: largest overlap of surfaces that no contact can move in any step, such as held nodes in a collider
+        [m].
+    inverted: number of elements that turned inside out, including those in discarded attempts.
+    inverted_body: body of the first element that turned inside out.
+    inverted_name: name of `inverted_body`.
+    inverted_element: number of the first element that turned inside out, within its body.
+    crossed: number of crossings of surfaces that no attempt at a step could prevent.
+    """
 
     status: StepStatus
-    """ "ok", "stopped" if the call was asked to end, or the reason why a step could not be completed."""
     message: str
-    """Description of the failure: the body and the reason. Empty if `ok`."""
     warning: str
-    """Names the body that is unstable at Settings.step_size, and the first element that turned inside out."""
     body: Body | None
-    """Body that caused the failure."""
     body_name: str
-    """Name of `body`."""
     node: int | None
-    """Number of the node within `body` that caused the failure."""
     element: int | None
-    """Number of the element within `body` that caused the failure; `node` is one of its corners."""
     value: float
-    """Measured value that caused the failure. "too_fast": norm of the change of the element's deformation gradient.
-    "too_far": rounding error of positions over mean edge length. "too_stiff": stable step [s]."""
     step_size: float
-    """Length of the last step [s]."""
     steps: int
-    """Number of steps that were completed."""
     shortened: int
-    """Number of attempts at a step that were repeated with a shorter step."""
     retried: int
-    """Number of attempts at a step that were repeated because surfaces crossed."""
     limited: int
-    """Number of steps shorter than Settings.step_size, because the body `limited_by` is unstable at that length."""
     limited_step: float
-    """Longest step that the body `limited_by` allowed [s]."""
     limited_by: str
-    """Name of the body that is unstable at Settings.step_size."""
     contacts: int
-    """Number of contacts of the last step, without those between sleeping bodies."""
     regions: int
-    """Number of contact regions of the last step."""
     largest_region: int
-    """Number of contacts of the largest region of the last step."""
     unconverged: int
-    """Number of regions that the solver did not converge in, summed over the steps."""
     worst_error: float
-    """Largest relative solver error of a region in any step."""
     worst_region: int
-    """Number of contacts of the region with `worst_error`."""
     max_penetration: float
-    """Largest overlap of surfaces in any step [m]."""
     max_gap_violation: float
-    """Largest penetration into the contact distance in any step [m]."""
     held_penetration: float
-    """Largest overlap of surfaces that no contact can move in any step, such as held nodes in a collider [m]."""
     inverted: int
-    """Number of elements that turned inside out, including those in discarded attempts."""
     inverted_body: Body | None
-    """Body of the first element that turned inside out."""
     inverted_name: str
-    """Name of `inverted_body`."""
     inverted_element: int | None
-    """Number of the first element that turned inside out, within its body."""
     crossed: int
-    """Number of crossings of surfaces that no attempt at a step could prevent."""
 
     @property
     def ok(self) -> bool:
         """False if a step could not be completed, or if the call was asked to stop."""
         return self.status == "ok"
 
+    def __repr__(self) -> str:
+        doubts = "".join(f", {text}" for text in (self.message, self.warning) if text)
+        return (
+            f"<skerry.StepReport {self.status}, {self.steps:,} steps, {self.contacts:,} contacts, "
+            f"worst error {self.worst_error:.3g}{doubts}>"
+        )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Energy:
-    """Energies of a world."""
+    """Energies of a world.
+
+    kinetic: kinetic energy [J].
+    elastic: elastic energy [J].
+    potential: energy of the weight, relative to the origin [J].
+    dissipated: energy dissipated by contacts, damping and material losses since the start [J].
+    """
 
     kinetic: float
-    """Kinetic energy [J]."""
     elastic: float
-    """Elastic energy [J]."""
     potential: float
-    """Energy of the weight, relative to the origin [J]."""
     dissipated: float
-    """Energy dissipated by contacts, damping and material losses since the start [J]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageReport:
-    """Computing time of one stage of the step."""
+    """Computing time of one stage of the step.
+
+    name: name in the form FOLDER/STAGE.
+    seconds: elapsed time of all runs of the stage [s].
+    runs: number of runs.
+    skipped: number of steps that did not need the stage.
+    """
 
     name: str
-    """Name in the form FOLDER/STAGE."""
     seconds: float
-    """Elapsed time of all runs of the stage [s]."""
     runs: int
-    """Number of runs."""
     skipped: int
-    """Number of steps that did not need the stage."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepLimitReport:
-    """Steps whose length one particular cause has limited."""
+    """Steps whose length one particular cause has limited.
+
+    limit: the cause.
+    body: body that limited the steps; None if the cause is not a body.
+    body_name: name of the body when it limited a step.
+    steps: number of steps.
+    tries: number of attempts at a step that were discarded for this cause.
+    seconds: sum of the lengths of the steps [s].
+    """
 
     limit: StepLimit
-    """The cause."""
     body: Body | None
-    """Body that limited the steps; None if the cause is not a body."""
     body_name: str
-    """Name of the body when it limited a step."""
     steps: int
-    """Number of steps."""
     tries: int
-    """Number of attempts at a step that were discarded for this cause."""
     seconds: float
-    """Sum of the lengths of the steps [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DynamicsEstimate:
-    """The estimate behind the choice for a body that was added with the dynamics "automatic"."""
+    """The estimate behind the choice for a body that was added with the dynamics "automatic".
+
+    reason: reason of the choice; "given" if no choice was made.
+    explicit_step: step length of the world if the body is explicit [s].
+    implicit_step: step length of the world if the body is implicit [s].
+    deforming_step: step length for the deformation of the body if it is implicit [s].
+    explicit_cost: computing time per simulated second on one core if the body is explicit [s].
+    implicit_cost: computing time per simulated second on one core if the body is implicit [s].
+    strain: largest strain that weight, speed and a fall from ten times the body's size may cause.
+    damped_above: frequency above which implicit steps damp vibrations [Hz].
+    """
 
     reason: DynamicsReason
-    """Reason of the choice; "given" if no choice was made."""
     explicit_step: float
-    """Step length of the world if the body is explicit [s]."""
     implicit_step: float
-    """Step length of the world if the body is implicit [s]."""
     deforming_step: float
-    """Step length for the deformation of the body if it is implicit [s]."""
     explicit_cost: float
-    """Computing time per simulated second on one core if the body is explicit [s]."""
     implicit_cost: float
-    """Computing time per simulated second on one core if the body is implicit [s]."""
     strain: float
-    """Largest strain that weight, speed and a fall from ten times the body's size may cause."""
     damped_above: float
-    """Frequency above which implicit steps damp vibrations [Hz]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DynamicsChoice:
-    """The choice for one body that was added with the dynamics "automatic"."""
+    """The choice for one body that was added with the dynamics "automatic".
+
+    body: the body; None if it was removed.
+    name: name of the body.
+    dynamics: the kind that was chosen.
+    estimate: the estimate behind the choice.
+    message: the choice as a text.
+    """
 
     body: Body | None
-    """The body; None if it was removed."""
     name: str
-    """Name of the body."""
     dynamics: Dynamics
-    """The kind that was chosen."""
     estimate: DynamicsEstimate
-    """The estimate behind the choice."""
     message: str
-    """The choice as a text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartOverlap:
-    """Two objects that overlapped when the first step began after one of them was added or moved by the user."""
+    """Two objects that overlapped when the first step began after one of them was added or moved by the user.
+
+    first: the first body.
+    second: the other body; None if the partner is a collider.
+    collider: the collider; None if both partners are bodies.
+    first_name: name of the first body.
+    second_name: name of its partner.
+    kind: kind of the overlap: "inside" means that the first body is inside its partner.
+    depth: approximate length of the shortest translation of `first` that ends the overlap [m].
+    direction: unit direction of this translation.
+    place: centre of the overlapping volume [m].
+    resolved: True if the two partners were moved apart.
+    message: the overlap as a text.
+    """
 
     first: Body | None
-    """The first body."""
     second: Body | None
-    """The other body; None if the partner is a collider."""
     collider: Collider | None
-    """The collider; None if both partners are bodies."""
     first_name: str
-    """Name of the first body."""
     second_name: str
-    """Name of its partner."""
     kind: OverlapKind
-    """Kind of the overlap: "inside" means that the first body is inside its partner."""
     depth: float
-    """Approximate length of the shortest translation of `first` that ends the overlap [m]."""
     direction: Vector
-    """Unit direction of this translation."""
     place: Vector
-    """Centre of the overlapping volume [m]."""
     resolved: bool
-    """True if the two partners were moved apart."""
     message: str
-    """The overlap as a text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartMove:
-    """A body that was moved before its first step, so that it overlaps no other object."""
+    """A body that was moved before its first step, so that it overlaps no other object.
+
+    body: the body.
+    name: name of the body.
+    translation: translation of the body [m].
+    """
 
     body: Body | None
-    """The body."""
     name: str
-    """Name of the body."""
     translation: Vector
-    """Translation of the body [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelfCrossing:
-    """A deformable body whose surface was found to cross itself."""
+    """A deformable body whose surface was found to cross itself.
+
+    body: the body.
+    name: name of the body when the crossing was found.
+    self_contact: True if the body had self-contact when the crossing was last found.
+    first_time: time of the first check that found a crossing [s].
+    last_time: time of the last check that found a crossing [s].
+    last_places: number of places of the last check that found the surface crossing; 0 if a later check found none.
+    most_places: largest number of places in all checks.
+    message: the crossing as a text.
+    """
 
     body: Body | None
-    """The body."""
     name: str
-    """Name of the body when the crossing was found."""
     self_contact: bool
-    """True if the body had self-contact when the crossing was last found."""
     first_time: float
-    """Time of the first check that found a crossing [s]."""
     last_time: float
-    """Time of the last check that found a crossing [s]."""
     last_places: int
-    """Number of places of the last check that found the surface crossing; 0 if a later check found none."""
     most_places: int
-    """Largest number of places in all checks."""
     message: str
-    """The crossing as a text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorldReport:
-    """Sums and maxima over all steps since the world was made, and measures of the present state."""
+    """Sums and maxima over all steps since the world was made, and measures of the present state.
+
+    time: time of the world [s].
+    steps: number of steps.
+    inline_steps: number of steps with so little work that they ran on one thread.
+    resting_steps: number of steps in which all bodies were asleep and nothing moved.
+    unstrained: number of bodies that flew freely and undeformed, summed over all steps.
+    shortened: number of attempts at a step that were repeated with a shorter step.
+    retried: number of attempts that were repeated with crossings of surfaces as contacts.
+    limited: number of steps shorter than Settings.step_size, because a body is unstable at that length.
+    inversions: number of times that an element turned inside out.
+    contact_sum: number of contacts, summed over the steps.
+    iteration_sum: number of solver sweeps over all regions, summed over the steps.
+    solved: number of solved contact regions, summed over the steps.
+    unconverged: number of regions that reached the iteration limit.
+    certified: number of regions whose warm start was accurate enough.
+    closed_form: number of regions of one contact, solved in closed form.
+    separating: number of regions whose contacts all separate.
+    frictionless: number of regions without friction.
+    in_lanes: number of regions solved in the lanes of vector instructions.
+    contact_steps: sum of contacts times sweeps over all regions that needed sweeps.
+    swept: number of regions that needed sweeps.
+    large_strain_steps: number of steps of implicit bodies of large strain.
+    newton_steps: number of Newton steps of implicit bodies of large strain.
+    tangent_factors: number of factorisations of their tangent stiffness.
+    max_contacts: largest number of contacts in a step.
+    max_regions: largest number of regions in a step.
+    largest_region: largest number of contacts of a region.
+    worst_error: largest relative solver error of a region in any step.
+    worst_region: number of contacts of the region with `worst_error`.
+    dissipated: energy dissipated by contacts, damping and material losses [J].
+    max_penetration: largest overlap of surfaces in any step [m].
+    max_gap_violation: largest penetration into the contact distance in any step [m].
+    start_penetration: value of max_penetration in the first step alone [m].
+    start_gap_violation: value of max_gap_violation in the first step alone [m].
+    asleep: number of bodies that are asleep now.
+    bodies: number of bodies.
+    colliders: number of colliders.
+    nodes: number of nodes.
+    elements: number of elements.
+    clusters: number of groups of nodes that are coupled by implicit elements of explicit bodies.
+    cluster_nodes: number of nodes in clusters.
+    implicit_elements: number of implicit elements in clusters.
+    guards: number of tetrahedra in clusters that have an inversion barrier.
+    dynamics_choices: choices for the bodies that were added with the dynamics "automatic".
+    start_overlaps: overlaps found by the last check before a step.
+    start_moves: bodies that were moved to resolve these overlaps.
+    self_crossings: bodies whose surface was found to cross itself.
+    step_limits: causes that limited step lengths, the most frequent first.
+    stages: computing times of the stages of the step.
+    stable_step: stable step of the stiffest body now [s].
+    stable_step_body: name of this body; empty if no body limits the step.
+    mean_contacts: mean number of contacts of a step.
+    mean_regions: mean number of regions of a step.
+    mean_iterations: mean number of sweeps of a solved region.
+    broad_searches: number of searches for pairs of near bodies.
+    pair_searches: number of searches for pairs of near features.
+    candidates: number of pairs of features in all candidate lists now.
+    crossing_tests: number of tests for crossings of surfaces.
+    crossings_found: number of crossings found in discarded attempts.
+    crossed: number of crossings that no attempt at a step could prevent.
+    held_penetration: largest overlap of surfaces that no contact can move, in any step [m].
+    held_body: name of the body with held nodes that overlapped; empty if it was removed.
+    held_in: name of the object that it overlapped.
+    energy: energies now.
+    momentum: momentum now [kg m/s].
+    angular_momentum: angular momentum about the origin now [kg m^2/s].
+    energy_error: change of energy that loads, weight, colliders and losses do not explain [J].
+    energy_error_share: energy_error relative to all energy that could be exchanged.
+    momentum_error: change of momentum that loads, weight and colliders do not explain [kg m/s]; NaN if it cannot be
+        known.
+    momentum_error_share: momentum_error relative to all momentum that could be exchanged.
+    balanced_steps: number of steps since these balances were restarted by a change from outside.
+    worst_volume_ratio: smallest ratio of present volume to rest volume of a tetrahedron now; negative if inverted.
+    worst_volume_body: name of the body of this tetrahedron.
+    worst_volume_element: number of this tetrahedron within its body.
+    near_inversion: number of tetrahedra below a tenth of their rest volume.
+    folded: number of smoothed elements below a fifth of their rest volume.
+    folded_body: name of the first body with such elements.
+    folded_element: number of a tetrahedron of the most compressed element of this body.
+    inverted: number of inverted tetrahedra now.
+    collider_turn: rotation of the fastest rotating collider during the longest step allowed now [rad].
+    turning_collider: name of this collider.
+    distrust: reason why positions, forces and energies of the run cannot be trusted; empty if there is none.
+    """
 
     time: float
-    """Time of the world [s]."""
     steps: int
-    """Number of steps."""
     inline_steps: int
-    """Number of steps with so little work that they ran on one thread."""
     resting_steps: int
-    """Number of steps in which all bodies were asleep and nothing moved."""
     unstrained: int
-    """Number of bodies that flew freely and undeformed, summed over all steps."""
     shortened: int
-    """Number of attempts at a step that were repeated with a shorter step."""
     retried: int
-    """Number of attempts that were repeated with crossings of surfaces as contacts."""
     limited: int
-    """Number of steps shorter than Settings.step_size, because a body is unstable at that length."""
     inversions: int
-    """Number of times that an element turned inside out."""
     contact_sum: int
-    """Number of contacts, summed over the steps."""
     iteration_sum: int
-    """Number of solver sweeps over all regions, summed over the steps."""
     solved: int
-    """Number of solved contact regions, summed over the steps."""
     unconverged: int
-    """Number of regions that reached the iteration limit."""
     certified: int
-    """Number of regions whose warm start was accurate enough."""
     closed_form: int
-    """Number of regions of one contact, solved in closed form."""
     separating: int
-    """Number of regions whose contacts all separate."""
     frictionless: int
-    """Number of regions without friction."""
     in_lanes: int
-    """Number of regions solved in the lanes of vector instructions."""
     contact_steps: int
-    """Sum of contacts times sweeps over all regions that needed sweeps."""
     swept: int
-    """Number of regions that needed sweeps."""
     large_strain_steps: int
-    """Number of steps of implicit bodies of large strain."""
     newton_steps: int
-    """Number of Newton steps of implicit bodies of large strain."""
     tangent_factors: int
-    """Number of factorisations of their tangent stiffness."""
     max_contacts: int
-    """Largest number of contacts in a step."""
     max_regions: int
-    """Largest number of regions in a step."""
     largest_region: int
-    """Largest number of contacts of a region."""
     worst_error: float
-    """Largest relative solver error of a region in any step."""
     worst_region: int
-    """Number of contacts of the region with `worst_error`."""
     dissipated: float
-    """Energy dissipated by contacts, damping and material losses [J]."""
     max_penetration: float
-    """Largest overlap of surfaces in any step [m]."""
     max_gap_violation: float
-    """Largest penetration into the contact distance in any step [m]."""
     start_penetration: float
-    """Value of max_penetration in the first step alone [m]."""
     start_gap_violation: float
-    """Value of max_gap_violation in the first step alone [m]."""
     asleep: int
-    """Number of bodies that are asleep now."""
     bodies: int
-    """Number of bodies."""
     colliders: int
-    """Number of colliders."""
     nodes: int
-    """Number of nodes."""
     elements: int
-    """Number of elements."""
     clusters: int
-    """Number of groups of nodes that are coupled by implicit elements of explicit bodies."""
     cluster_nodes: int
-    """Number of nodes in clusters."""
     implicit_elements: int
-    """Number of implicit elements in clusters."""
     guards: int
-    """Number of tetrahedra in clusters that have an inversion barrier."""
     dynamics_choices: tuple[DynamicsChoice, ...]
-    """Choices for the bodies that were added with the dynamics "automatic"."""
     start_overlaps: tuple[StartOverlap, ...]
-    """Overlaps found by the last check before a step."""
     start_moves: tuple[StartMove, ...]
-    """Bodies that were moved to resolve these overlaps."""
     self_crossings: tuple[SelfCrossing, ...]
-    """Bodies whose surface was found to cross itself."""
     step_limits: tuple[StepLimitReport, ...] = field(repr=False)
-    """Causes that limited step lengths, the most frequent first."""
     stages: tuple[StageReport, ...] = field(repr=False)
-    """Computing times of the stages of the step."""
     stable_step: float
-    """Stable step of the stiffest body now [s]."""
     stable_step_body: str
-    """Name of this body; empty if no body limits the step."""
     mean_contacts: float
-    """Mean number of contacts of a step."""
     mean_regions: float
-    """Mean number of regions of a step."""
     mean_iterations: float
-    """Mean number of sweeps of a solved region."""
     broad_searches: int
-    """Number of searches for pairs of near bodies."""
     pair_searches: int
-    """Number of searches for pairs of near features."""
     candidates: int
-    """Number of pairs of features in all candidate lists now."""
     crossing_tests: int
-    """Number of tests for crossings of surfaces."""
     crossings_found: int
-    """Number of crossings found in discarded attempts."""
     crossed: int
-    """Number of crossings that no attempt at a step could prevent."""
     held_penetration: float
-    """Largest overlap of surfaces that no contact can move, in any step [m]."""
     held_body: str
-    """Name of the body with held nodes that overlapped; empty if it was removed."""
     held_in: str
-    """Name of the object that it overlapped."""
     energy: Energy
-    """Energies now."""
     momentum: Vector
-    """Momentum now [kg m/s]."""
     angular_momentum: Vector
-    """Angular momentum about the origin now [kg m^2/s]."""
     energy_error: float
-    """Change of energy that loads, weight, colliders and losses do not explain [J]."""
     energy_error_share: float
-    """energy_error relative to all energy that could be exchanged."""
     momentum_error: float
-    """Change of momentum that loads, weight and colliders do not explain [kg m/s]; NaN if it cannot be known."""
     momentum_error_share: float
-    """momentum_error relative to all momentum that could be exchanged."""
     balanced_steps: int
-    """Number of steps since these balances were restarted by a change from outside."""
     worst_volume_ratio: float
-    """Smallest ratio of present volume to rest volume of a tetrahedron now; negative if inverted."""
     worst_volume_body: str
-    """Name of the body of this tetrahedron."""
     worst_volume_element: int | None
-    """Number of this tetrahedron within its body."""
     near_inversion: int
-    """Number of tetrahedra below a tenth of their rest volume."""
     folded: int
-    """Number of smoothed elements below a fifth of their rest volume."""
     folded_body: str
-    """Name of the first body with such elements."""
     folded_element: int | None
-    """Number of a tetrahedron of the most compressed element of this body."""
     inverted: int
-    """Number of inverted tetrahedra now."""
     collider_turn: float
-    """Rotation of the fastest rotating collider during the longest step allowed now [rad]."""
     turning_collider: str
-    """Name of this collider."""
     distrust: str
-    """Reason why positions, forces and energies of the run cannot be trusted; empty if there is none."""
+
+    def __repr__(self) -> str:
+        return (
+            f"<skerry.WorldReport at {self.time:.6g} s, {self.steps:,} steps, {self.bodies:,} bodies, "
+            f"worst error {self.worst_error:.3g}{f', {self.distrust}' if self.distrust else ''}>"
+        )
 
 
 def step_report(world: World, values: dict[str, Any]) -> StepReport:

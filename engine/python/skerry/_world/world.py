@@ -7,23 +7,22 @@ import dataclasses
 import math
 import os
 import sys
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from html import escape
-from types import SimpleNamespace
-from typing import Any, Unpack
-
-import numpy as np
+from typing import Any, Self, Unpack
 
 from .. import _core
-from .._arrays import VectorLike, checked, real, real_array
-from .._errors import BusyError, Doubt, SceneError, StepError
+from .._arrays import VectorLike, checked, flag, is_false, real_array
+from .._arrays import seconds as checked_seconds
+from .._errors import BusyError, Doubt, StepError, scene_error
 from .._recorder import WorldOutput
 from .._results import WorldResults
 from .._settings import Backend, Settings
 from .body import Body
-from .building import Building
+from .building import Arguments, Building
 from .changes import SettingsChanges
 from .collider import Collider
 from .objects import WorldObject
@@ -33,15 +32,22 @@ from .reports import Energy, StepReport, WorldReport, step_report, world_report
 if hasattr(os, "register_at_fork"):
     # A fork copies no threads, so that worlds would wait for them for ever.
     os.register_at_fork(after_in_child=_core.note_fork)
-# Daemon threads inside the extension module would abort the process.
-atexit.register(_core.end_calls)
+
+
+@atexit.register
+def _end_calls() -> None:
+    """Ends the calls of daemon threads, which would abort the process after the end of Python."""
+    latest = time.monotonic() + 10  # a callback may wait for ever
+    while _core.end_calls() and time.monotonic() < latest:
+        time.sleep(1e-3)
+
 
 _LARGEST_TRUSTED_ERROR = 0.5
 """Solver error of a region above which World.advance() warns, as WorldReport.distrust does."""
 
 
-class LoadSettings(SimpleNamespace):
-    """Threads of a copy for the extension module."""
+_MOST_CALLS = 2**53
+"""Number of calls of advance() in a run up to which a number of type float counts them exactly."""
 
 
 class World(Building, WorldResults, WorldOutput):
@@ -52,7 +58,8 @@ class World(Building, WorldResults, WorldOutput):
 
     One thread at a time may use a world; a call from another thread raises BusyError. Different worlds are independent.
     copy.copy(), copy.deepcopy() and pickle copy the whole state: the copy continues with the same bits. Functions of
-    watch_steps() are not copied."""
+    watch_steps() are not copied. A copy has the class of the world; its __init__() is not called, and attributes that a
+    subclass adds are not copied."""
 
     __slots__ = ()
 
@@ -61,47 +68,48 @@ class World(Building, WorldResults, WorldOutput):
         self._hold(_core.World(dataclasses.replace(given, **changes)))
 
     @classmethod
-    def _of(cls, core: Any) -> World:
+    def _of(cls, core: Any) -> Self:
         world = cls.__new__(cls)
         world._hold(core)
         return world
 
     # Copies and files.
 
-    def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> World:
+    def copy(self, *, threads: int | None = None, backend: Backend | None = None) -> Self:
         """A copy that continues with the same bits on any threads, which are by default those of this world.
         body.in_copy(copy) is a body in the copy."""
-        return World._of(self._core.clone(LoadSettings(threads=threads, backend=backend)))
+        return self._of(self._core.clone(Arguments(of="copy", threads=threads, backend=backend)))
 
     def to_bytes(self) -> bytes:
         """The bytes that save() writes."""
         data: bytes = self._core.to_bytes()
         return data
 
-    @staticmethod
-    def from_bytes(data: bytes, *, threads: int | None = None, backend: Backend | None = None) -> World:
+    @classmethod
+    def from_bytes(
+        cls, data: bytes | bytearray | memoryview, *, threads: int | None = None, backend: Backend | None = None
+    ) -> Self:
         """Makes a world of the bytes of to_bytes()."""
-        return World._of(
-            _core.World.from_bytes(checked(data, "data", bytes), LoadSettings(threads=threads, backend=backend))
-        )
+        given = bytes(checked(data, "data", bytes, bytearray, memoryview))
+        return cls._of(_core.World.from_bytes(given, Arguments(of="from_bytes", threads=threads, backend=backend)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Saves the world. An existing file is replaced completely or not at all."""
         self._core.save(os.fspath(path))
 
-    @staticmethod
-    def load(path: str | os.PathLike[str], *, threads: int | None = None, backend: Backend | None = None) -> World:
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, threads: int | None = None, backend: Backend | None = None) -> Self:
         """Reads a world that save() wrote. It continues with the same bits on any threads."""
-        return World._of(_core.World.load(os.fspath(path), LoadSettings(threads=threads, backend=backend)))
+        return cls._of(_core.World.load(os.fspath(path), Arguments(of="load", threads=threads, backend=backend)))
 
-    def __copy__(self) -> World:
+    def __copy__(self) -> Self:
         return self.copy()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> World:
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (World.from_bytes, (self.to_bytes(),))
+        return (type(self).from_bytes, (self.to_bytes(),))
 
     # Running.
 
@@ -125,10 +133,17 @@ class World(Building, WorldResults, WorldOutput):
 
     def try_advance(self, dt: float, *, check: Callable[[StepReport], object] | None = None) -> StepReport:
         """Advances like advance(), but returns the report of a step that could not be completed."""
-        values = self._core.advance(real(dt, "dt"), self._told(check), self._told(self._watch))
-        if self._followers:
-            for follow in tuple(self._followers):
-                follow()
+        dt = checked_seconds(dt, "advance", "dt")
+        followers = () if self._advancing else tuple(self._followers)  # a nested call is refused and takes no step
+        for follower in followers:
+            follower.require_ready()
+        nested, self._advancing = self._advancing, True
+        try:
+            values = self._core.advance(dt, self._told(check), self._told(self._watch))
+        finally:
+            self._advancing = nested
+            for follower in followers:
+                follower.follow()
         report = step_report(self, values)
         if report.warning or report.crossed or report.worst_error > _LARGEST_TRUSTED_ERROR:
             self._warn_of(report)
@@ -146,18 +161,18 @@ class World(Building, WorldResults, WorldOutput):
 
         each: called with the world after each call; if it returns False, the run ends. progress: writes the time and
         the share of the run to the standard error output. At the end, doubts about the results become warnings."""
-        seconds, dt = real(seconds, "seconds"), real(dt, "dt")
-        if not (seconds >= 0 and math.isfinite(seconds)):
-            raise SceneError(f"run: seconds: found {seconds}, expected a time >= 0 (s)", object="run", field="seconds")
-        if not (dt > 0 and math.isfinite(dt)):
-            raise SceneError(f"run: dt: found {dt}, expected a time > 0 (s)", object="run", field="dt")
+        seconds = checked_seconds(seconds, "run", "seconds")
+        dt = checked_seconds(dt, "run", "dt", zero=False)
+        if seconds / dt > _MOST_CALLS:
+            raise scene_error("run", "dt", str(dt), f"a time >= {seconds / _MOST_CALLS:.3g} [s]")
         calls = max(1, math.ceil(seconds / dt * (1 - 1e-9)))
         for call in range(calls):
             self.advance(dt if call < calls - 1 else seconds - (calls - 1) * dt)
             if progress:
                 end = "\n" if call == calls - 1 else ""
-                print(f"\r{self.time:.6g} s, {100 * (call + 1) / calls:.0f} %", end=end, file=sys.stderr, flush=True)
-            if each is not None and each(self) is False:
+                line = f"{self.time:.6g} s, {100 * (call + 1) / calls:.0f} %"
+                print(f"\r{line:<20}", end=end, file=sys.stderr, flush=True)
+            if each is not None and is_false(each(self)):
                 break
         self._warn_of_run()
 
@@ -177,12 +192,12 @@ class World(Building, WorldResults, WorldOutput):
         with world.trace("trace.json"):
             world.advance(0.1)
         """
-        self._core.set_tracing(True)
-        try:
-            yield
-        finally:
-            self._core.set_tracing(False)
-            with open(path, "w", encoding="utf-8") as file:
+        with open(path, "w", encoding="utf-8") as file:
+            self._core.set_tracing(True)
+            try:
+                yield
+            finally:
+                self._core.set_tracing(False)
                 file.write(self._core.trace_text())
 
     def step_graph(self) -> str:
@@ -229,30 +244,40 @@ class World(Building, WorldResults, WorldOutput):
     def set_collision(self, first: Body | Collider, second: Body | Collider, on: bool) -> None:
         """Switches the collision of two bodies, or of a body and a collider, on or off. For a body with itself it sets
         its self-contact."""
-        self._core.set_collision(*_body_first(first, second), bool(checked(on, "on", bool, np.bool_)))
+        self._core.set_collision(*self._body_first(first, second), flag(on, "on"))
 
     def may_collide(self, first: Body | Collider, second: Body | Collider) -> bool:
         """True if the collision groups and set_collision() let the two objects collide."""
-        return bool(self._core.may_collide(*_body_first(first, second)))
+        return bool(self._core.may_collide(*self._body_first(first, second)))
 
     def reset(self, saved: World | None = None) -> None:
         """Puts all bodies back into their rest shapes at their first poses. Time, colliders, attachments and loads do
         not change. With `saved`, a copy of this world: continues from the state of the copy; objects that were added
-        after copying are removed. BufferError: arrays of views() are in use."""
+        after copying are removed. BufferError: arrays of views() are in use. SceneError: a recorder is in its `with`
+        block, and could not continue at another time."""
         if saved is None:
             self._core.reset()
             return
-        self._core.reset_to(checked(saved, "saved", World)._core)
+        checked(saved, "saved", World)
+        for follower in self._followers:
+            follower.require_no_jump()
+        self._core.reset_to(saved._core)
         self._mesh_arrays.clear()
         self._materials.clear()
 
     # Helpers.
 
+    def _body_first(self, first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
+        """Handles of a body and of a body or a collider, in this order."""
+        if isinstance(first, Collider):
+            first, second = second, first
+        return self._own(first, "one of two objects", Body), self._own(second, "second", Body, Collider)
+
     def _told(self, look: Callable[[StepReport], object] | None) -> Callable[[dict[str, Any]], bool] | None:
         """A function for the extension module that calls `look` with a report."""
         if look is None:
             return None
-        return lambda values: look(step_report(self, values)) is not False
+        return lambda values: not is_false(look(step_report(self, values)))
 
     def _warn_of(self, report: StepReport) -> None:
         """Warns of doubts about the steps of a call."""
@@ -293,11 +318,8 @@ class World(Building, WorldResults, WorldOutput):
             return escape(repr(self))
 
 
-def _body_first(first: WorldObject, second: WorldObject) -> tuple[Any, Any]:
-    """Handles of a body and of a body or a collider, in this order."""
-    if isinstance(first, Collider):
-        first, second = second, first
-    return checked(first, "one of two objects", Body)._handle, checked(second, "second", Body, Collider)._handle
+_SETTINGS_TEXT = (Settings.__doc__ or "").partition("\n\n")[2]
+World.__init__.__doc__ = f"Makes an empty world. The keywords are the fields of Settings.\n\n{_SETTINGS_TEXT}"
 
 
 def _frames_of_package() -> int:
