@@ -63,9 +63,9 @@ struct TetrahedronBlockTable {
 /// Elements that exert forces. An element has at least four nodes, one stress, and one deformation gradient F = sum_k
 /// x_k (x) g_k, where x_k is the position and g_k the shape function gradient of node k (docs/methods/elasticity.md 1,
 /// 7). A block has as many rows of ElementNodeTable as its element with the most nodes. Elements with fewer nodes
-/// repeat their first node with zero gradient. Unused lanes have no effect: their volume and gradients are zero, and
-/// they repeat the first node of the block. Element e of the table is lane e % element_lanes of block e /
-/// element_lanes.
+/// repeat some of their nodes with zero gradient. Unused lanes have no effect: their volume and gradients are zero,
+/// and they have nodes of the first element of the block. Element e of the table is lane e % element_lanes of block e
+/// / element_lanes.
 struct ElementBlockTable {
     Column<Index> first;         // first row of the block in ElementNodeTable
     Column<Index> count;         // number of rows of the block in ElementNodeTable

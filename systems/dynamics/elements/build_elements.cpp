@@ -127,6 +127,63 @@ Range append_tetrahedra(std::span<const std::array<Index, 4>> tetrahedra, std::s
     return {first_block, static_cast<Index>(table.node.size())};
 }
 
+namespace {
+
+/// Chooses the order of the nodes of elements in the rows of their blocks. The kernel adds forces to nodes row by row
+/// and lane by lane. Each addition waits for the previous addition to the same node, so every row gets the node of the
+/// element whose previous addition is the longest ago.
+class RowOrder {
+public:
+    explicit RowOrder(std::size_t node_count) : last_addition_(node_count, 0) {}
+
+    /// Returns the number within the element of the node for a row. Marks the node in `taken`, the nodes of the element
+    /// that other rows have.
+    std::size_t next(std::span<const Index> node, std::vector<bool>& taken) {
+        const auto last_addition = [&](std::size_t k) -> std::size_t& {
+            return last_addition_[static_cast<std::size_t>(node[k])];
+        };
+        std::size_t best = node.size();
+        for (std::size_t k = 0; k < node.size(); ++k)
+            if (!taken[k] && (best == node.size() || last_addition(k) < last_addition(best))) best = k;
+        last_addition(best) = ++additions_;
+        taken[best] = true;
+        return best;
+    }
+
+private:
+    std::vector<std::size_t> last_addition_;  // by node; 0 if there was none
+    std::size_t additions_ = 0;
+};
+
+/// Fills the rows of a block with the nodes and gradients of the elements in its lanes.
+void fill_rows(const ElementList& list, std::span<const Index> lanes, Index first_node, Range rows, RowOrder& order,
+               ElementNodeTable& nodes) {
+    std::array<std::vector<bool>, element_lanes> taken;
+    std::array<Vec3, element_lanes> others;  // sum of the gradients in the rows after the first
+    others.fill(Vec3::Zero());
+    for (Index row = rows.begin; row < rows.end; ++row) {
+        const auto r = static_cast<std::size_t>(row), k = r - static_cast<std::size_t>(rows.begin);
+        for (std::size_t l = 0; l < element_lanes; ++l) {
+            const bool used = lanes[l] != no_index;
+            const auto e = static_cast<std::size_t>(used ? lanes[l] : lanes[0]);
+            const std::size_t first = list.first_node[e], own = list.nodes_of(e);
+            if (k % own == 0) taken[l].assign(own, false);
+            const std::size_t next = first + order.next(std::span(list.node).subspan(first, own), taken[l]);
+            nodes.node[r][l] = first_node + list.node[next];
+            if (!used || k == 0 || k >= own) continue;
+            others[l] += list.gradient[next];
+            for (std::size_t i = 0; i < 3; ++i)
+                nodes.gradient[r][i][l] = list.gradient[next][static_cast<Eigen::Index>(i)];
+        }
+    }
+    // The kernel computes the force on the first node as minus the sum of the others, in the same order.
+    for (std::size_t l = 0; l < element_lanes; ++l)
+        for (std::size_t i = 0; i < 3; ++i)
+            nodes.gradient[static_cast<std::size_t>(rows.begin)][i][l] = 0 - others[l][static_cast<Eigen::Index>(i)];
+}
+
+}  // namespace
+
 AppendedElements append_elements(const ElementList& list, std::span<const Vec3> rest_position, Index first_node,
                                  Index body, ElementBlockTable& blocks, ElementNodeTable& nodes) {
     return append_elements(list, find_places(list, rest_position), first_node, body, blocks, nodes);
@@ -152,11 +209,11 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         end_row += count;
     }
     AnyTable(nodes).resize(end_row);
+    RowOrder order(list.node.empty() ? 0 : static_cast<std::size_t>(std::ranges::max(list.node)) + 1);
     for (std::size_t block = first_block; block < end_block; ++block) {
         const std::size_t place = (block - first_block) * element_lanes;
         const std::span<const Index> lanes = lanes_of(place);
-        const auto row = static_cast<std::size_t>(blocks.first[block]),
-                   count = static_cast<std::size_t>(blocks.count[block]);
+        const Index row = blocks.first[block];
         const auto leader = static_cast<std::size_t>(lanes[0]);
         blocks.body[block] = body;
         blocks.material[block] = list.material[leader];
@@ -167,19 +224,9 @@ AppendedElements append_elements(const ElementList& list, const ElementPlaces& p
         // frame write to neither of them.
         blocks.rotation_next[block] = blocks.rotation[block];
         for (Real& share : blocks.mass_share[block].lane) share = 1;
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            const bool used = lanes[l] != no_index;
-            const std::size_t e = used ? static_cast<std::size_t>(lanes[l]) : leader;
-            if (used) blocks.volume[block][l] = list.volume[e];
-            const std::size_t own = used ? list.nodes_of(e) : 0, first = list.first_node[e];
-            for (std::size_t k = 0; k < count; ++k) {
-                nodes.node[row + k][l] = first_node + list.node[k < own ? first + k : first];
-                if (k >= own) continue;
-                const Vec3& gradient = list.gradient[first + k];
-                for (std::size_t i = 0; i < 3; ++i)
-                    nodes.gradient[row + k][i][l] = gradient[static_cast<Eigen::Index>(i)];
-            }
-        }
+        for (std::size_t l = 0; l < element_lanes; ++l)
+            if (lanes[l] != no_index) blocks.volume[block][l] = list.volume[static_cast<std::size_t>(lanes[l])];
+        fill_rows(list, lanes, first_node, {row, row + blocks.count[block]}, order, nodes);
     }
     appended.blocks = {static_cast<Index>(first_block), static_cast<Index>(blocks.first.size())};
     appended.nodes = {static_cast<Index>(first_row), static_cast<Index>(nodes.node.size())};

@@ -61,9 +61,11 @@ LaneVec3<Real8> multiply(const LaneSymmetric<Real8>& s, const LaneVec3<Real8>& x
 }
 
 /// Adds the elements of a block to the row sums of the excess matrix E: row[i] += sum_j |E_ij| d_j over the nodes i and
-/// j of each element, with node weights d.
-void add_rows(const BlockNodes& of, const LaneSymmetric<Real8>& form, Index first_node, std::span<const Real> weight,
-              std::span<Real> row) {
+/// j of each element, with node weights d. `excess`: factors of the mass forms. Lanes with the excess 0 are left out,
+/// because the form of an unused lane is infinite.
+void add_rows(const BlockNodes& of, const Real8& excess, const LaneSymmetric<Real8>& mass_form, Index first_node,
+              std::span<const Real> weight, std::span<Real> row) {
+    const LaneSymmetric<Real8> form = excess * mass_form;
     for (Index k = 0; k < of.count; ++k) {
         const LaneVec3<Real8> moved = multiply(form, load_gradient(of.gradient[k]));
         Real8 sum{};
@@ -75,7 +77,7 @@ void add_rows(const BlockNodes& of, const LaneSymmetric<Real8>& form, Index firs
             sum += (entry < 0.0 ? -entry : entry) * of_node;
         }
         for (std::size_t l = 0; l < element_lanes; ++l)
-            row[static_cast<std::size_t>(of.node[k][l] - first_node)] += sum[l];
+            if (excess[l] != 0) row[static_cast<std::size_t>(of.node[k][l] - first_node)] += sum[l];
     }
 }
 
@@ -105,14 +107,14 @@ Real strained_step(const ElementInputs& elements, Range blocks, Range nodes, std
             const std::size_t b = static_cast<std::size_t>(blocks.begin) + i;
             Real8 more;
             for (std::size_t l = 0; l < element_lanes; ++l) more[l] = excess[l];
-            add_rows(elements.nodes_of(b), more * inverse_of(load_form(elements.mass_form[b])), nodes.begin, of.weight,
+            add_rows(elements.nodes_of(b), more, inverse_of(load_form(elements.mass_form[b])), nodes.begin, of.weight,
                      of.row);
         }
         Real bound = 0;
         for (std::size_t n = 0; n < of_nodes.size(); ++n) {
             if (!(of.weight[n] > 0)) continue;
             const Real ratio = of.row[n] / (of_nodes[n] * of.weight[n]);
-            if (!(ratio <= bound)) bound = ratio;
+            if (!(ratio <= bound) && !std::isnan(bound)) bound = ratio;  // a NaN is kept
             of.row[n] = ratio;
         }
         least = std::min(least, bound);
