@@ -189,7 +189,7 @@ INTERRUPTED = """
     try:
         {call}
     except KeyboardInterrupt:
-        assert time.monotonic() - sent[0] < 5  # the call itself would take hours
+        assert time.monotonic() - sent[0] < 5  # a loose bound for busy machines
     else:
         raise SystemExit("the call was not interrupted")
     thread.join()
