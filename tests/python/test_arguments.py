@@ -152,6 +152,6 @@ def other_objects() -> tuple[sk.World, dict[str, Call]]:
 def test_an_object_of_a_copy_is_refused(call: str) -> None:
     world, calls = other_objects()
     state = world.state_hash
-    with pytest.raises(sk.SceneError, match="of another world, expected an object of this world"):
+    with pytest.raises(sk.SceneError, match="which belongs to another world, expected an object of this world"):
         calls[call](world, None, None)
     assert world.state_hash == state and len(world.joints) == 1

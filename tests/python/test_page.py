@@ -64,6 +64,7 @@ def test_a_film_leaves_no_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     with pytest.raises(ValueError, match="every: found -1"):
         world.record(every=-1)
     left = world.record()
+    left.__enter__()
     assert len(list(tmp_path.iterdir())) == 1
     del film, left, world
     gc.collect()

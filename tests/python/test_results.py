@@ -205,11 +205,11 @@ def test_arguments_of_queries_are_checked() -> None:
     with pytest.raises(TypeError, match="directions: found 1 rows, expected 2, one for each origin"):
         world._core.cast_rays(np.zeros((2, 3)), np.ones((1, 3)), 1.0, True, True, 1, [])
     with pytest.raises(sk.SceneError, match="expected a call of measure_forces before that of advance"):
-        sk.World().forces.on(world.bodies["ball"])
+        world.forces.on(world.bodies["ball"])
     assert repr(world.forces) == f"<skerry.Forces of {world!r}>"
     with pytest.raises(TypeError, match=r"points: found an array of the shape \(3,\), expected \(n, 3\)"):
         world.nearest_points((0, 0, 1))
-    with pytest.raises(TypeError, match="but: found 7, expected an object of a world"):
+    with pytest.raises(TypeError, match="but: found 7, expected a Body or a Collider"):
         world.cast_ray((0, 0, 1), (0, 0, -1), but=[7])  # type: ignore[list-item]
     with pytest.raises(sk.SceneError, match="direction"):
         world.cast_ray((0, 0, 1), (0, 0, 0))

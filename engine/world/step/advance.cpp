@@ -174,7 +174,8 @@ Real lag_between_steps(const WorldState& world) {
     // With leapfrog, a drift at the end of the call removes the lag of the velocities.
     if (world.model.settings.integrator == Integrator::leapfrog) return 0;
     const Real before = world.clock.step_before;
-    return (before > 0 ? before : trusted_step(world.model)) / 2;
+    const Real step = before > 0 ? before : trusted_step(world.model);
+    return std::isfinite(step) ? step / 2 : 0;  // a world without bodies does not limit the step, and has no velocities
 }
 
 StepReport World::advance(Real dt) {

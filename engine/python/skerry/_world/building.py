@@ -92,7 +92,7 @@ class Building:
             raise scene_error(
                 "",
                 name,
-                f"{given._label} of another world",
+                f"{given._label}, which belongs to another world",
                 "an object of this world",
                 "object.in_copy(world) is the object in a copy of its world",
             )
