@@ -61,8 +61,7 @@ struct ShapeCheck {
         require(bucket.thickness > 0, object, "thickness", bucket.thickness, "a length > 0 (m)");
     }
     void operator()(const SurfaceMesh& surface) const {
-        if (surface.triangles.empty())
-            refuse(object, "triangles", "no triangles", "at least one triangle");
+        if (surface.triangles.empty()) refuse(object, "triangles", "no triangles", "at least one triangle");
         for (const Vec3& node : surface.nodes) require_finite(object, "nodes", node);
         for (std::size_t t = 0; t < surface.triangles.size(); ++t) check(t, surface.triangles[t], surface.nodes.size());
     }

@@ -91,8 +91,9 @@ FclibFile local_file() {
     FclibFile file;
     file.integers = {{"spacedim", {3}}, {"W/m", {6}}, {"W/n", {6}}, {"W/nz", {-1}}, {"W/nzmax", {20}}};
     const std::vector<int> p{0, 4, 8, 11, 14, 17, 20}, i{0, 1, 3, 4, 0, 1, 3, 4, 2, 3, 5, 0, 2, 3, 1, 4, 5, 2, 4, 5};
+    // W is symmetric within the errors of files, and not exactly, so that swapped rows and columns show.
     std::vector<double> x;
-    for (std::size_t k = 0; k < i.size(); ++k) x.push_back(0.01 * static_cast<double>(k + 1));
+    for (std::size_t k = 0; k < i.size(); ++k) x.push_back(0.001 * static_cast<double>(k + 1));
     for (std::size_t column = 0; column < 6; ++column)
         for (auto k = static_cast<std::size_t>(p[column]); k < static_cast<std::size_t>(p[column + 1]); ++k)
             if (i[k] == static_cast<int>(column)) x[k] = 2;
