@@ -10,39 +10,37 @@ import pytest
 import skerry as sk
 from worlds import RUBBER, ball_world
 
-Call = Callable[[sk.World, Any, Any], object]
+Call = Callable[[Any, Any, Any], object]
 
 BALL = sk.Mesh.ball(0.05, 4)
 
 WRONG_TYPES: dict[str, Call] = {
-    "shape: found None, expected a Plane or": lambda world, ball, floor: world.add_collider(None),  # type: ignore[arg-type]
-    "colliders: found the key slice(0, 2, None), expected a name": lambda world, ball, floor: world.colliders[0:2],  # type: ignore[index]
+    "shape: found None, expected a Plane or": lambda world, ball, floor: world.add_collider(None),
+    "colliders: found the key slice(0, 2, None), expected a name": lambda world, ball, floor: world.colliders[0:2],
     "attachment: found <skerry.Body 'ball'": lambda world, ball, floor: world.forces.by(ball),
-    "on: found 'ball', expected a Body or a Collider": lambda world, ball, floor: world.forces.on("ball"),  # type: ignore[arg-type]
+    "on: found 'ball', expected a Body or a Collider": lambda world, ball, floor: world.forces.on("ball"),
     "by: found <skerry.Collider 'floor' Plane>, expected a Body": lambda world, ball, floor: world.forces.on(
         floor, by=floor
     ),
-    "probes: found [EnergyProbe()], expected a mapping": lambda world, ball, floor: world.recorder(
-        [sk.EnergyProbe()]  # type: ignore[arg-type]
-    ),
-    "name of a probe: found 1, expected a text": lambda world, ball, floor: world.recorder({1: sk.EnergyProbe()}),  # type: ignore[dict-item]
+    "probes: found [EnergyProbe()], expected a mapping": lambda world, ball, floor: world.recorder([sk.EnergyProbe()]),
+    "name of a probe: found 1, expected a text": lambda world, ball, floor: world.recorder({1: sk.EnergyProbe()}),
     "probe 'b': body: found 'ball', expected a Body": lambda world, ball, floor: world.recorder(
         {"b": sk.BodyProbe("ball")}  # type: ignore[arg-type]
     ),
     "max_distance: found 'a', expected a number": lambda world, ball, floor: world.cast_ray(
         (0, 0, 1),
         (0, 0, -1),
-        "a",  # type: ignore[arg-type]
+        "a",
     ),
     "bodies: found 'no', expected True or False": lambda world, ball, floor: world.cast_ray(
         (0, 0, 1),
         (0, 0, -1),
-        bodies="no",  # type: ignore[arg-type]
+        bodies="no",
     ),
     "but: found <skerry.Body 'ball'": lambda world, ball, floor: world.cast_ray((0, 0, 1), (0, 0, -1), but=ball),
-    "every: found 1.5, expected a whole number": lambda world, ball, floor: world.contact_problems(every=1.5),  # type: ignore[arg-type]
-    "on: found 'no', expected True or False": lambda world, ball, floor: world.measure_forces(on="no"),  # type: ignore[arg-type]
-    "name: found 3, expected a text": lambda world, ball, floor: world.add_collider(sk.Plane(), name=3),  # type: ignore[arg-type]
+    "every: found 1.5, expected a whole number": lambda world, ball, floor: world.contact_problems(every=1.5),
+    "on: found 'no', expected True or False": lambda world, ball, floor: world.measure_forces(on="no"),
+    "name: found 3, expected a text": lambda world, ball, floor: world.add_collider(sk.Plane(), name=3),
     "world: found None, expected a World": lambda world, ball, floor: ball.in_copy(None),
     "loads: found 'abc', expected numbers of the shape (": lambda world, ball, floor: ball.set_loads("abc"),
     "below: found 'a', expected a number": lambda world, ball, floor: ball.select(below="a"),
@@ -50,7 +48,7 @@ WRONG_TYPES: dict[str, Call] = {
     "self_contact: found 'yes', expected True or False": lambda world, ball, floor: world.add_body(
         BALL,
         RUBBER,
-        self_contact="yes",  # type: ignore[arg-type]
+        self_contact="yes",
     ),
     "velocity: found an array of the shape (), expected (3,)": lambda world, ball, floor: ball.set_velocity(3.0),
     "velocity: found ['1', '2', '3'], expected numbers": lambda world, ball, floor: ball.set_velocity(["1", "2", "3"]),
@@ -77,14 +75,14 @@ WRONG_VALUES: dict[str, Call] = {
         BALL,
         RUBBER,
         name="b",
-        dynamics=3,  # type: ignore[arg-type]
+        dynamics=3,
     ),
     "collider 'c': friction: found 'a', expected a number": lambda world, ball, floor: world.add_collider(
         sk.Plane(),
         name="c",
-        friction="a",  # type: ignore[arg-type]
+        friction="a",
     ),
-    "joint: kind: found 'glue', expected one of": lambda world, ball, floor: world.add_joint("glue", ball),  # type: ignore[arg-type]
+    "joint: kind: found 'glue', expected one of": lambda world, ball, floor: world.add_joint("glue", ball),
 }
 
 
@@ -109,9 +107,9 @@ def test_an_argument_out_of_range_is_refused_by_name(message: str) -> None:
 
 def test_truth_values_of_numpy_are_accepted() -> None:
     world, _, _ = ball_world()
-    body = world.add_body(BALL, RUBBER, position=(1, 0, 1), self_contact=np.bool_(True))  # type: ignore[arg-type]
+    body = world.add_body(BALL, RUBBER, position=(1, 0, 1), self_contact=np.bool_(True))
     assert world.may_collide(body, body)
-    world.set_collision(body, body, np.bool_(False))  # type: ignore[arg-type]
+    world.set_collision(body, body, np.bool_(False))
     assert not world.may_collide(body, body)
 
 

@@ -226,20 +226,19 @@ TEST_CASE("a world in memory has the bytes of its file, and is read like a file"
 }
 
 TEST_CASE("a world is saved only if it can be loaded", "[unit]") {
-    World world = full_world();
-    const BodyHandle body = world.bodies().front();
-    const TemporaryFolder folder;
-    const auto file = folder.path() / "world.skerry";
-    world.set_velocity(body, {1e200, 0, 0});  // its energy is infinite
     World empty;
     REQUIRE(empty.advance(0.1).ok());
     CHECK(World::from_bytes(empty.to_bytes()).state_hash() == empty.state_hash());
-    (void)world.advance(0.01);
+    World world;
+    const BodyHandle body = world.add_body(mesh::ball(0.05, 4), {.material = world.add_material({}), .name = "ball"});
+    world.set_velocity(body, {1e200, 0, 0});  // its energy is infinite
+    CHECK_FALSE(world.advance(0.01).ok());
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "world.skerry";
     CHECK_THROWS_WITH(world.save(file),
                       Contains("save: ") && Contains("found inf at row") && Contains("finite numbers"));
     CHECK_THROWS_WITH(world.to_bytes(), Contains("found inf at row"));
     CHECK_FALSE(std::filesystem::exists(file));
-    world.set_velocity(body, Vec3::Zero());
 }
 
 TEST_CASE("a text that is saved with a world comes back unchanged", "[unit]") {

@@ -71,9 +71,8 @@ class Building:
 
         def __getattr__(self, name: str) -> Any:
             """Called for an attribute that does not exist."""
-            if name == "_core":
-                name = "_core, because its __init__() did not call super().__init__()"
-            raise AttributeError(f"{type(self).__name__}: found no attribute {name}")
+            reason = ", because __init__() did not call super().__init__()" if name in Building.__slots__ else ""
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'{reason}")
 
     def _hold(self, core: Any) -> None:
         self._core = core
