@@ -130,6 +130,7 @@ TEST_CASE("further intervals of a rollout allocate nothing", "[determinism]") {
         REQUIRE(result.status[1].ok());
         return allocations.load();
     };
+    REQUIRE(allocated(10) > 0);  // the first rollout also updates data that the world keeps
     CHECK(allocated(100) == allocated(50));
 }
 

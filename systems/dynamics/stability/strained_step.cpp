@@ -24,6 +24,8 @@ constexpr Real above_asked = 1.1;
 // Number of rounds of the iteration for the node weights d. After many rounds the ratio of the row sum to the mass
 // times d would be equal at all nodes.
 constexpr int rounds = 4;
+// Number of factors of ten between the base and the largest omega^2 of an element for which a bound is searched.
+constexpr int ranges = 3;
 
 /// Parts of the work memory. `excess`: excess of omega^2 of each element over the base [1/s^2]. `weight`, `row`: weight
 /// d of each node, and row sum of the excess matrix E for each node.
@@ -45,11 +47,19 @@ bool find_excess(const ElementInputs& elements, Range blocks, std::span<const Ve
     bool any = false;
     for (std::size_t i = 0; i < static_cast<std::size_t>(blocks.size()); ++i) {
         const std::size_t b = static_cast<std::size_t>(blocks.begin) + i;
-        const Real8 need = stepped_by_form(elements, b, deformation_of(elements, b, position), q, base, stands);
-        for (std::size_t l = 0; l < element_lanes; ++l) {
-            Real& more = excess[element_lanes * i + l];
-            more = elements.volume[b][l] > 0 && !(need[l] <= base) ? need[l] - base : 0;
-            any |= !(more <= 0);
+        const LaneMat3<Real8> F = deformation_of(elements, b, position);
+        Real enough = base;
+        bool out_of_range = true;  // true if an element needs more than ten times `enough`
+        for (int range = 0; range < ranges && out_of_range; ++range, enough *= 10) {
+            const Real8 need = stepped_by_form(elements, b, F, q, enough, stands);
+            out_of_range = false;
+            for (std::size_t l = 0; l < element_lanes; ++l) {
+                Real& more = excess[element_lanes * i + l];
+                if (range > 0 && !std::isinf(more)) continue;
+                more = elements.volume[b][l] > 0 && !(need[l] <= base) ? need[l] - base : 0;
+                out_of_range |= std::isinf(more);
+                any |= !(more <= 0);
+            }
         }
     }
     return any;
