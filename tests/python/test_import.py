@@ -49,7 +49,7 @@ def test_the_docstring_of_a_new_world_names_the_settings() -> None:
     import skerry
 
     for field in dataclasses.fields(skerry.Settings):
-        assert f"\n    {field.name}: " in (skerry.World.__init__.__doc__ or ""), field.name
+        assert re.search(rf"^ *{field.name}: ", skerry.World.__init__.__doc__ or "", re.MULTILINE), field.name
 
 
 def test_the_version_is_that_of_the_source() -> None:
