@@ -137,8 +137,9 @@ public:
     std::vector<Real> node_von_mises_stress(BodyHandle body) const;    // by node [Pa]
     std::vector<Vec3> node_principal_stresses(BodyHandle body) const;  // by node, the largest first [Pa]
     /// Step that each tetrahedron allows in the present shape of the body [s]: the stable step of the stiffest element
-    /// that covers the tetrahedron. The shortest of these steps is the stable step of the body. To lengthen it, repair
-    /// the tetrahedra with the shortest step.
+    /// that covers the tetrahedron. The shortest of these steps is the stable step of the body; a strained body can
+    /// have a longer one, because elements at the same node share its mass. To lengthen the stable step, repair the
+    /// tetrahedra with the shortest step.
     std::vector<Real> tetrahedron_steps(BodyHandle body) const;
     const std::string& name(BodyHandle body) const;
     /// Returns the kind of the elements of a body. For a body added as `smoothed` it is the kind that was chosen; if
