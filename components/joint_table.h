@@ -9,6 +9,7 @@
 #include "components/column.h"
 #include "components/column_role.h"
 #include "components/joint_kind.h"
+#include "components/key_lists.h"
 #include "components/row_type.h"
 #include "components/types.h"
 
@@ -29,16 +30,6 @@ struct JointMotorRow {
 };
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
-
-/// Key of a motor. Between two keys the target changes linearly.
-struct JointMotorKey {
-    Real time = 0;    // [s]
-    Real target = 0;  // target speed [rad/s or m/s] or target position [rad or m]
-
-    bool operator==(const JointMotorKey&) const = default;
-};
-template <>
-struct NumbersOf<JointMotorKey> : Reals<2> {};
 
 /// Frame of a joint, fixed to a body or to the world. The third axis of the frame is the axis of the joint.
 struct JointFrame {
@@ -69,18 +60,12 @@ struct JointTable {
     // Part of the impulse along the axis that the motor exerted in the last step [N s or N m s].
     Column<Real> motor_impulse;
     Column<Real> step;          // time for which the impulses acted in the last step; 0 before the first step [s]
-    Column<JointMotorKey> key;  // keys of all motors
+    Column<TimeKey> key;  // keys of all motors: target speeds [rad/s or m/s] or positions [rad or m]
 
     std::size_t size() const { return slot.size(); }
 
-    std::span<const JointMotorKey> keys_of(std::size_t joint) const { return rows_of(key.span(), motor_keys[joint]); }
-    void erase_keys_of(std::size_t joint) {
-        const Range gone = motor_keys[joint];
-        key.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
-        motor_keys[joint] = {};
-        for (Range& other : motor_keys)
-            if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
-    }
+    std::span<const TimeKey> keys_of(std::size_t joint) const { return rows_of(key.span(), motor_keys[joint]); }
+    void erase_keys_of(std::size_t joint) { erase_keys(motor_keys, key, joint); }
 
     /// Visits the columns with one row per joint. The column `key` is visited by for_each_column only.
     void for_each_row_column(auto&& visit) {

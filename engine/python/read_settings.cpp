@@ -71,6 +71,10 @@ private:
             IndexRows<3> rows;
             if (!nb::try_cast(given, rows)) complain(name, given, "an array of int32 of the shape (n, 3)");
             value.assign(span_of(rows).begin(), span_of(rows).end());
+        } else if constexpr (std::is_same_v<T, TimeTable>) {
+            std::vector<std::array<Real, 2>> pairs;
+            if (!nb::try_cast(given, pairs)) complain(name, given, "a list of pairs (time, value)");
+            value = table_of(pairs);
         } else if constexpr (VectorOf<T>::value) {
             if (!nb::isinstance<nb::tuple>(given) && !nb::isinstance<nb::list>(given))
                 complain(name, given, "a tuple of objects of the class " + text_of_class<typename T::value_type>());
@@ -138,6 +142,10 @@ public:
             to_[name] = array_of(std::span<const Vec3>(value));
         } else if constexpr (std::is_same_v<T, std::vector<std::array<Index, 3>>>) {
             to_[name] = array_of<Index>(std::span<const std::array<Index, 3>>(value), {3});
+        } else if constexpr (std::is_same_v<T, TimeTable>) {
+            nb::list pairs;
+            for (const TimeKey& key : value.keys) pairs.append(nb::make_tuple(key.time, key.value));
+            to_[name] = nb::tuple(pairs);
         } else if constexpr (VectorOf<T>::value) {
             nb::list items;
             for (const auto& item : value) items.append(instance_of(item));
@@ -173,6 +181,12 @@ nb::dict defaults_of() {
 }
 
 }  // namespace
+
+TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs) {
+    std::vector<TimeKey> keys;
+    for (const auto& [time, value] : pairs) keys.push_back({time, value});
+    return keys;
+}
 
 void read(nb::handle from, Settings& to) {
     read_members(from, to);

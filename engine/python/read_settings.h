@@ -4,6 +4,7 @@
 #include "engine/python/bind.h"
 #include "skerry/joint.h"
 #include "skerry/problem.h"
+#include "skerry/time_table.h"
 #include "skerry/world.h"
 
 namespace skerry::python {
@@ -26,6 +27,9 @@ void read(nb::handle from, ProblemSettings& to);
 
 /// Reads a Plane, a Sphere or another of the shapes. The class of the Python object has the name of the C++ struct.
 Shape read_shape(nb::handle from);
+
+/// The table with the given pairs (time, value), which Python passes for a value that changes over time.
+TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs);
 
 /// The values of a struct by name, as Python values.
 nb::dict values_of(const Settings& settings);

@@ -241,6 +241,36 @@ Json Value<RotationRows>::schema(SchemaBook& book, const KeyDoc&) {
     return list_schema(Value<Vec3>::schema(book, {}), 3);
 }
 
+void Value<TimeTable>::read(const Json& json, const Place& place, const KeyDoc& doc, TimeTable& out) {
+    if (!json.is_array()) {
+        out = read_number(json, place, doc);
+        return;
+    }
+    out.keys.clear();
+    for (std::size_t k = 0; k < json.size(); ++k) {
+        const Place at = place.item(k);
+        if (!json[k].is_array() || json[k].size() != 2)
+            at.refuse(described(json[k]), "a pair [time, value]");
+        const TimeKey key{read_number(json[k][0], at.item(0), {.meaning = {}, .unit = "s"}),
+                          read_number(json[k][1], at.item(1), doc)};
+        if (!out.keys.empty() && !(key.time > out.keys.back().time))
+            at.item(0).refuse(shown(key.time) + " s",
+                              "a time after that of the pair before, " + shown(out.keys.back().time) + " s");
+        out.keys.push_back(key);
+    }
+    if (out.keys.empty()) place.refuse("an empty list", "a number, or a list of at least one pair [time, value]");
+}
+
+Json Value<TimeTable>::schema(SchemaBook&, const KeyDoc& doc) {
+    const Json pair = {{"type", "array"},
+                       {"prefixItems", Json::array({number_schema("number", {}), number_schema("number", doc)})},
+                       {"minItems", 2},
+                       {"maxItems", 2}};
+    Json pairs = list_schema(pair);
+    pairs["minItems"] = 1;
+    return either_schema(number_schema("number", doc), std::move(pairs));
+}
+
 void Value<Rotation>::read(const Json& json, const Place& place, const KeyDoc& doc, Rotation& out) {
     const std::string spellings = R"({"axis": [x, y, z], "degrees": angle} or three rows of a rotation matrix)";
     if (json.is_array()) {

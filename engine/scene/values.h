@@ -11,6 +11,7 @@
 #include "components/options.h"
 #include "engine/scene/rules.h"
 #include "jobs/function_ref.h"
+#include "skerry/time_table.h"
 
 namespace skerry {
 
@@ -95,6 +96,13 @@ struct Value<RotationRows> {
 template <>
 struct Value<Rotation> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, Rotation& out);
+    static Json schema(SchemaBook& book, const KeyDoc& doc);
+};
+
+/// A value that changes over time: a number, or a list of pairs [time, value]. The limits of the key apply to each value.
+template <>
+struct Value<TimeTable> {
+    static void read(const Json& json, const Place& place, const KeyDoc& doc, TimeTable& out);
     static Json schema(SchemaBook& book, const KeyDoc& doc);
 };
 

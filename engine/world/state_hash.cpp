@@ -155,12 +155,13 @@ void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t
     }
 }
 
-/// Hashes the keys of the motors of all joints. Motors without keys add nothing.
-void add_motor_keys(Hash& hash, const JointTable& joints) {
-    for (const std::size_t row : in_slot_order(joints.slot)) {
-        const std::span<const JointMotorKey> keys = joints.keys_of(row);
+/// Hashes the lists of keys of all rows of a table. Rows without keys add nothing.
+template <class Table>
+void add_keys(Hash& hash, const Table& table) {
+    for (const std::size_t row : in_slot_order(table.slot)) {
+        const std::span<const TimeKey> keys = table.keys_of(row);
         if (keys.empty()) continue;
-        hash.add(joints.slot[row]);
+        hash.add(table.slot[row]);
         add_rows(hash, keys);
         hash.add(keys.size());
     }
@@ -243,8 +244,8 @@ std::uint64_t state_hash(WorldState& world) {
     for (std::size_t a : in_slot_order(model.attachments.slot)) add_attachment(hash, model, a);
     model.for_each_joining([&](const char*, auto& table, auto&) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
+        if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
     });
-    add_motor_keys(hash, model.joints);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

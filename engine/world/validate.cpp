@@ -112,6 +112,19 @@ void refuse(const std::string& object, const char* field, const std::string& fou
     Complaint{.file = {}, .object = object, .field = field, .found = found, .expected = expected, .hint = {}}.raise();
 }
 
+void require_table(const std::string& object, const std::string& field, const TimeTable& table) {
+    if (table.keys.empty()) refuse(object, field.c_str(), "no key", "at least one key");
+    for (std::size_t k = 0; k < table.keys.size(); ++k) {
+        const TimeKey& key = table.keys[k];
+        const std::string place = field + "[" + std::to_string(k) + "]";
+        if (!std::isfinite(key.value)) refuse(object, (place + ".value").c_str(), shown(key.value), "a finite number");
+        if (!std::isfinite(key.time)) refuse(object, (place + ".time").c_str(), shown(key.time), "a finite number (s)");
+        if (k > 0 && !(key.time > table.keys[k - 1].time))
+            refuse(object, (place + ".time").c_str(), short_text(key.time, 9) + " s",
+                   "a time after that of the key before, " + short_text(table.keys[k - 1].time, 9) + " s");
+    }
+}
+
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count) {
     for (const Index node : nodes)
         if (node < 0 || node >= count)

@@ -8,6 +8,7 @@
 #include "engine/world/state/model.h"
 #include "engine/world/tuning.h"
 #include "skerry/settings.h"
+#include "skerry/time_table.h"
 #include "skerry/world.h"
 
 namespace skerry {
@@ -31,6 +32,8 @@ void validate(const SurfaceSettings& surface, const std::string& object);
                          const std::string& expected);
 /// Checks that the three components of a field of `object` are finite.
 void require_finite(const std::string& object, const char* field, const Vec3& found);
+/// Checks that the keys of a field of `object` are finite and have ascending times, and that there is a key.
+void require_table(const std::string& object, const std::string& field, const TimeTable& table);
 /// Checks that the given local node numbers exist in `object`, which is a body with `count` nodes.
 void require_nodes(const std::string& object, std::span<const Index> nodes, Index count);
 void validate(const Pose& pose, const std::string& object);

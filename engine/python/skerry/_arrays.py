@@ -133,6 +133,24 @@ def whole(value: SupportsIndex, name: str) -> int:
     return number
 
 
+TimeTable: TypeAlias = tuple[tuple[float, float], ...]
+"""A value that changes over time: pairs (time [s], value) with ascending times. Between two times the value changes
+linearly. It is constant before the first time and after the last."""
+
+
+TimeTableLike: TypeAlias = SupportsFloat | ArrayLike
+"""A value that changes over time, as an argument: a number, or pairs (time [s], value)."""
+
+
+def time_table(value: TimeTableLike, name: str) -> TimeTable:
+    """Pairs (time, value). A number stands for a constant value."""
+    given = numbers(value, name, ("n", 2))  # type: ignore[arg-type]
+    if given.ndim == 0:
+        return ((0.0, float(given)),)
+    pairs = real_array(given, name, ("n", 2))
+    return tuple((time, value) for time, value in pairs.tolist())
+
+
 def flag(value: object, name: str) -> bool:
     """A truth value of Python or NumPy."""
     if not isinstance(value, (bool, np.bool_)):

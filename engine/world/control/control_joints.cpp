@@ -101,22 +101,21 @@ JointDrive drive_of(const std::optional<JointMotor>& motor) {
     return has_speed ? JointDrive::speed : JointDrive::position;
 }
 
-JointMotorKey row_of(const MotorKey& key) {
+TimeKey row_of(const MotorKey& key) {
     return {key.time, key.speed.value_or(key.position.value_or(0))};
 }
 
 bool has_keys(const JointTable& table, std::size_t joint, const std::optional<JointMotor>& motor) {
-    const auto same = [](const JointMotorKey& a, const MotorKey& b) { return a == row_of(b); };
+    const auto same = [](const TimeKey& a, const MotorKey& b) { return a == row_of(b); };
     const std::span<const MotorKey> keys = motor ? std::span(motor->keys) : std::span<const MotorKey>();
     return std::ranges::equal(table.keys_of(joint), keys, same);
 }
 
 void set_keys(JointTable& table, std::size_t joint, const std::optional<JointMotor>& motor) {
-    table.erase_keys_of(joint);
-    if (!motor || motor->keys.empty()) return;
-    const auto begin = static_cast<Index>(table.key.size());
-    for (const MotorKey& key : motor->keys) table.key.push_back(row_of(key));
-    table.motor_keys[joint] = {begin, static_cast<Index>(table.key.size())};
+    std::vector<TimeKey> keys;
+    if (motor)
+        for (const MotorKey& key : motor->keys) keys.push_back(row_of(key));
+    skerry::set_keys(table.motor_keys, table.key, joint, keys);
 }
 
 JointMotorRow row_of(const std::optional<JointMotor>& motor) {

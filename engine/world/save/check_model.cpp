@@ -322,8 +322,37 @@ void check_joined_bodies(const SavedFile& file, const Model& model, const char* 
     }
 }
 
+/// Checks the lists of keys of a table: times ascend, and the ranges cover the column of keys without gaps. `table` and
+/// `range_name`: names for messages.
+void check_keys(const SavedFile& file, const std::string& table, const std::string& range_name,
+                std::span<const Range> range, std::span<const TimeKey> key) {
+    const std::string place = table + "/" + range_name;
+    std::vector<Range> ranges;
+    for (std::size_t row = 0; row < range.size(); ++row) {
+        const Range keys = range[row];
+        if (!(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(key.size())))
+            file.complain(place, at_row("a range that does not exist", row), "a range of the rows of " + table + "/key");
+        const std::span<const TimeKey> list = rows_of(key, keys);
+        if (std::ranges::adjacent_find(list, std::greater_equal<>(), &TimeKey::time) != list.end())
+            file.complain(table + "/key", at_row("keys whose times do not ascend", row), "ascending times");
+        if (keys.size() > 0) ranges.push_back(keys);
+    }
+    std::ranges::sort(ranges, {}, &Range::begin);
+    Index end = 0;
+    for (const Range& keys : ranges) {
+        if (keys.begin != end)
+            file.complain(place, "a range of keys that begins at row " + std::to_string(keys.begin),
+                          "row " + std::to_string(end) + ", where the last range ends");
+        end = keys.end;
+    }
+    if (end != static_cast<Index>(key.size()))
+        file.complain(table + "/key", std::to_string(key.size()) + " rows",
+                      std::to_string(end) + ", as many as all ranges together");
+}
+
 void check_joints(const SavedFile& file, const Model& model) {
     const JointTable& table = model.joints;
+    check_keys(file, "joints", "motor_keys", table.motor_keys.span(), table.key.span());
     expect_between(file, "joints/step", table.step, 0.0, infinity);
     for (std::size_t j = 0; j < table.size(); ++j) {
         const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
@@ -345,31 +374,11 @@ void check_joints(const SavedFile& file, const Model& model) {
                 "a lower limit <= the upper limit");
         require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
-        const Range keys = table.motor_keys[j];
-        require(keys.begin >= 0 && keys.begin <= keys.end && keys.end <= static_cast<Index>(table.key.size()),
-                "motor_keys", "a range that does not exist", "a range of the rows of joints/key");
-        require(keys.size() == 0 || table.drive[j] != JointDrive::none, "motor_keys", "keys without a motor",
-                "no keys");
-        require(std::ranges::adjacent_find(table.keys_of(j), std::greater_equal<>(), &JointMotorKey::time) ==
-                    table.keys_of(j).end(),
-                "key", "keys whose times do not ascend", "ascending times");
+        require(table.motor_keys[j].size() == 0 || table.drive[j] != JointDrive::none, "motor_keys",
+                "keys without a motor", "no keys");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",
                 "finite numbers");
     }
-    std::vector<Range> ranges;
-    for (const Range& keys : table.motor_keys)
-        if (keys.size() > 0) ranges.push_back(keys);
-    std::ranges::sort(ranges, {}, &Range::begin);
-    Index end = 0;
-    for (const Range& keys : ranges) {
-        if (keys.begin != end)
-            file.complain("joints/motor_keys", "a range of keys that begins at row " + std::to_string(keys.begin),
-                          "row " + std::to_string(end) + ", where the last range ends");
-        end = keys.end;
-    }
-    if (end != static_cast<Index>(table.key.size()))
-        file.complain("joints/key", std::to_string(table.key.size()) + " rows",
-                      std::to_string(end) + ", as many as the motors of joints have keys");
 }
 
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {

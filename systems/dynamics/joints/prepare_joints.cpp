@@ -56,38 +56,15 @@ JointPlace JointInputs::place(Index body, const JointFrame& frame) const {
 }
 
 Real JointInputs::target(std::size_t j, Real t) const {
-    const std::span<const JointMotorKey> keys = rows_of(key, motor_keys[j]);
-    if (keys.empty()) return motor[j].target;
-    const auto after = std::ranges::upper_bound(keys, t, {}, &JointMotorKey::time);
-    if (after == keys.begin()) return keys.front().target;
-    if (after == keys.end()) return keys.back().target;
-    const JointMotorKey &a = *(after - 1), &b = *after;
-    return a.target + (t - a.time) / (b.time - a.time) * (b.target - a.target);
-}
-
-std::span<const JointMotorKey> JointInputs::keys_inside(std::size_t j, Real t, Real h) const {
-    const std::span<const JointMotorKey> keys = rows_of(key, motor_keys[j]);
-    const auto begin = std::ranges::upper_bound(keys, t, {}, &JointMotorKey::time);
-    return {begin, std::ranges::lower_bound(begin, keys.end(), t + h, {}, &JointMotorKey::time)};
+    return keys_of(j).empty() ? motor[j].target : value_at(keys_of(j), t);
 }
 
 bool JointInputs::target_moves(std::size_t j, Real t, Real h) const {
-    if (drive[j] == JointDrive::none) return false;
-    const Real start = target(j, t);
-    return target(j, t + h) != start ||
-           std::ranges::any_of(keys_inside(j, t, h), [&](const JointMotorKey& k) { return k.target != start; });
+    return drive[j] != JointDrive::none && !keys_of(j).empty() && changes(keys_of(j), t, h);
 }
 
 Real JointInputs::mean_target(std::size_t j, Real t, Real h) const {
-    const std::span<const JointMotorKey> inside = keys_inside(j, t, h);
-    if (inside.empty()) return (target(j, t) + target(j, t + h)) / 2;
-    Real sum = 0;
-    JointMotorKey last{t, target(j, t)};
-    for (const JointMotorKey& k : inside) {
-        sum += (k.time - last.time) * (last.target + k.target) / 2;
-        last = k;
-    }
-    return (sum + (t + h - last.time) * (last.target + target(j, t + h)) / 2) / h;
+    return keys_of(j).empty() ? motor[j].target : mean_value(keys_of(j), t, h);
 }
 
 Real joint_coordinate(JointKind kind, const JointPlace& first, const JointPlace& second, Real before) {

@@ -24,7 +24,7 @@ struct JointInputs {
     std::span<const Real> lower, upper;
     std::span<const JointMotorRow> motor;
     std::span<const Range> motor_keys;
-    std::span<const JointMotorKey> key;
+    std::span<const TimeKey> key;
     std::span<const Real> coordinate;
     std::span<const Vec3> impulse, moment;
     std::span<const Real> step;
@@ -81,14 +81,13 @@ struct JointInputs {
         return !body_asleep.empty() && is_out(first[j]) && is_out(second[j]);
     }
     JointPlace place(Index body, const JointFrame& frame) const;
-    /// Target of the motor of joint `j` at time `t`. Before the first key and after the last, the target is constant.
+    /// Target of the motor of joint `j` at time `t`.
     Real target(std::size_t j, Real t) const;
     /// True if joint `j` has a motor whose target changes in the step of length `h` that starts at time `t`.
     bool target_moves(std::size_t j, Real t, Real h) const;
     /// Mean target of the motor of joint `j` in the step of length `h` that starts at time `t`.
     Real mean_target(std::size_t j, Real t, Real h) const;
-    /// Keys of joint `j` at times between `t` and `t + h`, both excluded.
-    std::span<const JointMotorKey> keys_inside(std::size_t j, Real t, Real h) const;
+    std::span<const TimeKey> keys_of(std::size_t j) const { return rows_of(key, motor_keys[j]); }
 };
 
 /// Displacement of a slider [m] or angle of a hinge [rad] between the joint frames of the two bodies; 0 for other kinds

@@ -1,0 +1,33 @@
+// Lists of keys, which describe values that change over time.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "components/column.h"
+#include "components/range.h"
+#include "components/row_type.h"
+#include "components/time_key.h"
+#include "components/types.h"
+
+namespace skerry {
+
+template <>
+struct NumbersOf<TimeKey> : Reals<2> {};
+
+/// Value of a list of keys at the time `t`. `keys`: at least one key, with ascending times.
+Real value_at(std::span<const TimeKey> keys, Real t);
+/// Exact mean of the value over the time from `t` to `t + h`, with h > 0.
+Real mean_value(std::span<const TimeKey> keys, Real t, Real h);
+/// Returns whether the value changes at any time from `t` to `t + h`.
+bool changes(std::span<const TimeKey> keys, Real t, Real h);
+
+// A table with a list of keys in each row has a column with the range of each list, and the column `key` with the keys
+// of all lists.
+
+/// Erases the list of one row.
+void erase_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row);
+/// Replaces the list of one row.
+void set_keys(Column<Range>& range, Column<TimeKey>& key, std::size_t row, std::span<const TimeKey> keys);
+
+}  // namespace skerry

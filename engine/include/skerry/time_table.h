@@ -1,0 +1,25 @@
+// A value that changes over time.
+#pragma once
+
+#include <vector>
+
+#include "components/time_key.h"
+#include "components/types.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// A value that changes over time, given by keys with ascending times. A number converts to a table with one key, which
+/// means a constant value.
+struct TimeTable {
+    std::vector<TimeKey> keys{{0, 0}};  // at least one key
+
+    TimeTable() = default;
+    TimeTable(Real constant) : keys{{0, constant}} {}
+    TimeTable(std::vector<TimeKey> values) : keys(std::move(values)) {}
+
+    bool operator==(const TimeTable&) const = default;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop
