@@ -1,10 +1,10 @@
 // Values that change over time.
 #include "components/key_lists.h"
 
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 #include <vector>
 
-namespace skerry::key_lists_test {
+namespace skerry::test::key_lists_test {
 
 namespace {
 
@@ -58,4 +58,4 @@ TEST_CASE("lists of keys in a table can be replaced and erased") {
 
 }  // namespace
 
-}  // namespace skerry::key_lists_test
+}  // namespace skerry::test::key_lists_test
