@@ -31,6 +31,25 @@ struct JointMotorRow {
 template <>
 struct NumbersOf<JointMotorRow> : Reals<3> {};
 
+/// Passive forces along the axis of a hinge or slider.
+struct JointPassiveRow {
+    Real stiffness = 0;  // stiffness of the spring [N m/rad or N/m]
+    Real rest = 0;       // joint coordinate at which the spring exerts no force [rad or m]
+    Real damping = 0;    // [N m s/rad or N s/m]
+    Real friction = 0;   // greatest moment or force of dry friction [N m or N]
+
+    bool operator==(const JointPassiveRow&) const = default;
+};
+template <>
+struct NumbersOf<JointPassiveRow> : Reals<4> {};
+
+/// Parts of the impulse along the axis that the motor, and the spring, damper and friction, exert [N s or N m s].
+struct AxisImpulses {
+    Real motor = 0, passive = 0;
+};
+template <>
+struct NumbersOf<AxisImpulses> : Reals<2> {};
+
 /// Frame of a joint, fixed to a body or to the world. The third axis of the frame is the axis of the joint.
 struct JointFrame {
     Vec3 point = Vec3::Zero();  // origin of the joint frame, in the frame of the mesh or of the world [m]
@@ -51,14 +70,14 @@ struct JointTable {
     Column<JointFrame> first_frame, second_frame;
     Column<Real> lower, upper;  // limits of the joint coordinate; infinite: no limit
     Column<JointMotorRow> motor;
+    Column<JointPassiveRow> passive;
     Column<Range> motor_keys;  // range of rows in the column `key`; empty: the target of the motor is constant
     // Joint coordinate at the start of the last step. The angle of a hinge includes complete revolutions.
     Column<Real> coordinate;
     // Impulse and angular impulse of the joint on the first body in the last step, in the joint frame of the second
     // body [N s, N m s].
     Column<Vec3> impulse, moment;
-    // Part of the impulse along the axis that the motor exerted in the last step [N s or N m s].
-    Column<Real> motor_impulse;
+    Column<AxisImpulses> axis_impulse;  // parts of the impulse along the axis in the last step
     Column<Real> step;          // time for which the impulses acted in the last step; 0 before the first step [s]
     Column<TimeKey> key;  // keys of all motors: target speeds [rad/s or m/s] or positions [rad or m]
 
@@ -80,11 +99,12 @@ struct JointTable {
         visit("lower", lower, ColumnRole::state);
         visit("upper", upper, ColumnRole::state);
         visit("motor", motor, ColumnRole::state);
+        visit("passive", passive, ColumnRole::state);
         visit("motor_keys", motor_keys, ColumnRole::link);
         visit("coordinate", coordinate, ColumnRole::state);
         visit("impulse", impulse, ColumnRole::state);
         visit("moment", moment, ColumnRole::state);
-        visit("motor_impulse", motor_impulse, ColumnRole::state);
+        visit("axis_impulse", axis_impulse, ColumnRole::state);
         visit("step", step, ColumnRole::state);
     }
     void for_each_column(auto&& visit) {
@@ -94,7 +114,7 @@ struct JointTable {
 };
 
 /// Constraint law of the third equation of a block. The motion along the joint coordinate is either locked, or free
-/// with limits and a drive.
+/// with limits, a drive and passive forces.
 struct AxisLaw {
     bool locked = true;  // true: the third equation locks the motion, as the first two equations do
     Real coordinate = 0;
@@ -102,7 +122,8 @@ struct AxisLaw {
     JointDrive drive = JointDrive::none;
     JointMotorRow motor{};  // motor of this step; a moving target position is given at the start of the step
     Real target_rate = 0;   // speed of the target position [rad/s or m/s]
-    Real most_impulse = 0;  // largest impulse of the motor in this step [N s or N m s]
+    JointPassiveRow passive{};
+    Real kick = 0;  // time for which forces act in this step [s]
 };
 
 /// Three constraint equations of one joint in this step. They constrain either the relative velocity at the joint point
@@ -123,7 +144,7 @@ struct JointBlockTable {
     Column<JointBlock> block;
     // Impulses of the three equations of each block; before the solve: the warm start [N s or N m s].
     Column<Vec3> impulse;
-    Column<Real> motor_impulse;  // by block: part of the impulse along the axis that the motor exerts [N s or N m s]
+    Column<AxisImpulses> axis_impulse;  // by block: parts of the impulse along the axis
     Column<Real> coordinate;     // by row of JointTable: joint coordinate at the start of the step
     // by row of JointTable: 1 if the bodies are asleep; the joint then stores its last impulse unchanged
     Column<std::uint8_t> resting;
@@ -132,7 +153,7 @@ struct JointBlockTable {
     void for_each_column(auto&& visit) {
         visit("block", block, ColumnRole::scratch);
         visit("impulse", impulse, ColumnRole::scratch);
-        visit("motor_impulse", motor_impulse, ColumnRole::scratch);
+        visit("axis_impulse", axis_impulse, ColumnRole::scratch);
         visit("coordinate", coordinate, ColumnRole::scratch);
         visit("resting", resting, ColumnRole::scratch);
     }

@@ -215,6 +215,9 @@ void read(nb::handle from, Motion& to) {
 void read(nb::handle from, JointSettings& to) {
     read_members(from, to);
 }
+void read(nb::handle from, JointPassive& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, JointMotor& to) {
     read_members(from, to);
 }
@@ -263,13 +266,20 @@ nb::object object_of(const Shape& shape) {
 nb::object object_of(const Pose& pose) {
     return instance_of(pose);
 }
+nb::object object_of(const JointMotor& motor) {
+    return instance_of(motor);
+}
+nb::object object_of(const JointPassive& passive) {
+    return instance_of(passive);
+}
 nb::object object_of(const SurfaceSettings& surface) {
     return instance_of(surface);
 }
 
 void bind_settings(nb::module_& module) {
-    module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, MotorKey,
-                                        JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder, Bucket>);
+    module.def("defaults", &defaults_of<Settings, MaterialSettings, SurfaceSettings, Pose, MotionKey, Motion, JointPassive,
+                                        MotorKey, JointMotor, ProblemSettings, Plane, Sphere, Box, Capsule, Cylinder,
+                                        Bucket>);
 }
 
 }  // namespace skerry::python

@@ -22,6 +22,7 @@ void read(nb::handle from, SurfaceSettings& to);
 void read(nb::handle from, Pose& to);
 void read(nb::handle from, Motion& to);
 void read(nb::handle from, JointSettings& to);
+void read(nb::handle from, JointPassive& to);
 void read(nb::handle from, JointMotor& to);
 void read(nb::handle from, ProblemSettings& to);
 
@@ -35,9 +36,11 @@ TimeTable table_of(const std::vector<std::array<Real, 2>>& pairs);
 nb::dict values_of(const Settings& settings);
 nb::dict values_of(const MaterialSettings& settings);
 
-/// The Python object of a shape, a pose or surface values: an instance of its dataclass.
+/// The Python object of a shape or of settings: an instance of its dataclass.
 nb::object object_of(const Shape& shape);
 nb::object object_of(const Pose& pose);
+nb::object object_of(const JointMotor& motor);
+nb::object object_of(const JointPassive& passive);
 nb::object object_of(const SurfaceSettings& surface);
 
 }  // namespace skerry::python

@@ -118,7 +118,15 @@ void for_each_setting(Is<JointSettings> auto& s, auto&& visit) {
     visit("lower", s.lower);
     visit("upper", s.upper);
     visit("motor", s.motor);
+    visit("passive", s.passive);
     visit("bodies_touch", s.bodies_touch);
+}
+
+void for_each_setting(Is<JointPassive> auto& s, auto&& visit) {
+    visit("stiffness", s.stiffness);
+    visit("rest", s.rest);
+    visit("damping", s.damping);
+    visit("friction", s.friction);
 }
 
 void for_each_setting(Is<MotorKey> auto& s, auto&& visit) {
@@ -184,7 +192,8 @@ static_assert(has_size<SurfaceSettings, 8>);
 static_assert(has_size<Pose, 6>);
 static_assert(has_size<MotionKey, 7>);
 static_assert(has_size<Motion, 6, std::vector<MotionKey>>);
-static_assert(has_size<JointSettings, 15, std::optional<JointMotor>>);
+static_assert(has_size<JointSettings, 15, std::optional<JointMotor>, JointPassive>);
+static_assert(has_size<JointPassive, 4>);
 static_assert(has_size<MotorKey, 5>);
 static_assert(has_size<JointMotor, 6, std::vector<MotorKey>>);
 static_assert(has_size<ProblemSettings, 4>);
@@ -212,6 +221,8 @@ template <>
 inline constexpr const char* class_name<MotionKey> = "MotionKey";
 template <>
 inline constexpr const char* class_name<Motion> = "Motion";
+template <>
+inline constexpr const char* class_name<JointPassive> = "JointPassive";
 template <>
 inline constexpr const char* class_name<MotorKey> = "MotorKey";
 template <>

@@ -33,6 +33,22 @@ const Rule<MotorEntry>& rule_of<MotorEntry>() {
 }
 
 template <>
+const Rule<JointPassive>& rule_of<JointPassive>() {
+    using Passive = JointPassive;
+    static const auto rule =
+        Rule<Passive>("passive", "Passive forces along the axis of a hinge (rad, N m) or slider (m, N).")
+            .key("stiffness", &Passive::stiffness,
+                 {.meaning = "stiffness of a spring", .unit = "N m/rad or N/m", .limits = at_least(0)})
+            .key("rest", &Passive::rest,
+                 {.meaning = "angle or displacement at which the spring exerts no force", .unit = "rad or m"})
+            .key("damping", &Passive::damping,
+                 {.meaning = "torque or force per speed", .unit = "N m s/rad or N s/m", .limits = at_least(0)})
+            .key("friction", &Passive::friction,
+                 {.meaning = "largest torque or force of dry friction", .unit = "N m or N", .limits = at_least(0)});
+    return rule;
+}
+
+template <>
 const Rule<JointEntry>& rule_of<JointEntry>() {
     using Entry = JointEntry;
     static const auto rule =
@@ -54,6 +70,8 @@ const Rule<JointEntry>& rule_of<JointEntry>() {
             .key("upper", &Entry::upper,
                  {.meaning = "upper limit of the rotation or translation; default: none", .unit = "rad or m"})
             .key("motor", &Entry::motor, {.meaning = "motor on the axis; default: none"})
+            .key("passive", &Entry::passive,
+                 {.meaning = "spring, damper and dry friction on the axis; default: none"})
             .key("bodies_touch", &Entry::bodies_touch,
                  {.meaning = "whether the two bodies can touch each other; default: false"});
     return rule;

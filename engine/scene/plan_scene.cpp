@@ -240,6 +240,7 @@ JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePla
     joint.settings.axis = entry.axis;
     joint.settings.lower = entry.lower;
     joint.settings.upper = entry.upper;
+    joint.settings.passive = entry.passive;
     joint.settings.bodies_touch = entry.bodies_touch;
     if (entry.motor) {
         joint.settings.motor = JointMotor{.speed = entry.motor->speed,

@@ -136,6 +136,7 @@ struct JointEntry {
     Vec3 point = JointSettings{}.point, axis = JointSettings{}.axis;
     std::optional<Real> lower, upper;
     std::optional<MotorEntry> motor;
+    JointPassive passive;
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };

@@ -55,6 +55,8 @@ const Rule<MotorKey>& rule_of<MotorKey>();
 template <>
 const Rule<MotorEntry>& rule_of<MotorEntry>();
 template <>
+const Rule<JointPassive>& rule_of<JointPassive>();
+template <>
 const Rule<JointEntry>& rule_of<JointEntry>();
 template <>
 const Rule<ProbeEntry>& rule_of<ProbeEntry>();

@@ -106,3 +106,20 @@ def test_joints_of_deformable_bodies_are_refused() -> None:
         world.add_joint("ball", soft)
     with pytest.raises(sk.SceneError, match="kind: found 'weld', expected one of 'ball', 'hinge'"):
         world.add_joint("weld", soft)  # type: ignore[arg-type]
+
+
+def test_passive_forces_hold_and_slow_a_joint() -> None:
+    world, rod = rod_world(gravity=(0, 0, 0))
+    passive = sk.JointPassive(stiffness=2.0, rest=0.3, damping=0.1)
+    hinge = world.add_joint("hinge", rod, axis=(0, 0, 1), lower=-1.0, passive=passive)
+    assert hinge.passive == passive and hinge.limits == (-1.0, None) and hinge.motor is None
+    world.advance(3.0)
+    assert hinge.coordinate == pytest.approx(0.3, rel=1e-3)
+    hinge.set_passive(sk.JointPassive(friction=0.5))
+    hinge.set_motor(sk.Motor(keys=[sk.MotorKey(time=0, speed=1.0)], strength=0.25))
+    assert hinge.motor == sk.Motor(keys=[sk.MotorKey(time=0, speed=1.0)], strength=0.25)
+    world.advance(0.5)
+    assert hinge.speed == pytest.approx(0, abs=1e-9)
+    assert hinge.state.motor + hinge.state.passive == pytest.approx(0, abs=1e-9)
+    with pytest.raises(sk.SceneError, match=r"passive.friction.*-1"):
+        hinge.set_passive(sk.JointPassive(friction=-1.0))

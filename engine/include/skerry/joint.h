@@ -33,6 +33,22 @@ struct JointMotor {
     std::vector<MotorKey> keys{};
 };
 
+/// Passive forces along the axis of a hinge (angles, moments) or a slider (displacements, forces). They oppose the motion
+/// of the joint without a motor (docs/methods/joints.md 4).
+struct JointPassive {
+    Real stiffness = 0;  // stiffness of a spring, >= 0 [N m/rad or N/m]
+    Real rest = 0;       // coordinate of the joint at which the spring exerts no force [rad or m]
+    Real damping = 0;    // moment or force per speed, >= 0 [N m s/rad or N s/m]
+    Real friction = 0;   // greatest moment or force of dry friction, >= 0 [N m or N]
+
+    bool operator==(const JointPassive&) const = default;
+};
+
+/// Limits of the coordinate of a joint.
+struct JointLimits {
+    std::optional<Real> lower{}, upper{};  // no value: no limit [rad or m]
+};
+
 /// A joint between two rigid bodies, or between a rigid body and the world, in their present poses. The coordinate of a
 /// joint is zero in these poses and measures the motion of the first body relative to the second. For a hinge it is the
 /// angle about the axis, counting full revolutions [rad]. For a slider it is the displacement along the axis [m].
@@ -45,6 +61,7 @@ struct JointSettings {
     Vec3 axis = {0, 0, 1};                 // axis of a hinge or slider in the world; the length must not be zero
     std::optional<Real> lower{}, upper{};  // limits of the joint coordinate, lower <= upper
     std::optional<JointMotor> motor{};
+    JointPassive passive{};
     bool bodies_touch = false;  // true: the two bodies may collide while the joint exists
 };
 
@@ -60,8 +77,9 @@ struct JointState {
     Real speed = 0;              // [rad/s or m/s]
     Vec3 force = Vec3::Zero();   // force acting at `point` [N]
     Vec3 moment = Vec3::Zero();  // [N m]
-    // Parts of the moment (hinge) or force (slider) along the axis that the motor and the limits exert [N m or N].
-    Real motor = 0, limit = 0;
+    // Parts of the moment (hinge) or force (slider) along the axis: of the motor, of spring, damper and friction
+    // together, and of the limits [N m or N].
+    Real motor = 0, passive = 0, limit = 0;
     // Position error [m]: distance between the two points that the joint should keep together. For a slider, only the
     // part of this distance normal to the axis counts.
     Real error = 0;
@@ -90,6 +108,12 @@ public:
     /// For a slider this bound is recovery_speed plus the speeds at the joint due to the angular velocities of both
     /// bodies. For a hinge it is 1 rad/s plus both angular speeds.
     void set_limits(JointHandle joint, std::optional<Real> lower, std::optional<Real> upper);
+    /// Sets spring, damper and friction of a hinge or a slider.
+    void set_passive(JointHandle joint, const JointPassive& passive);
+    /// Return the present settings.
+    std::optional<JointMotor> motor(JointHandle joint) const;
+    JointLimits limits(JointHandle joint) const;
+    JointPassive passive(JointHandle joint) const;
 
 private:
     World* world_;

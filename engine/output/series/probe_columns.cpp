@@ -148,7 +148,7 @@ void put_joint(const JointState& joint, std::vector<Real>& values) {
     put_vector(joint.force, values);
     put_vector(joint.moment, values);
     if (has_coordinate(joint.kind))
-        values.insert(values.end(), {joint.coordinate, joint.speed, joint.motor, joint.limit});
+        values.insert(values.end(), {joint.coordinate, joint.speed, joint.motor, joint.passive, joint.limit});
 }
 
 void put_motion(const Motion3& motion, const Vec3& origin, std::vector<Real>& values) {
@@ -296,6 +296,7 @@ void add_columns(const World& world, const RecordedProbe& probe, std::vector<Ser
         one(turns ? "angle" : "displacement", turns ? "rad" : "m");
         one("speed", turns ? "rad/s" : "m/s");
         one(turns ? "motor_moment" : "motor_force", turns ? "N m" : "N");
+        one(turns ? "passive_moment" : "passive_force", turns ? "N m" : "N");
         one(turns ? "limit_moment" : "limit_force", turns ? "N m" : "N");
     };
     std::visit(Overloaded{[&](const PointProbe&) { motion(); }, [&](const BodyProbe&) { motion(); },

@@ -345,6 +345,22 @@ class Motion:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class JointPassive:
+    """Spring, damper and dry friction along the axis of a hinge (angles, moments) or a slider (displacements, forces).
+
+    stiffness: stiffness of the spring, >= 0 [N m/rad or N/m].
+    rest: coordinate of the joint at which the spring exerts no force [rad or m].
+    damping: moment or force per speed, >= 0 [N m s/rad or N s/m].
+    friction: greatest moment or force of dry friction, >= 0 [N m or N].
+    """
+
+    stiffness: float = 0.0
+    rest: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MotorKey:
     """Target of a motor at an absolute time: a speed or a position.
 
@@ -409,6 +425,7 @@ __all__ = [
     "Friction",
     "Integrator",
     "JointKind",
+    "JointPassive",
     "Material",
     "MaterialModel",
     "Motion",

@@ -30,9 +30,27 @@ nb::dict values_of(const JointState& state) {
     values["force"] = tuple_of(state.force);
     values["moment"] = tuple_of(state.moment);
     values["motor"] = state.motor;
+    values["passive"] = state.passive;
     values["limit"] = state.limit;
     values["error"] = state.error;
     return values;
+}
+
+nb::object motor_of(World& world, const JointHandle& joint) {
+    const std::optional<JointMotor> motor = Joints(world).motor(joint);
+    return motor ? object_of(*motor) : nb::none();
+}
+
+nb::tuple limits_of(World& world, const JointHandle& joint) {
+    const JointLimits limits = Joints(world).limits(joint);
+    return nb::make_tuple(limits.lower, limits.upper);
+}
+
+void set_passive(WorldObject& object, const JointHandle& joint, nb::handle given) {
+    Use use(object);
+    JointPassive passive;
+    read(given, passive);
+    Joints(object.world).set_passive(joint, passive);
 }
 
 void set_motor(WorldObject& object, const JointHandle& joint, nb::handle given) {
@@ -52,6 +70,12 @@ void bind_joints(WorldClass& type) {
         .def("joint_state",
              guarded([](World& world, const JointHandle& joint) { return values_of(Joints(world).state(joint)); }))
         .def("set_motor", &set_motor, nb::arg("joint"), nb::arg("motor").none())
+        .def("set_passive", &set_passive, nb::arg("joint"), nb::arg("passive"))
+        .def("motor", guarded(motor_of))
+        .def("limits", guarded(limits_of))
+        .def("passive", guarded([](World& world, const JointHandle& joint) {
+                 return object_of(Joints(world).passive(joint));
+             }))
         .def("set_limits",
              guarded([](World& world, const JointHandle& joint, std::optional<Real> lower, std::optional<Real> upper) {
                  Joints(world).set_limits(joint, lower, upper);

@@ -74,6 +74,16 @@ void validate_limits(std::optional<Real> lower, std::optional<Real> upper) {
         refuse_joint("lower", short_text(*lower), "a number <= upper, which is " + short_text(*upper));
 }
 
+void validate_passive(const JointPassive& passive) {
+    const auto require = [](const char* field, Real found, bool good, const char* expected) {
+        if (!good || !std::isfinite(found)) refuse_joint(field, short_text(found), expected);
+    };
+    require("passive.stiffness", passive.stiffness, passive.stiffness >= 0, "a stiffness >= 0 (N m/rad or N/m)");
+    require("passive.rest", passive.rest, true, "a finite coordinate (rad or m)");
+    require("passive.damping", passive.damping, passive.damping >= 0, "a damping >= 0 (N m s/rad or N s/m)");
+    require("passive.friction", passive.friction, passive.friction >= 0, "a moment or force >= 0 (N m or N)");
+}
+
 void validate_joint(const JointSettings& joint) {
     require_finite("joint", "point", joint.point);
     require_finite("joint", "axis", joint.axis);
@@ -81,12 +91,15 @@ void validate_joint(const JointSettings& joint) {
     if (has_axis(joint.kind)) {
         if (joint.motor) validate_motor(*joint.motor);
         validate_limits(joint.lower, joint.upper);
+        validate_passive(joint.passive);
         return;
     }
     const std::string kind(name_of(joint.kind));
     if (joint.motor) refuse_joint("motor", "a motor on a " + kind + " joint", "a motor on a hinge or slider");
     if (joint.lower || joint.upper)
         refuse_joint("lower, upper", "limits on a " + kind + " joint", "limits on a hinge or slider");
+    if (joint.passive != JointPassive{})
+        refuse_joint("passive", "passive forces on a " + kind + " joint", "passive forces on a hinge or slider");
 }
 
 JointFrame frame_on(const Model& model, Index body, const Vec3& point, const Mat3& axes) {
@@ -121,6 +134,10 @@ void set_keys(JointTable& table, std::size_t joint, const std::optional<JointMot
 JointMotorRow row_of(const std::optional<JointMotor>& motor) {
     if (!motor) return {};
     return {motor->speed.value_or(motor->position.value_or(0)), motor->strength, motor->fastest};
+}
+
+JointPassiveRow row_of(const JointPassive& passive) {
+    return {passive.stiffness, passive.rest, passive.damping, passive.friction};
 }
 
 void wake_both(Model& model, std::size_t joint) {
@@ -192,7 +209,9 @@ JointHandle Joints::add(const JointSettings& joint) {
     table.motor[row] = row_of(joint.motor);
     table.motor_keys[row] = {};
     set_keys(table, row, joint.motor);
-    table.coordinate[row] = table.motor_impulse[row] = table.step[row] = 0;
+    table.passive[row] = row_of(joint.passive);
+    table.coordinate[row] = table.step[row] = 0;
+    table.axis_impulse[row] = {};
     table.impulse[row] = table.moment[row] = Vec3::Zero();
     table.parts[row] = 0;
     if (second != no_index && !joint.bodies_touch) {
@@ -257,8 +276,10 @@ JointState joint_state(const Model& model, JointHandle joint) {
     now.moment = second.axes * joints.moment[j] / joints.step[j];
     if (!has_axis(now.kind)) return now;
     const Vec3& along = now.kind == JointKind::hinge ? joints.moment[j] : joints.impulse[j];
-    now.motor = model.joints.motor_impulse[j] / joints.step[j];
-    now.limit = along.z() / joints.step[j] - now.motor;
+    const AxisImpulses& parts = model.joints.axis_impulse[j];
+    now.motor = parts.motor / joints.step[j];
+    now.passive = parts.passive / joints.step[j];
+    now.limit = (along.z() - parts.motor - parts.passive) / joints.step[j];
     return now;
 }
 
@@ -295,6 +316,56 @@ void Joints::set_limits(JointHandle joint, std::optional<Real> lower, std::optio
     model.joints.lower[row] = least;
     model.joints.upper[row] = most;
     wake_both(model, row);
+}
+
+void Joints::set_passive(JointHandle joint, const JointPassive& passive) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_passive");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "set_passive"));
+    if (!has_axis(model.joints.kind[row]))
+        refuse_joint("passive", "passive forces on a " + std::string(name_of(model.joints.kind[row])) + " joint",
+                     "passive forces on a hinge or slider");
+    validate_passive(passive);
+    if (model.joints.passive[row] == row_of(passive)) return;
+    model.joints.passive[row] = row_of(passive);
+    wake_both(model, row);
+}
+
+std::optional<JointMotor> Joints::motor(JointHandle joint) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "motor"));
+    const JointDrive drive = model.joints.drive[row];
+    if (drive == JointDrive::none) return {};
+    const JointMotorRow& now = model.joints.motor[row];
+    JointMotor motor{.strength = now.most, .fastest = now.most_speed};
+    const auto target = [drive](Real value) {
+        return drive == JointDrive::speed ? MotorKey{.speed = value} : MotorKey{.position = value};
+    };
+    for (const TimeKey& key : model.joints.keys_of(row)) {
+        motor.keys.push_back(target(key.value));
+        motor.keys.back().time = key.time;
+    }
+    if (motor.keys.empty()) {
+        motor.speed = target(now.target).speed;
+        motor.position = target(now.target).position;
+    }
+    return motor;
+}
+
+JointLimits Joints::limits(JointHandle joint) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const auto row = static_cast<std::size_t>(model.row(joint, "limits"));
+    JointLimits limits;
+    if (model.joints.lower[row] != -infinity) limits.lower = model.joints.lower[row];
+    if (model.joints.upper[row] != infinity) limits.upper = model.joints.upper[row];
+    return limits;
+}
+
+JointPassive Joints::passive(JointHandle joint) const {
+    const Model& model = WorldAccess::state_of(*world_).model;
+    const JointPassiveRow& row = model.joints.passive[static_cast<std::size_t>(model.row(joint, "passive"))];
+    return {row.stiffness, row.rest, row.damping, row.friction};
 }
 
 }  // namespace skerry

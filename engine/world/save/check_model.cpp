@@ -374,6 +374,9 @@ void check_joints(const SavedFile& file, const Model& model) {
                 "a lower limit <= the upper limit");
         require(table.motor[j].most >= 0 && table.motor[j].most_speed >= 0, "motor", "a negative strength or speed",
                 "a strength and a speed >= 0");
+        const JointPassiveRow& passive = table.passive[j];
+        require(passive.stiffness >= 0 && passive.damping >= 0 && passive.friction >= 0, "passive",
+                "a negative stiffness, damping or friction", "numbers >= 0");
         require(table.motor_keys[j].size() == 0 || table.drive[j] != JointDrive::none, "motor_keys",
                 "keys without a motor", "no keys");
         require(table.impulse[j].allFinite() && table.moment[j].allFinite(), "impulse", "a value that is not finite",

@@ -36,7 +36,8 @@ AxisLaw axis_of(const JointInputs& joints, std::size_t j, Real coordinate, const
                  .upper = joints.upper[j],
                  .drive = joints.drive[j],
                  .motor = joints.motor[j],
-                 .most_impulse = step.kick * joints.motor[j].most};
+                 .passive = joints.passive[j],
+                 .kick = step.kick};
     if (axis.drive == JointDrive::position) {
         axis.motor.target = joints.target(j, step.t);
         axis.target_rate = (joints.target(j, step.t + step.h) - axis.motor.target) / step.h;
@@ -110,7 +111,7 @@ bool prepare_joints(const JointInputs& joints, Real t, Real h, Real kick, JointB
         blocks.block.push_back(block);
         blocks.impulse.push_back(scale * joints.moment[j]);
     }
-    blocks.motor_impulse.assign(blocks.size(), 0);
+    blocks.axis_impulse.assign(blocks.size(), {});
     return joints.size() > 0;
 }
 
@@ -130,13 +131,13 @@ bool store_joints(const JointBlockTable& blocks, Real kick, const JointMemory& o
         if (blocks.resting[j]) continue;
         out.coordinate[j] = blocks.coordinate[j];
         out.impulse[j] = out.moment[j] = Vec3::Zero();
-        out.motor_impulse[j] = 0;
+        out.axis_impulse[j] = {};
         out.step[j] = kick;
     }
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto j = static_cast<std::size_t>(blocks.block[i].joint);
         (blocks.block[i].turning ? out.moment : out.impulse)[j] = blocks.impulse[i];
-        if (!blocks.block[i].axis.locked) out.motor_impulse[j] = blocks.motor_impulse[i];
+        if (!blocks.block[i].axis.locked) out.axis_impulse[j] = blocks.axis_impulse[i];
     }
     return out.step.size() > 0;
 }

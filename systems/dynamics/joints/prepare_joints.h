@@ -23,6 +23,7 @@ struct JointInputs {
     std::span<const JointFrame> first_frame, second_frame;
     std::span<const Real> lower, upper;
     std::span<const JointMotorRow> motor;
+    std::span<const JointPassiveRow> passive;
     std::span<const Range> motor_keys;
     std::span<const TimeKey> key;
     std::span<const Real> coordinate;
@@ -46,6 +47,7 @@ struct JointInputs {
                 .lower = binder.read(joint.lower),
                 .upper = binder.read(joint.upper),
                 .motor = binder.read(joint.motor),
+                .passive = binder.read(joint.passive),
                 .motor_keys = binder.read(joint.motor_keys),
                 .key = binder.read(joint.key),
                 .coordinate = binder.read(joint.coordinate),
@@ -106,13 +108,14 @@ bool mark_driven(const JointInputs& joints, Real t, Real h, std::span<std::uint8
 struct JointMemory {
     std::span<Real> coordinate;
     std::span<Vec3> impulse, moment;
-    std::span<Real> motor_impulse, step;
+    std::span<AxisImpulses> axis_impulse;
+    std::span<Real> step;
 
     static JointMemory bind(const Binder& binder, JointTable& joint) {
         return {.coordinate = binder.write(joint.coordinate),
                 .impulse = binder.write(joint.impulse),
                 .moment = binder.write(joint.moment),
-                .motor_impulse = binder.write(joint.motor_impulse),
+                .axis_impulse = binder.write(joint.axis_impulse),
                 .step = binder.write(joint.step)};
     }
 };

@@ -177,7 +177,7 @@ struct RegionOutputs {
     std::span<Vec3> contact_impulse{}, contact_moment{}, push_velocity{}, push_spin{};
     std::span<Vec3> deforming_impulse{};  // by row of ImplicitNodeTable, zero before the solve [N s]
     std::span<Vec3> joint_impulse{};      // by joint block: warm start as input, solution as output
-    std::span<Real> motor_impulse{};      // by joint block
+    std::span<AxisImpulses> axis_impulse{};  // by joint block
 
     static RegionOutputs bind(const Binder& binder, ContactTable& contact, NodeTable& node, RigidBodyTable& rigid,
                               ImplicitNodeTable& implicit, JointBlockTable& joints) {
@@ -190,7 +190,7 @@ struct RegionOutputs {
                 .push_spin = binder.write(rigid.push_spin),
                 .deforming_impulse = binder.write(implicit.contact_impulse),
                 .joint_impulse = binder.write(joints.impulse),
-                .motor_impulse = binder.write(joints.motor_impulse)};
+                .axis_impulse = binder.write(joints.axis_impulse)};
     }
 };
 

@@ -1,37 +1,68 @@
 // Law of one block of three joint rows. The relative velocity of a locked row is zero. The third row may be a free axis
-// with limits and a motor (docs/methods/joints.md 2, 3).
+// with limits, a motor and passive forces (docs/methods/joints.md 2, 3).
 #pragma once
 
 #include <algorithm>
 
+#include "components/joint_table.h"
 #include "components/types.h"
 
 namespace skerry {
 
-/// Velocity limits `low`, `high` and motor velocity `target` of the axis [m/s or rad/s], and the greatest impulse
-/// `most` of the motor [N s or N m s]
+/// Limits, motor and passive forces of an axis in this step.
 struct AxisBounds {
-    Real low = -infinity, high = infinity;
-    Real target = 0, most = 0;
+    Real low = -infinity, high = infinity;  // velocity limits [m/s or rad/s]
+    Real target = 0, most = 0;              // velocity [m/s or rad/s] and greatest impulse [N s or N m s] of the motor
+    Real friction = 0;                      // greatest impulse of dry friction [N s or N m s]
+    // Impulse of spring and damper at the axis velocity u: pull - drag u [N s or N m s].
+    Real pull = 0;
+    Real drag = 0;
 };
 
-/// Returns the impulse r of the axis, where u = w r + b is the axis velocity and w the mobility. The motor drives u to
-/// `target` within its greatest impulse. The limits `low` and `high` hold regardless of the motor.
-inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
-    if (!(w > 0)) return 0;
-    const Real motor = axis.most > 0 ? std::clamp((axis.target - b) / w, -axis.most, axis.most) : 0;
-    const Real u = b + w * motor;
-    if (u < axis.low) return (axis.low - b) / w;
-    if (u > axis.high) return (axis.high - b) / w;
-    return motor;
+/// Returns the impulse of motor and dry friction together, where u = w r + b is the axis velocity and w the mobility.
+/// The motor drives u to its target, and friction drives u to zero, both within their greatest impulses.
+inline Real drive_impulse(const AxisBounds& axis, Real w, Real b) {
+    // `first` is the drive with the lower target velocity. While u is below both targets, both pull with all their
+    // strength.
+    const bool motor_first = axis.target < 0;
+    const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
+    const Real near_first =
+        std::clamp((std::min(axis.target, Real(0)) - b) / w, second - first, second + first);
+    if (near_first > second - first) return near_first;
+    return std::clamp((std::max(axis.target, Real(0)) - b) / w, -second - first, second - first);
 }
 
-/// Returns the part of the impulse `r` of the axis that the motor exerts at the axis velocity `u`. The rest is the
-/// impulse of a limit.
-inline Real motor_part(const AxisBounds& axis, Real w, Real u, Real r) {
-    if (!(w > 0) || !(axis.most > 0)) return 0;
-    if (axis.low == -infinity && axis.high == infinity) return r;
-    return std::clamp(r + (axis.target - u) / w, -axis.most, axis.most);
+/// Returns the impulse r of the axis, where u = w r + b is the axis velocity and w the mobility. The limits `low` and
+/// `high` hold regardless of all other forces.
+inline Real answer_axis(const AxisBounds& axis, Real w, Real b) {
+    if (!(w > 0)) return 0;
+    // mobility, and velocity without drives, while spring and damper act
+    const Real share = 1 / (1 + w * axis.drag), w_damped = share * w, b_damped = share * (b + w * axis.pull);
+    const Real drive = drive_impulse(axis, w_damped, b_damped);
+    const Real u = b_damped + w_damped * drive;
+    if (u < axis.low) return (axis.low - b) / w;
+    if (u > axis.high) return (axis.high - b) / w;
+    return drive + (axis.pull - axis.drag * u);
+}
+
+/// Parts of the impulse `r` of the axis that the motor and the passive forces (spring, damper, friction) exert at the
+/// axis velocity `u`. The rest is the impulse of a limit.
+inline AxisImpulses parts_of(const AxisBounds& axis, Real w, Real u, Real r) {
+    if (!(w > 0)) return {};
+    const Real spring = axis.pull - axis.drag * u;
+    Real drive = r - spring;
+    if (axis.low != -infinity || axis.high != infinity) {
+        const Real share = 1 / (1 + w * axis.drag);
+        drive = drive_impulse(axis, share * w, share * (u - w * r + w * axis.pull));
+    }
+    if (!(axis.most > 0)) return {0, spring + drive};
+    if (!(axis.friction > 0)) return {drive, spring};
+    // The drive with the higher target velocity has its full strength while u is at the lower target or below.
+    const bool motor_first = axis.target < 0;
+    const Real first = motor_first ? axis.most : axis.friction, second = motor_first ? axis.friction : axis.most;
+    const Real of_first = drive >= second - first ? drive - second : -first;
+    const Real motor = motor_first ? of_first : drive - of_first;
+    return {motor, spring + (drive - motor)};
 }
 
 /// Three joint rows with their diagonal block of W, in the frame of the joint.

@@ -84,8 +84,8 @@ void BodyRegion::write_joints(const RegionStage& stage) const {
         const JointPlaceInRegion place = joint_place(stage, k);
         if (!place.law.axis_free) continue;
         const Vec4 u = add_rigid_velocities(part, memory.velocity.data(), place.contact.offset);
-        stage.out.motor_impulse[block] =
-            motor_part(place.law.axis, place.law.axis_mobility, part.frame[2].dot(u), impulse.z());
+        stage.out.axis_impulse[block] =
+            parts_of(place.law.axis, place.law.axis_mobility, part.frame[2].dot(u), impulse.z());
     }
 }
 

@@ -47,14 +47,26 @@ Real fastest_pull(const RegionStage& stage, bool of_spins, const BodyMotion& fir
                     : stage.settings.recovery_speed + first.turning().norm() + second.turning().norm();
 }
 
-/// Limits and motor of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility of the axis [1/kg
-/// or 1/(kg m^2)]
+/// Sets the impulses of spring, damper and friction of a joint axis (docs/methods/joints.md 4).
+void add_passive(const AxisLaw& axis, Real mobility, Real h, AxisBounds& bounds) {
+    constexpr Real at_start = 0.5;  // largest (omega h)^2 of the part of the spring that acts as at the start of the step
+    const JointPassiveRow& passive = axis.passive;
+    const Real frequency = h * axis.kick * passive.stiffness * mobility;
+    const Real at_end = frequency > at_start ? 1 - at_start / frequency : 0;
+    bounds.pull = axis.kick * passive.stiffness * (passive.rest - axis.coordinate);
+    bounds.drag = axis.kick * (passive.damping + at_end * passive.stiffness * h);
+    bounds.friction = axis.kick * passive.friction;
+}
+
+/// Limits, motor and passive forces of a joint axis as bounds of its velocity and impulse. `mobility` is the mobility of
+/// the axis [1/kg or 1/(kg m^2)]
 AxisBounds bounds_of(const AxisLaw& axis, Real mobility, Real h, Real fastest) {
     AxisBounds bounds;
     bounds.low = std::min((axis.lower - axis.coordinate) / h, fastest);
     bounds.high = std::max((axis.upper - axis.coordinate) / h, -fastest);
+    add_passive(axis, mobility, h, bounds);
     if (axis.drive == JointDrive::none) return bounds;
-    bounds.most = axis.most_impulse;
+    bounds.most = axis.kick * axis.motor.most;
     bounds.target = axis.motor.target;
     if (axis.drive == JointDrive::speed) return bounds;
     const Real way = axis.motor.target - axis.coordinate;

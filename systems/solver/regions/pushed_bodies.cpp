@@ -89,7 +89,7 @@ Real PushedBodies::sweep_joints(std::span<Vec4> push) const {
 
 AxisBounds PushedBodies::bounds(std::size_t at, const JointLaw& law) const {
     const Real along = memory_.part[at].frame[2].dot(op_.velocity(static_cast<Index>(at)));
-    return {std::min(law.axis.low - along, Real(0)), std::max(law.axis.high - along, Real(0)), 0, 0};
+    return {.low = std::min(law.axis.low - along, Real(0)), .high = std::max(law.axis.high - along, Real(0))};
 }
 
 }  // namespace skerry

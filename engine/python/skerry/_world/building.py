@@ -19,6 +19,7 @@ from .._settings import (
     Dynamics,
     ElementKind,
     JointKind,
+    JointPassive,
     Material,
     Motion,
     Motor,
@@ -215,13 +216,14 @@ class Building:
         lower: float | None = None,
         upper: float | None = None,
         motor: Motor | None = None,
+        passive: JointPassive | None = None,
         bodies_touch: bool = False,
     ) -> Joint:
         """Joins two rigid bodies, or a rigid body and the world, in their present poses, and returns the joint.
 
         kind: "ball", "hinge", "slider" or "fixed". point: position of the joint (3,) [m]. axis: axis of a hinge or a
         slider (3,). lower, upper: limits of its coordinate, which is 0 now [rad or m]. motor: motor on the axis.
-        bodies_touch: True: the two bodies may collide. SceneError: a body is not rigid, or a value is out of range."""
+        passive: spring, damper and dry friction on the axis. bodies_touch: True: the two bodies may collide. SceneError: a body is not rigid, or a value is out of range."""
         given = Arguments(
             of="joint",
             kind=kind,
@@ -230,6 +232,7 @@ class Building:
             lower=lower,
             upper=upper,
             motor=motor,
+            passive=JointPassive() if passive is None else passive,
             bodies_touch=flag(bodies_touch, "bodies_touch"),
         )
         one = self._own(first, "first", Body)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .._arrays import Vector, checked, real
-from .._settings import JointKind, Motor
+from .._settings import JointKind, JointPassive, Motor
 from .objects import WorldObject
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ class JointState:
     force: force at `point` [N].
     moment: moment [N m].
     motor: moment or force along the axis that the motor exerts [N m or N].
+    passive: moment or force along the axis of spring, damper and dry friction together [N m or N].
     limit: moment or force along the axis that the limits exert [N m or N].
     error: distance between the two points that the joint should keep together [m].
     """
@@ -43,6 +44,7 @@ class JointState:
     force: Vector
     moment: Vector
     motor: float
+    passive: float
     limit: float
     error: float
 
@@ -71,6 +73,24 @@ class Joint(WorldObject):
         """Rate of `coordinate` [rad/s or m/s]."""
         return self.state.speed
 
+    @property
+    def motor(self) -> Motor | None:
+        """The motor; None if the joint has none."""
+        motor: Motor | None = self._core.motor(self._handle)
+        return motor
+
+    @property
+    def limits(self) -> tuple[float | None, float | None]:
+        """Lower and upper limit of the coordinate; None: no limit [rad or m]."""
+        limits: tuple[float | None, float | None] = self._core.limits(self._handle)
+        return limits
+
+    @property
+    def passive(self) -> JointPassive:
+        """Spring, damper and dry friction along the axis."""
+        passive: JointPassive = self._core.passive(self._handle)
+        return passive
+
     def set_motor(self, motor: Motor | None) -> None:
         """Sets the motor of a hinge or a slider; None removes it."""
         self._core.set_motor(self._handle, None if motor is None else checked(motor, "motor", Motor))
@@ -79,6 +99,10 @@ class Joint(WorldObject):
         """Sets the limits of the coordinate; None stands for no limit [rad or m]."""
         limits = (None if value is None else real(value, name) for value, name in ((lower, "lower"), (upper, "upper")))
         self._core.set_limits(self._handle, *limits)
+
+    def set_passive(self, passive: JointPassive) -> None:
+        """Sets spring, damper and dry friction of a hinge or a slider."""
+        self._core.set_passive(self._handle, checked(passive, "passive", JointPassive))
 
     def remove(self) -> None:
         """Removes the joint."""
