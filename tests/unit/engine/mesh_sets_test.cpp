@@ -126,7 +126,8 @@ TEST_CASE("physical groups of Gmsh are sets by name, with the numbers of the mes
     CHECK_THAT(notes[1], Contains("the set \"point_8\" contains no node of a tetrahedron and was dropped"));
 
     const Mesh of_4 = mesh::read(folder.write("m4.msh", gmsh4));
-    REQUIRE(of_4.sets.size() == 3);
+    REQUIRE(of_4.sets.size() == 4);
+    CHECK(of_4.sets.at("surface_4").faces == of_4.sets.at("skin").faces);  // a surface in two groups
     CHECK(of_4.sets.at("tip") == MeshSet{.nodes = {4}});
     CHECK(of_4.sets.at("skin").faces == Faces{{0, 2, 1}});
     CHECK(of_4.sets.at("core") == MeshSet{.tetrahedra = {0}});
