@@ -143,6 +143,19 @@ TEST_CASE("a volume in two physical groups of Gmsh 4.1 belongs to both sets", "[
     CHECK(mesh.sets.at("all").tetrahedra == Numbers{0, 1});
 }
 
+TEST_CASE("Gmsh 2.2 repeats a tetrahedron for each of its groups, and it is read once", "[unit]") {
+    const TemporaryFolder folder;
+    std::string text = gmsh2;
+    text.replace(text.find("8\n1 15"), 2, "9\n");
+    text.replace(text.find("7 4 2 4 2"), 9, "9 4 2 3 1 2 3 4 5\n7 4 2 4 2");
+    text.replace(text.find("2 3 \"skin\""), 10, "3 3 \"more\"");
+    const Mesh mesh = mesh::read(folder.write("m.msh", text));
+    CHECK(mesh.tetrahedra.size() == 2);
+    CHECK(mesh.label == std::vector<int>{9, 4});
+    CHECK(mesh.sets.at("core").tetrahedra == Numbers{0});
+    CHECK(mesh.sets.at("more").tetrahedra == Numbers{0});
+}
+
 TEST_CASE("arrays of whole numbers and of bits in VTK files are sets", "[unit]") {
     const TemporaryFolder folder;
     const std::string text = vtk_of(
