@@ -149,6 +149,11 @@ Mesh take_tetrahedra(const std::string& path, RawMesh& raw, std::vector<std::str
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes) {
     require_valid(mesh, name);
     turn_valid(name, mesh, notes);
+    for (auto& [set_name, set] : mesh.sets) {
+        require_set(name, set_name, set, mesh.nodes.size(), mesh.tetrahedra);
+        tidy(set);
+    }
+    match_faces(mesh.tetrahedra, mesh.sets);
 }
 
 Mesh read(const std::string& path, std::vector<std::string>* notes) {

@@ -130,8 +130,9 @@ Mesh read(const std::string& path, std::vector<std::string>* notes = nullptr);
 SurfaceMesh read_surface(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// Turns the inverted tetrahedra of a mesh that was not read from a file, as `read` does. `name` stands for the file in
-/// `notes` and in errors. Throws SceneError if a tetrahedron uses a node twice or a node that does not exist, or if a
-/// position is not finite.
+/// `notes` and in errors. Sorts the numbers of sets, and gives faces of sets the orientation of the boundary. Throws
+/// SceneError if a tetrahedron uses a node twice or a node that does not exist, if a position is not finite, or if a
+/// set has a number that is out of range or a face that is not one of the tetrahedra.
 void turn_inverted(Mesh& mesh, const std::string& name, std::vector<std::string>* notes = nullptr);
 
 /// Writes a mesh as Gmsh 2.2 text with all digits, so that `read` returns an equal mesh. The file name must end in

@@ -31,7 +31,7 @@ struct ReactionInputs {
     std::span<const Index> attached_body;  // by attachment: row of BodyTable of the attached body
     std::span<const Index> held;           // held nodes of all attachments: rows of NodeTable
     std::span<const Mat3> directions;      // AttachmentTable::held
-    std::span<const Vec3> axis_impulse;    // AxisHolds::impulse [N s]
+    std::span<const Vec3> axis_impulse;    // impulses of hold_axes, by entry of `held` [N s]
     std::span<const Vec3> held_impulse;    // impulse of contacts on held nodes, by node [N s]
     // velocity of held nodes before the step, by node [m/s]
     std::span<const Vec3> velocity_before;

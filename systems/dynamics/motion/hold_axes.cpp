@@ -29,34 +29,38 @@ void for_each_held(const AxisHoldInputs& inputs, Real h, auto&& visit) {
 
 }  // namespace
 
-void hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next, AxisHolds& holds) {
-    holds.sum = {};
-    holds.impulse.assign(inputs.node.size(), Vec3::Zero());
+ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next,
+                       Column<Vec3>& held_impulse) {
+    ExternalWork sum;
+    held_impulse.assign(inputs.node.size(), Vec3::Zero());
     for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
         const Real impulse = inputs.mass[n] * (speed - direction.dot(velocity_next[n]));
         const Real gained = speed - direction.dot(inputs.velocity[n]);
         velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
-        holds.impulse[i] += impulse * direction;
-        holds.sum.impulse += impulse * direction;
+        held_impulse[i] += impulse * direction;
+        sum.impulse += impulse * direction;
         // The forces that this impulse balances do their work over the displacement at the end velocity. The kinetic
         // energy changes with the mean of the velocities before and after.
-        holds.sum.work += impulse * speed - inputs.mass[n] * gained * gained / 2;
-        holds.sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * speed;
-        if (!inputs.load.empty()) holds.sum.work -= (h - kick) * direction.dot(inputs.load[n]) * speed;
+        sum.work += impulse * speed - inputs.mass[n] * gained * gained / 2;
+        sum.work -= (h - kick) * inputs.mass[n] * direction.dot(inputs.gravity) * speed;
+        if (!inputs.load.empty()) sum.work -= (h - kick) * direction.dot(inputs.load[n]) * speed;
     });
+    return sum;
 }
 
-void hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next, std::span<Vec3> push_out,
-                     AxisHolds& holds) {
+ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
+                             std::span<Vec3> push_out, std::span<Vec3> held_impulse) {
+    ExternalWork sum;
     for_each_held(inputs, h, [&](std::size_t i, std::size_t n, const Vec3& direction, Real speed) {
         push_out[n] -= direction.dot(push_out[n]) * direction;
         const Real before = direction.dot(velocity_next[n]);
         const Real impulse = inputs.mass[n] * (speed - before);
         velocity_next[n] += impulse * inputs.inverse_mass[n] * direction;
-        holds.impulse[i] += impulse * direction;
-        holds.sum.impulse += impulse * direction;
-        holds.sum.work += impulse * (before + speed) / 2;
+        held_impulse[i] += impulse * direction;
+        sum.impulse += impulse * direction;
+        sum.work += impulse * (before + speed) / 2;
     });
+    return sum;
 }
 
 }  // namespace skerry

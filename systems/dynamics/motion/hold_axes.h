@@ -44,20 +44,16 @@ struct AxisHoldInputs {
     }
 };
 
-/// Impulses of a step that hold nodes along single directions.
-struct AxisHolds {
-    Column<Vec3> impulse;  // by entry of AttachmentTable::node; zero for nodes that are held completely [N s]
-    ExternalWork sum;
-};
-
 /// Gives nodes that are held along single directions the prescribed velocities along these directions. The prescribed
-/// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses and
-/// their work, which is measured as in measure_work. Nodes of sleeping bodies are left out. Sequential.
-void hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next, AxisHolds& holds);
+/// velocity leads to the position of the attachment at the end of the step, as in drive_nodes. Writes the impulses by
+/// entry of AttachmentTable::node, zero for nodes that are held completely [N s]. Returns their sum and their work,
+/// which is measured as in measure_work. Nodes of sleeping bodies are left out. Sequential.
+ExternalWork hold_axes(const AxisHoldInputs& inputs, Real h, Real kick, std::span<Vec3> velocity_next,
+                       Column<Vec3>& held_impulse);
 
-/// Restores the prescribed velocities after contact impulses, and adds the impulses that this takes to `holds`. Also
-/// removes the parts along these directions from `push_out`.
-void hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next, std::span<Vec3> push_out,
-                     AxisHolds& holds);
+/// Restores the prescribed velocities after contact impulses, and adds the impulses that this takes to `held_impulse`.
+/// Also removes the parts along these directions from `push_out`. Returns the sum and the work of the added impulses.
+ExternalWork hold_axes_again(const AxisHoldInputs& inputs, Real h, std::span<Vec3> velocity_next,
+                             std::span<Vec3> push_out, std::span<Vec3> held_impulse);
 
 }  // namespace skerry

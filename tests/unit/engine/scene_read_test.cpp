@@ -224,7 +224,7 @@ TEST_CASE("values of the wrong kind or out of range are refused with unit and ra
          {"bodies[0].materials.-1: found the number 5"}},
         {"a list of materials",
          body_with(R"("materials": ["rubber"])"),
-         {"expected an object {\"NUMBER\": VALUE, ...}"}},
+         {"expected an object {NAME: VALUE, ...}"}},
     });
 }
 
