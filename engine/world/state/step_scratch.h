@@ -60,6 +60,8 @@ struct StepFindings {
     Index crossings = 0;  // number of crossings found in this attempt; if nonzero, the step is repeated
     ContactMeasures measures;
     ExternalWork external;
+    // impulse and work that hold nodes along single directions, before contacts and because of contacts
+    ExternalWork held, held_again;
     TakenByRest rest;
     JointMeasures joints;
     Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
@@ -125,6 +127,7 @@ struct StepScratch {
     SleepMemory sleep_memory;
     KeptVelocities kept_velocities;
     ForceScratch forces;
+    Column<Vec3> axis_impulse;  // impulses of hold_axes and hold_axes_again [N s]
     Column<Real> stiffness_sum;        // one entry per node; working memory of stable_step
     Column<std::uint8_t> beside_fast;  // one entry per node; working memory of check_state
     Column<Vec3> cluster_kick;         // used by kick_clusters
