@@ -167,6 +167,17 @@ void add_keys(Hash& hash, const Table& table) {
     }
 }
 
+/// Hashes the tied nodes of all ties.
+void add_tied_nodes(Hash& hash, TieTable& table) {
+    for (const std::size_t row : in_slot_order(table.slot)) {
+        const auto begin = static_cast<std::size_t>(table.nodes[row].begin),
+                   count = static_cast<std::size_t>(table.nodes[row].size());
+        table.for_each_node_column(
+            [&](const char*, auto& column, ColumnRole) { add_rows(hash, AnyColumn(column), begin, count); });
+        hash.add(count);
+    }
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
@@ -246,6 +257,7 @@ std::uint64_t state_hash(WorldState& world) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
         if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
     });
+    add_tied_nodes(hash, model.ties);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

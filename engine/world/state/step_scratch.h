@@ -7,6 +7,7 @@
 #include "components/implicit_coupling.h"
 #include "components/joint_table.h"
 #include "components/region_table.h"
+#include "components/tie_table.h"
 #include "engine/world/tuning.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
@@ -22,6 +23,8 @@
 #include "systems/dynamics/joints/measure_joints.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/dynamics/ties/measure_ties.h"
+#include "systems/dynamics/ties/prepare_ties.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -62,6 +65,8 @@ struct StepFindings {
     ExternalWork external;
     TakenByRest rest;
     JointMeasures joints;
+    TieMeasures ties;
+    Index released_ties = 0;  // number of ties of which the last node has broken off in this step
     Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
     Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
     Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
@@ -115,6 +120,7 @@ struct StepScratch {
     StepFindings findings;
     ContactTable contacts;
     JointBlockTable joints;
+    TieRowTable ties;
     RegionTable regions;
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
     bool ran_inline = false;  // true if all stages ran on the calling thread

@@ -15,6 +15,7 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
+#include "systems/dynamics/ties/prepare_ties.h"
 #include "systems/forces/add_nodal_loads.h"
 
 namespace skerry {
@@ -65,6 +66,7 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::couple>(w, g);
     g.begin_phase("Solve regions as concurrent jobs");
     solve(w, g);
+    of_laws<&ConstraintLaw::take>(w, g);
     of_laws<&ConstraintLaw::measure>(w, g);
     g.begin_phase("Apply impulses");
     of_models<&MotionModel::apply>(w, g);
@@ -120,6 +122,9 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+    g.stage("dynamics/mark_led", mark_led,
+            inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
+            write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));
