@@ -52,7 +52,7 @@ struct TieTable {
         visit("parts", parts, ColumnRole::state);
         visit("first", first, ColumnRole::body);
         visit("second", second, ColumnRole::body);
-        visit("collider", collider, ColumnRole::link);
+        visit("collider", collider, ColumnRole::collider);
         visit("nodes", nodes, ColumnRole::link);
         visit("break_force", break_force, ColumnRole::state);
         visit("step", step, ColumnRole::state);
