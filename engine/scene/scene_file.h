@@ -10,6 +10,7 @@
 #include "engine/scene/values.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -145,6 +146,16 @@ struct JointEntry {
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
 };
+struct TieEntry {
+    TieKind kind = TieKind::weld;
+    std::string body;
+    std::optional<RestBox> box;
+    std::vector<int> nodes;
+    std::optional<std::string> to_body, to_collider;
+    std::optional<Real> break_force;
+    bool close_gap = false, bodies_touch = false;
+    Place place;
+};
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
 enum class ProbeQuantity { contacts, motion, force, reaction, joint, energy, stress, volume };
@@ -183,6 +194,7 @@ struct SceneFile {
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
+    std::vector<TieEntry> ties;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

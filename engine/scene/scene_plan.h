@@ -48,6 +48,12 @@ struct JointPlan {
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
     Place place;
 };
+struct TiePlan {
+    std::size_t body = 0;                                // index in ScenePlan::bodies
+    std::optional<std::size_t> to_body{}, to_collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
+    TieSettings settings;  // settings without handles, because handles exist only in a built world
+    Place place;
+};
 struct ProbePlan {
     std::string name;
     std::size_t body = 0;      // index in ScenePlan::bodies
@@ -80,6 +86,7 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;
+    std::vector<TiePlan> ties;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -109,6 +116,9 @@ struct PlannedHandles {
 };
 /// Returns a planned anchor in the form that a world takes.
 Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
+
+/// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders.
+TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);

@@ -45,6 +45,7 @@ from ._settings import (
     StartOverlaps,
     Surface,
     SurfaceMesh,
+    TieKind,
 )
 from ._sweep import sweep
 from ._world import (
@@ -64,6 +65,8 @@ from ._world import (
     StartOverlap,
     StepLimitReport,
     StepReport,
+    Tie,
+    TieState,
     World,
     WorldReport,
 )
@@ -158,6 +161,9 @@ __all__ = [
     "Surface",
     "SurfaceHit",
     "SurfaceMesh",
+    "Tie",
+    "TieKind",
+    "TieState",
     "VelocityProbe",
     "VolumeProbe",
     "World",

@@ -18,7 +18,7 @@ struct LoadSums {
 
     /// `u` is the velocity of the contact without impulses [m/s]
     void add(const LumpedContact& contact, Friction friction, const Vec4& u) {
-        frictionless &= contact.friction.slide == 0;
+        frictionless &= contact.friction.stick == 0 && !contact.friction.ties();
         one_friction &= contact.friction.stick == contact.friction.slide && !contact.friction.ties();
         if (contact.inverse_diagonal == 0) return;
         inverse_diagonals += contact.inverse_diagonal;
