@@ -9,10 +9,7 @@ TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan) {
     if (entry.to_body) tie.to_body = find_body(plan, *entry.to_body, entry.place.key("to_body"));
     if (entry.to_collider) tie.to_collider = find_collider(plan, *entry.to_collider, entry.place.key("to_collider"));
     tie.settings.kind = entry.kind;
-    if (entry.box)
-        tie.settings.nodes = nodes_inside(plan.meshes[plan.bodies[tie.body].mesh], *entry.box, entry.place.key("box"));
-    else
-        tie.settings.nodes.assign(entry.nodes.begin(), entry.nodes.end());
+    tie.settings.nodes = nodes_of(entry, plan.bodies[tie.body], plan);
     if (entry.break_force) tie.settings.break_force = *entry.break_force;
     tie.settings.close_gap = entry.close_gap;
     tie.settings.bodies_touch = entry.bodies_touch;

@@ -14,8 +14,9 @@ const Rule<TieEntry>& rule_of<TieEntry>() {
                  {.meaning = "motion of a node relative to its point. weld (default): none; slide: in the plane of the "
                              "surface"})
             .key("body", &Entry::body, {.meaning = "name of a deformable body", .required = true})
-            .key("box", &Entry::box, {.meaning = "box around the tied nodes, in the mesh's own frame"})
-            .key("nodes", &Entry::nodes, {.meaning = "numbers of the tied nodes", .limits = at_least(0)})
+            .key("set", &Entry::set, part_set_doc)
+            .key("box", &Entry::box, part_box_doc)
+            .key("nodes", &Entry::nodes, part_nodes_doc)
             .key("to_body", &Entry::to_body, {.meaning = "name of the other body"})
             .key("to_collider", &Entry::to_collider,
                  {.meaning = "name of a collider; without to_body and to_collider, the nodes are tied to the world"})
@@ -26,7 +27,7 @@ const Rule<TieEntry>& rule_of<TieEntry>() {
                              "distance"})
             .key("bodies_touch", &Entry::bodies_touch,
                  {.meaning = "whether the two objects can touch each other while a node is tied; default: false"})
-            .exactly_one({"box", "nodes"})
+            .exactly_one({"set", "box", "nodes"})
             .at_most_one({"to_body", "to_collider"});
     return rule;
 }
