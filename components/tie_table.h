@@ -87,12 +87,13 @@ inline void TieTable::erase_keys_of(std::size_t tie) {
 /// Rows of ties in the contact problem of a step. They stand behind the contacts in ContactTable while regions are
 /// solved.
 struct TieRowTable {
-    Column<Index> tie;      // row of TieTable
-    Column<Index> node;     // row of the columns by tied node
+    Column<Index> tie;   // row of TieTable
+    Column<Index> node;  // row of the columns by tied node
     Column<Stencil> stencil;
-    Column<Vec3> point;     // place of the tied node at the start of the step [m]
-    Column<Vec3> impulse;   // impulse on the node; before the solve: the warm start [N s]
-    Column<std::uint8_t> rests;  // by row of TieTable: 1 if its bodies are asleep; the tie then stores its last impulses
+    Column<Vec3> point;    // place of the tied node at the start of the step [m]
+    Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]
+    // By row of TieTable: 1 if its bodies are asleep. The tie then keeps its last impulses.
+    Column<std::uint8_t> rests;
 
     std::size_t size() const { return tie.size(); }
     void for_each_column(auto&& visit) {

@@ -54,7 +54,7 @@ struct JointPlan {
     Place place;
 };
 struct TiePlan {
-    std::size_t body = 0;                                // index in ScenePlan::bodies
+    std::size_t body = 0;                                 // index in ScenePlan::bodies
     std::optional<std::size_t> to_body{}, to_collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
     TieSettings settings;  // settings without handles, because handles exist only in a built world
     Place place;

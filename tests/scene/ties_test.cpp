@@ -5,57 +5,19 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "skerry/joint.h"
-#include "tests/support/frequency.h"
+#include "skerry/scene.h"
 #include "tests/support/same_bits.h"
+#include "tests/support/two_halves.h"
 #include "tests/support/worlds.h"
 
 namespace skerry::test::ties_test {
 
+using namespace two_halves;
+
 namespace {
-
-constexpr Real side = 0.1, half = 0.2;  // width and half of the length of a bar along x [m]
-
-/// Numbers of the nodes of a mesh whose coordinate x is `x`.
-std::vector<Index> nodes_at(const Mesh& mesh, Real x) {
-    std::vector<Index> found;
-    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-        if (std::abs(mesh.nodes[n].x() - x) < 1e-9) found.push_back(static_cast<Index>(n));
-    return found;
-}
-
-Settings without_gravity(Real tolerance = 1e-10) {
-    return accurate(Vec3::Zero(), tolerance);
-}
-
-const Mesh coarse = mesh::box({half, side, side}, {4, 2, 2}), fine = mesh::box({half, side, side}, {6, 3, 3});
-constexpr MaterialSettings rubber{.young_modulus = 1e6, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0};
-
-/// Two halves of a bar, whose meshes do not match. The fine one is tied to the coarse one.
-struct TwoHalves {
-    World world;
-    BodyHandle left, right;
-    TieHandle tie;
-    std::vector<Index> tied = nodes_at(fine, -half / 2);
-
-    explicit TwoHalves(const Settings& settings = without_gravity(), const TieSettings& with = {},
-                       BodyDynamics of_left = BodyDynamics::explicit_elastic,
-                       BodyDynamics of_right = BodyDynamics::explicit_elastic, const MaterialSettings& material = rubber)
-        : world(settings) {
-        const MaterialHandle of = world.add_material(material);
-        const auto add = [&](const Mesh& mesh, Real x, BodyDynamics dynamics) {
-            return world.add_body(mesh, {.material = of, .position = {x, 0, 0}, .dynamics = dynamics});
-        };
-        left = add(coarse, -half / 2, of_left);
-        right = add(fine, half / 2, of_right);
-        TieSettings tie_settings = with;
-        tie_settings.body = right;
-        tie_settings.nodes = tied;
-        tie_settings.to_body = left;
-        tie = Ties(world).add(tie_settings);
-    }
-};
 
 struct Momenta {
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // angular: about the origin
@@ -95,19 +57,72 @@ TEST_CASE("two tied halves conserve momentum and angular momentum", "[scene][tie
     CHECK(bar.world.report().momentum_error_share < 1e-12);
 }
 
+TEST_CASE("a weld to a rigid body across a gap conserves angular momentum", "[scene][ties]") {
+    constexpr Real gap = 0.03;
+    World world(without_gravity(1e-10));
+    const Mesh box = mesh::box({side, 2 * side, 3 * side}, {1, 1, 1}), pad = mesh::box({side, side, side}, {2, 2, 2});
+    const BodyHandle rigid =
+        world.add_body(box, {.material = world.add_material(rubber), .dynamics = BodyDynamics::rigid});
+    const BodyHandle soft = world.add_body(pad, {.material = world.add_material(rubber),
+                                                 .position = {side + gap, 0, 0},
+                                                 .dynamics = BodyDynamics::explicit_elastic});
+    const TieHandle tie = Ties(world).add({.body = soft, .nodes = nodes_at(pad, -side / 2), .to_body = rigid});
+    world.set_velocity(rigid, {0.1, 0.2, 0.3}, {3, -2, 1});
+    const Real mass = 1000 * 6 * side * side * side;
+    const Vec3 size(side, 2 * side, 3 * side);
+    const Vec3 moments = mass / 12 * (Vec3::Constant(size.squaredNorm()) - size.cwiseAbs2());
+    const auto sum = [&] {
+        const Vec3 center = world.center_of_mass(rigid);
+        const auto x = world.positions(rigid), v = world.velocities(rigid);
+        Vec3 velocity = Vec3::Zero(), turning = Vec3::Zero();
+        for (const Vec3& of : v) velocity += of / static_cast<Real>(v.size());
+        Mat3 spread = Mat3::Zero(), axes;
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            const Vec3 arm = x[n] - center;
+            turning += arm.cross(v[n] - velocity);
+            spread += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
+        }
+        for (Index k = 0; k < 3; ++k) {  // the edges of the box
+            const auto corner = [&](const Vec3& at) -> const Vec3& {
+                for (std::size_t n = 0; n < x.size(); ++n)
+                    if ((box.nodes[n] - at).norm() < 1e-9) return x[n];
+                throw std::logic_error("no such corner");
+            };
+            const Vec3 low = -size / 2, high = low + size[k] * Vec3::Unit(k);
+            axes.col(k) = (corner(high) - corner(low)).normalized();
+        }
+        const Vec3 spin = spread.inverse() * turning;
+        const Momenta of_rigid{mass * velocity,
+                               mass * center.cross(velocity) + axes * moments.asDiagonal() * axes.transpose() * spin};
+        return of_rigid + momenta(world, soft, pad);
+    };
+    const Momenta before = sum();
+    REQUIRE(world.advance(0.1).ok());
+    const Momenta after = sum();
+    CHECK(Ties(world).state(tie).force.norm() > 0.01);
+    CHECK((after.linear - before.linear).norm() < 1e-12 * mass);
+    CHECK((after.angular - before.angular).norm() < 1e-11 * before.angular.norm());
+}
+
 TEST_CASE("a tie stays exact for ten thousand steps", "[scene][ties]") {
-    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
+    for (const BodyDynamics dynamics :
+         {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
         Settings settings = without_gravity(1e-6);
         TwoHalves bar(settings, {}, dynamics);
         bar.world.set_velocity(bar.left, Vec3::Zero(), {0, 0, 3});
         const Real h = bar.world.stable_step();
-        Real worst = 0;
+        Real worst = 0, late = 0;
         for (int k = 0; k < 100; ++k) {
-            REQUIRE(bar.world.advance(20 * h).ok());
-            worst = std::max(worst, Ties(bar.world).state(bar.tie).error);
+            REQUIRE(bar.world.advance(100 * h).ok());
+            const Real error = Ties(bar.world).state(bar.tie).error;
+            worst = std::max(worst, error);
+            if (k >= 50) late = std::max(late, error);
         }
         CAPTURE(static_cast<int>(dynamics));
-        CHECK(worst < 1e-9 * half);
+        // With frames, the error of a step is the change of their spin in the step times h^2. It is greatest at the
+        // start, where the resting half is jerked into motion.
+        CHECK(worst < (dynamics == BodyDynamics::explicit_elastic ? 1e-8 : 1e-6) * half);
+        CHECK(late < (dynamics == BodyDynamics::explicit_elastic ? 1e-8 : 1e-7) * half);
         CHECK(bar.world.report().energy_error_share < 0.01);
     }
 }
@@ -162,123 +177,10 @@ TEST_CASE("a tie follows a moving collider and keeps its bodies awake", "[scene]
         REQUIRE(world.advance(1).ok());
         CHECK_FALSE(world.asleep(body));
         CHECK(ties.state(tie).error < 1e-7);
+        CHECK(world.report().energy_error_share < 0.01);
+        CHECK(world.report().momentum_error_share < 1e-9);
         const Vec3 expected = Vec3(0.2, 0, 0);
         CHECK((world.center_of_mass(body).head<2>() - expected.head<2>()).norm() < 2e-3);
-    }
-}
-
-namespace {
-
-/// Tetrahedra of a mesh on one side of x = 0.
-Mesh part_of(const Mesh& whole, bool right) {
-    Mesh part;
-    std::vector<Index> now(whole.nodes.size(), -1);
-    for (const auto& t : whole.tetrahedra) {
-        Real x = 0;
-        for (const Index n : t) x += whole.nodes[static_cast<std::size_t>(n)].x() / 4;
-        if ((x > 0) != right) continue;
-        auto& corners = part.tetrahedra.emplace_back();
-        for (std::size_t k = 0; k < 4; ++k) {
-            Index& row = now[static_cast<std::size_t>(t[k])];
-            if (row < 0) {
-                row = static_cast<Index>(part.nodes.size());
-                part.nodes.push_back(whole.nodes[static_cast<std::size_t>(t[k])]);
-            }
-            corners[k] = row;
-        }
-    }
-    return part;
-}
-
-}  // namespace
-
-TEST_CASE("two halves with matching meshes move like the whole bar", "[scene][ties]") {
-    Settings settings = without_gravity(1e-12);
-    settings.step_size = 2e-5;
-    settings.clusters = false;
-    const Mesh mesh = mesh::box({2 * half, side, side}, {8, 2, 2});
-    const std::array<Mesh, 2> part{part_of(mesh, false), part_of(mesh, true)};
-    World whole(settings), tied(settings);
-    const auto add = [&](World& world, const Mesh& of) {
-        return world.add_body(of, {.material = world.add_material(rubber),
-                                   .dynamics = BodyDynamics::explicit_elastic,
-                                   .element = ElementKind::linear});
-    };
-    const BodyHandle bar = add(whole, mesh);
-    const std::array<BodyHandle, 2> body{add(tied, part[0]), add(tied, part[1])};
-    const TieHandle tie = Ties(tied).add({.body = body[1], .nodes = nodes_at(part[1], 0), .to_body = body[0]});
-    // all modes at once: stretching, bending and twisting
-    const auto velocity = [](const Vec3& x) {
-        return Vec3(0.1 * std::sin(8 * x.x()), 0.2 * std::cos(9 * x.x()) + x.x() * x.z(), -x.x() * x.y());
-    };
-    const auto start = [&](World& world, BodyHandle of, const Mesh& nodes) {
-        std::vector<Vec3> v;
-        for (const Vec3& x : nodes.nodes) v.push_back(velocity(x));
-        world.set_velocities(of, v);
-    };
-    start(whole, bar, mesh);
-    start(tied, body[0], part[0]);
-    start(tied, body[1], part[1]);
-    REQUIRE(whole.advance(0.03).ok());
-    REQUIRE(tied.advance(0.03).ok());
-    Real worst = 0, moved = 0;
-    for (std::size_t side_of = 0; side_of < 2; ++side_of)
-        for (std::size_t n = 0; n < part[side_of].nodes.size(); ++n) {
-            const Vec3& x = part[side_of].nodes[n];
-            for (std::size_t m = 0; m < mesh.nodes.size(); ++m) {
-                if (mesh.nodes[m] != x) continue;
-                worst = std::max(worst, (tied.positions(body[side_of])[n] - whole.positions(bar)[m]).norm());
-                moved = std::max(moved, (whole.positions(bar)[m] - x).norm());
-            }
-        }
-    CHECK(moved > 1e-3);
-    CHECK(worst < 1e-8 * moved);
-    CHECK(Ties(tied).state(tie).error < 1e-12);
-}
-
-TEST_CASE("two halves with meshes that do not match have the frequencies of the whole bar", "[scene][ties]") {
-    Settings settings = without_gravity(1e-8);
-    settings.step_size = 2e-5;
-    // Natural frequencies of longitudinal vibration, by the shapes cos(k pi x / L) about the left end.
-    const auto frequencies = [&](World& world, const std::vector<std::pair<BodyHandle, const Mesh*>>& parts, int k) {
-        const auto shape = [&](Real x) { return std::cos(k * std::numbers::pi * (x + half) / (2 * half)); };
-        std::vector<std::vector<Real>> weight;
-        for (const auto& [body, mesh] : parts) {
-            std::vector<Vec3> v;
-            weight.emplace_back();
-            const std::vector<Real> mass = node_masses(world, body, *mesh, 1000);
-            for (std::size_t n = 0; n < mass.size(); ++n) {
-                const Real at = shape(world.positions(body)[n].x());
-                v.push_back({0.01 * at, 0, 0});
-                weight.back().push_back(mass[n] * at);
-            }
-            world.set_velocities(body, v);
-        }
-        std::vector<Real> sample;
-        for (int i = 0; i < 2000; ++i) {
-            REQUIRE(world.advance(settings.step_size.value()).ok());
-            Real sum = 0;
-            for (std::size_t b = 0; b < parts.size(); ++b)
-                for (std::size_t n = 0; n < weight[b].size(); ++n)
-                    sum += weight[b][n] * world.velocities(parts[b].first)[n].x();
-            sample.push_back(sum);
-        }
-        return angular_frequency(sample, *settings.step_size);
-    };
-    const Mesh whole_coarse = mesh::box({2 * half, side, side}, {8, 2, 2}),
-               whole_fine = mesh::box({2 * half, side, side}, {12, 3, 3});
-    for (int k = 1; k <= 3; ++k) {
-        std::vector<Real> whole;
-        for (const Mesh* mesh : {&whole_coarse, &whole_fine}) {
-            World world(settings);
-            const BodyHandle body = world.add_body(
-                *mesh, {.material = world.add_material(rubber), .dynamics = BodyDynamics::explicit_elastic});
-            whole.push_back(frequencies(world, {{body, mesh}}, k));
-        }
-        TwoHalves bar(settings);
-        const Real tied = frequencies(bar.world, {{bar.left, &coarse}, {bar.right, &fine}}, k);
-        CAPTURE(k, whole[0], whole[1], tied);
-        CHECK(tied == Approx((whole[0] + whole[1]) / 2).epsilon(3e-3));
     }
 }
 
@@ -287,9 +189,11 @@ TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties]")
     for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
         Settings settings = accurate({0, 0, -standard_gravity}, 1e-8);
         World world(settings);
-        const Mesh bar = mesh::box({width, width, length}, {1, 1, 2}), pad = mesh::box({pad_side, pad_side, pad_side}, {2, 2, 2});
+        const Mesh bar = mesh::box({width, width, length}, {1, 1, 2}),
+                   pad = mesh::box({pad_side, pad_side, pad_side}, {2, 2, 2});
         const BodyHandle rigid = world.add_body(
-            bar, {.material = world.add_material({}), .position = {0, 0, -length / 2}, .dynamics = BodyDynamics::rigid});
+            bar,
+            {.material = world.add_material({}), .position = {0, 0, -length / 2}, .dynamics = BodyDynamics::rigid});
         const MaterialHandle stiff =
             world.add_material({.young_modulus = 2e6, .poisson_ratio = 0.3, .loss_factor = 0, .bulk_viscosity = 0});
         const BodyHandle soft =
@@ -311,8 +215,8 @@ TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties]")
         turn(soft);
         const Real rod = 1000 * width * width * length, block = 1000 * pad_side * pad_side * pad_side;
         const Real at = length + pad_side / 2;
-        const Real inertia = rod * (length * length / 3 + width * width / 12) +
-                             block * (at * at + pad_side * pad_side / 6);
+        const Real inertia =
+            rod * (length * length / 3 + width * width / 12) + block * (at * at + pad_side * pad_side / 6);
         const Real weight = standard_gravity * (rod * length / 2 + block * at);
         const Real amplitude = 2 * std::asin(spin * std::sqrt(inertia / weight) / 2);
         const Real expected = 4 * std::sqrt(inertia / weight) * std::comp_ellint_1(std::sin(amplitude / 2));
@@ -322,7 +226,8 @@ TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties]")
         while (passages.size() < 3 && world.time() < 5) {
             REQUIRE(world.advance(h).ok());
             const Real now = world.center_of_mass(rigid).x();
-            if (world.time() > 0.1 && (before > 0) != (now > 0)) passages.push_back(world.time() - h * now / (now - before));
+            if (world.time() > 0.1 && (before > 0) != (now > 0))
+                passages.push_back(world.time() - h * now / (now - before));
             before = now;
         }
         REQUIRE(passages.size() == 3);
@@ -334,13 +239,14 @@ TEST_CASE("a pad on a jointed rigid pendulum keeps the period", "[scene][ties]")
 }
 
 TEST_CASE("a light soft block carries a body of ten thousand times its mass", "[scene][ties]") {
-    for (const SolverMethod method : {SolverMethod::automatic, SolverMethod::newton, SolverMethod::pgs}) {
+    for (const SolverMethod method : {SolverMethod::automatic, SolverMethod::newton}) {
         Settings settings = accurate();
         settings.method = method;
         World world(settings);
         const Mesh small = mesh::box({0.05, 0.05, 0.05}, {1, 1, 1}), large = mesh::box({0.5, 0.5, 0.5}, {1, 1, 1});
-        const BodyHandle soft = world.add_body(small, {.material = world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3}),
-                                                       .dynamics = BodyDynamics::implicit_elastic});
+        const BodyHandle soft =
+            world.add_body(small, {.material = world.add_material({.young_modulus = 1e9, .poisson_ratio = 0.3}),
+                                   .dynamics = BodyDynamics::implicit_elastic});
         const BodyHandle heavy = world.add_body(large, {.material = world.add_material({.density = 10000}),
                                                         .position = {0, 0, -0.275},
                                                         .dynamics = BodyDynamics::rigid});
@@ -366,9 +272,12 @@ TEST_CASE("tied blocks slide with friction as one block", "[scene][ties]") {
     World world(accurate(tilted_gravity(degrees)));
     const MaterialHandle of = world.add_material({.young_modulus = 1e6, .friction = mu, .damping = 100});
     world.add_collider(Plane{});
-    const Mesh block = mesh::box({side, side, side / 2}, {2, 2, 1}), above = mesh::box({side, side, side / 2}, {3, 3, 1});
-    const BodyHandle lower = world.add_body(
-        block, {.material = of, .position = {0, 0, side / 4}, .contact_distance = 0, .dynamics = BodyDynamics::implicit_elastic});
+    const Mesh block = mesh::box({side, side, side / 2}, {2, 2, 1}),
+               above = mesh::box({side, side, side / 2}, {3, 3, 1});
+    const BodyHandle lower = world.add_body(block, {.material = of,
+                                                    .position = {0, 0, side / 4},
+                                                    .contact_distance = 0,
+                                                    .dynamics = BodyDynamics::implicit_elastic});
     const BodyHandle upper = world.add_body(
         above, {.material = of, .position = {0, 0, 3 * side / 4}, .dynamics = BodyDynamics::explicit_elastic});
     std::vector<Index> bottom;
@@ -390,12 +299,13 @@ TEST_CASE("a slide holds along the normal only", "[scene][ties]") {
     const MaterialHandle of = world.add_material({.young_modulus = 1e6});
     const ColliderHandle plane = world.add_collider(Plane{});
     const Mesh cube = mesh::box({side, side, side}, {2, 2, 2});
-    const BodyHandle body =
-        world.add_body(cube, {.material = of, .position = {0, 0, side / 2}, .dynamics = BodyDynamics::explicit_elastic});
+    const BodyHandle body = world.add_body(
+        cube, {.material = of, .position = {0, 0, side / 2}, .dynamics = BodyDynamics::explicit_elastic});
     std::vector<Index> bottom;
     for (std::size_t n = 0; n < cube.nodes.size(); ++n)
         if (cube.nodes[n].z() < -0.049) bottom.push_back(static_cast<Index>(n));
-    const TieHandle tie = Ties(world).add({.kind = TieKind::slide, .body = body, .nodes = bottom, .to_collider = plane});
+    const TieHandle tie =
+        Ties(world).add({.kind = TieKind::slide, .body = body, .nodes = bottom, .to_collider = plane});
     REQUIRE(world.advance(0.5).ok());
     const TieState state = Ties(world).state(tie);
     CHECK(world.center_of_mass(body).x() == Approx(0.25).epsilon(1e-2));
@@ -404,7 +314,8 @@ TEST_CASE("a slide holds along the normal only", "[scene][ties]") {
 }
 
 TEST_CASE("every solver method gives the same motion of tied bodies", "[scene][ties]") {
-    for (const BodyDynamics dynamics : {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
+    for (const BodyDynamics dynamics :
+         {BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic, BodyDynamics::rigid}) {
         std::vector<Vec3> expected;
         for (const auto& [method, name] : EnumNames<SolverMethod>::table) {
             Settings settings = without_gravity(1e-9);
@@ -416,7 +327,8 @@ TEST_CASE("every solver method gives the same motion of tied bodies", "[scene][t
             const auto positions = bar.world.positions(bar.right);
             if (expected.empty()) expected.assign(positions.begin(), positions.end());
             Real worst = 0;
-            for (std::size_t n = 0; n < expected.size(); ++n) worst = std::max(worst, (positions[n] - expected[n]).norm());
+            for (std::size_t n = 0; n < expected.size(); ++n)
+                worst = std::max(worst, (positions[n] - expected[n]).norm());
             CAPTURE(static_cast<int>(dynamics), name);
             CHECK(worst < 1e-9);
             CHECK(bar.world.report().unconverged == 0);
@@ -480,6 +392,42 @@ TEST_CASE("ties refuse wrong settings by name", "[scene][ties]") {
     CHECK_THAT(message({.kind = TieKind::slide, .body = bar.left, .nodes = {0}}), Contains("no surface"));
     CHECK_THAT(message({.body = bar.left, .nodes = {0}, .break_force = 0}), Contains("break_force"));
     CHECK(Ties(bar.world).all().size() == 1);
+}
+
+TEST_CASE("scenes tie a set, a box or nodes of a body to another object", "[scene][ties]") {
+    const auto load = [](const std::string& tie) {
+        return load_scene_text(R"({"name": "tied", "seconds": 1, "settings": {"gravity": [0, 0, -10]},
+            "materials": {"steel": {"young_modulus": 1e9}},
+            "bodies": [
+                {"name": "pad", "mesh": {"box": {"size": [0.1, 0.1, 0.1]}}, "material": "steel", "dynamics": "implicit",
+                 "sets": {"top": {"half_space": {"point": [0, 0, 0.05]}}}},
+                {"name": "block", "mesh": {"box": {"size": [0.1, 0.1, 0.1]}}, "material": "steel", "dynamics": "rigid",
+                 "position": [0, 0, -0.1]}],
+            "colliders": [{"name": "roof", "shape": {"plane": {"normal": [0, 0, -1]}}, "position": [0, 0, 0.05]}],
+            "ties": [)" + tie + "]}",
+                               ".", {});
+    };
+    Scene scene = load(R"({"body": "pad", "set": "top", "to_collider": "roof"},
+        {"body": "pad", "box": {"lower": [-1, -1, -0.05], "upper": [1, 1, -0.04]}, "to_body": "block", "break_force": 1e6})");
+    REQUIRE(scene.world.advance(1).ok());
+    const Ties ties(scene.world);
+    REQUIRE(ties.all().size() == 2);
+    CHECK(ties.state(ties.all()[0]).force.z() == Approx(20).epsilon(1e-3));
+    CHECK(ties.state(ties.all()[1]).force.z() == Approx(-10).epsilon(1e-3));
+    CHECK(ties.state(ties.all()[1]).break_force == 1e6);
+    const auto message = [&](const std::string& tie) {
+        try {
+            load(tie);
+        } catch (const SceneError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    using Catch::Contains;
+    CHECK_THAT(message(R"({"body": "pad", "set": "side"})"), Contains("ties[0].set") && Contains("top"));
+    CHECK_THAT(message(R"({"body": "pda", "set": "top"})"), Contains("ties[0].body") && Contains("pda"));
+    CHECK_THAT(message(R"({"body": "pad", "set": "top", "break_force": -1})"), Contains("break_force"));
+    CHECK_THAT(message(R"({"body": "block", "nodes": [0]})"), Contains("ties[0]") && Contains("which is rigid"));
 }
 
 }  // namespace skerry::test::ties_test

@@ -23,8 +23,8 @@ struct TieSettings {
     // At most one of the two may be given. A tie of kind `slide` needs one of them, since the world has no surface.
     std::optional<BodyHandle> to_body{};
     std::optional<ColliderHandle> to_collider{};
-    // Force at which a node breaks off, > 0 [N]. It applies to each node: a node breaks off at the end of the first step
-    // in which its force is greater. The default is a tie that does not break.
+    // Force at which a node breaks off, > 0 [N]. It applies to each node: the node breaks off at the end of the first
+    // step in which its force is greater. By default, a tie does not break.
     Real break_force = infinity;
     // false: each node keeps its distance from the surface. true: the distance is closed at Settings::recovery_speed.
     bool close_gap = false;
@@ -34,9 +34,9 @@ struct TieSettings {
 
 /// State of a tied node.
 struct TiedNode {
-    Index node = 0;             // number in the mesh of the body
-    Vec3 force = Vec3::Zero();  // force of the last step on the node [N]
-    Real error = 0;             // distance of the node from the place that the tie demands [m]
+    Index node = 0;                // number in the mesh of the body
+    Vec3 force = Vec3::Zero();     // force of the last step on the node [N]
+    Real error = 0;                // distance of the node from the place that the tie demands [m]
     std::optional<Real> broken{};  // time at which the node broke off [s]
 };
 
@@ -55,8 +55,9 @@ struct TieState {
 };
 
 /// A view of the ties of a world. It is valid until the world is moved or destroyed. Like the functions of World,
-/// functions that change ties may only be called between calls of advance. They throw SceneError and change nothing if a
-/// handle is stale or a value is out of range. Ties belong to the state of the world: they are saved, cloned and hashed.
+/// functions that change ties may only be called between calls of advance. They throw SceneError and change nothing if
+/// a handle is stale or a value is out of range. Ties belong to the state of the world: they are saved, cloned and
+/// hashed.
 class Ties {
 public:
     explicit Ties(World& world) : world_(&world) {}

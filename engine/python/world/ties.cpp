@@ -58,9 +58,8 @@ void bind_ties(WorldClass& type) {
         .def("alive", guarded([](World& world, const TieHandle& tie) { return Ties(world).alive(tie); }))
         .def("ties", guarded([](World& world) { return Ties(world).all(); }))
         .def("tie_state", guarded([](World& world, const TieHandle& tie) { return values_of(Ties(world).state(tie)); }))
-        .def("set_break_force", guarded([](World& world, const TieHandle& tie, Real force) {
-                 Ties(world).set_break_force(tie, force);
-             }));
+        .def("set_break_force",
+             guarded([](World& world, const TieHandle& tie, Real force) { Ties(world).set_break_force(tie, force); }));
 }
 
 }  // namespace skerry::python

@@ -13,8 +13,8 @@
 #include "engine/world/validate.h"
 #include "skerry/tie.h"
 #include "systems/collision/narrow/collider_distance.h"
+#include "systems/contact/prepare_ties.h"
 #include "systems/dynamics/motion/move_colliders.h"
-#include "systems/dynamics/ties/prepare_ties.h"
 
 namespace skerry {
 
@@ -283,8 +283,8 @@ TieState tie_state(const WorldState& world, TieHandle tie) {
     const Model& model = world.model;
     const auto t = static_cast<std::size_t>(model.row(tie, "tie"));
     const TieTable& table = model.ties;
-    TieInputs inputs = TieInputs::bind({}, table, model.bodies, model.nodes, model.rigid_bodies, model.colliders,
-                                       model.any_asleep);
+    TieInputs inputs =
+        TieInputs::bind({}, table, model.bodies, model.nodes, model.rigid_bodies, model.colliders, model.any_asleep);
     const std::vector<RigidMotion> poses = present_poses(world);
     inputs.motion = poses;
     TieState now;

@@ -15,7 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// Sets the stored impulses of the contacts, joints and ties of a body to zero. They are the warm start of the next step.
+/// Sets the stored impulses of the contacts, joints and ties of a body to zero. They are the warm start of the next
+/// step.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];

@@ -13,6 +13,8 @@
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/measure_contacts.h"
+#include "systems/contact/measure_ties.h"
+#include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/check_state.h"
@@ -24,8 +26,6 @@
 #include "systems/dynamics/motion/hold_axes.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
-#include "systems/dynamics/ties/measure_ties.h"
-#include "systems/dynamics/ties/prepare_ties.h"
 #include "systems/solver/solve_regions.h"
 
 namespace skerry {
@@ -68,10 +68,10 @@ struct StepFindings {
     JointMeasures joints;
     TieMeasures ties;
     Index released_ties = 0;  // number of ties of which the last node has broken off in this step
-    Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
-    Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
-    Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
-    Real damped = 0;       // energy dissipated by damping in this step [J]
+    Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight
+    Real relaxed = 0;         // energy dissipated by relaxation of the elements in this step [J]
+    Real viscous = 0;         // energy dissipated by the viscosity of implicit elements in this step [J]
+    Real damped = 0;          // energy dissipated by damping in this step [J]
     // Energy that the clusters have gained at the start of this attempt, because their matrices were updated for
     // stiffened elements [J].
     Real stiffened = 0;

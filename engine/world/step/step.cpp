@@ -6,6 +6,7 @@
 
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
+#include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
@@ -15,7 +16,6 @@
 #include "systems/dynamics/motion/move_colliders.h"
 #include "systems/dynamics/motion/update_sleep.h"
 #include "systems/dynamics/stability/watch_stable_steps.h"
-#include "systems/dynamics/ties/prepare_ties.h"
 #include "systems/forces/add_nodal_loads.h"
 
 namespace skerry {
@@ -122,7 +122,7 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
-    g.stage("dynamics/mark_led", mark_led,
+    g.stage("contact/mark_led", mark_led,
             inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
             write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),

@@ -137,7 +137,7 @@ struct RegionInputs {
     std::span<const Real> still_time{};  // [s]
     TouchPlaces touch{};                 // contact points on cylinders, and points of ties
 
-    /// True if the row is an equation (see FrictionLimits). The column `point` then holds the point of the first body at
+    /// True if the row is a tie, which is an equation (see FrictionLimits). The column `point` then holds the point at
     /// which the impulse acts on both partners.
     bool is_tie(Index row) const { return dynamic_friction[static_cast<std::size_t>(row)] == infinity; }
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }

@@ -121,8 +121,9 @@ private:
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
             // Vector from the core of a round body to the contact point on its surface.
-            const Vec3 beside = is_tie ? Vec3(Vec3::Zero()) : rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
-                                                        contact_normal(i), stage_.inputs.touch);
+            const Vec3 beside = is_tie ? Vec3(Vec3::Zero())
+                                       : rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
+                                                                 contact_normal(i), stage_.inputs.touch);
             term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
         }
         term.weight += weight;

@@ -25,26 +25,26 @@ Index store(const TieRowTable& rows, std::span<const Range> body_implicit, Real 
 }
 
 void list_tie_rows(WorldState& w, TaskGraph& g) {
-    g.stage("dynamics/prepare_ties", prepare, tie_inputs(w.model), value(w.scratch.parameters),
-            make(w.scratch.contacts), make(w.scratch.ties), if_any_tie(w.model));
+    g.stage("contact/prepare_ties", prepare, tie_inputs(w.model), value(w.scratch.parameters), make(w.scratch.contacts),
+            make(w.scratch.ties), if_any_tie(w.model));
 }
 
 void list_taken_rows(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    g.stage_with_result("dynamics/take_tie_rows", w.scratch.findings.ties, take_tie_rows,
+    g.stage_with_result("contact/take_tie_rows", w.scratch.findings.ties, take_tie_rows,
                         inputs<TieWorkInputs>(m.nodes, m.bodies, m.rigid_bodies), make(w.scratch.contacts),
                         make(w.scratch.ties), if_any_tie(m));
 }
 
 void list_led_bodies(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    g.stage("dynamics/keep_led_awake", keep_led_awake, tie_inputs(m), value(w.scratch.parameters.h),
+    g.stage("contact/keep_led_awake", keep_led_awake, tie_inputs(m), value(w.scratch.parameters.h),
             write(m.bodies.still_time), if_any_tie(m), if_taken(w));
 }
 
 void list_tie_memory(WorldState& w, TaskGraph& g) {
     Model& m = w.model;
-    g.stage_with_result("dynamics/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
+    g.stage_with_result("contact/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
                         read(m.bodies.implicit), value(w.clock.time), value(w.scratch.parameters), make(m.ties),
                         if_any_tie(m), if_taken(w));
 }

@@ -68,7 +68,8 @@ struct TieInputs {
         return rows.size() > 0 ? rows.begin : no_index;
     }
     bool deforms(Index body) const {
-        return body != no_index && (frame(body) == no_index || body_implicit[static_cast<std::size_t>(body)].size() > 0);
+        return body != no_index &&
+               (frame(body) == no_index || body_implicit[static_cast<std::size_t>(body)].size() > 0);
     }
     /// Row of NodeTable of a node that is numbered as in the mesh of its body.
     Index row_of(Index body, Index node) const { return body_nodes[static_cast<std::size_t>(body)].begin + node; }

@@ -1,4 +1,4 @@
-#include "systems/dynamics/ties/measure_ties.h"
+#include "systems/contact/measure_ties.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "systems/dynamics/ties/prepare_ties.h"
+#include "systems/contact/prepare_ties.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -63,9 +63,9 @@ FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, 
     at.velocity = (ties.momentum[r] + ties.kick[r]) / ties.mass[r] + at.turning;
     at.acceleration = spin.cross(at.turning);
     if (ties.holder[r] == no_index)
-        at.acceleration += (ties.spins.inverse_inertia[r] *
-                            (ties.spins.angular_momentum[r] + ties.spins.moment_kick[r]).cross(spin))
-                               .cross(arm);
+        at.acceleration +=
+            (ties.spins.inverse_inertia[r] * (ties.spins.angular_momentum[r] + ties.spins.moment_kick[r]).cross(spin))
+                .cross(arm);
     if (node != no_index)
         at.acceleration += 2 * spin.cross(ties.velocity_next[static_cast<std::size_t>(node)] - at.velocity);
     return at;
@@ -117,7 +117,8 @@ public:
     Vec3 demanded() const {
         const TieTable& tie = ties_.tie;
         const Index second = tie.second[t_], first_frame = ties_.frame(tie.first[t_]), frame = ties_.frame(second);
-        const FrameMotion of_first = frame_motion(ties_, first_frame, point(), first_frame == no_index ? no_index : node_);
+        const FrameMotion of_first =
+            frame_motion(ties_, first_frame, point(), first_frame == no_index ? no_index : node_);
         const FrameMotion of_second = frame_motion(ties_, frame, point(), no_index);
         Vec3 velocity = Vec3::Zero();
         if (tie.collider[t_] != no_index)

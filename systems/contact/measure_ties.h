@@ -18,9 +18,9 @@ struct TieMeasures {
 
 /// Nodes and bodies after the solve.
 struct TieWorkInputs {
-    std::span<const Real> inverse_mass;                   // by node [1/kg]
-    std::span<const Vec3> position;                       // by node [m]
-    std::span<const Vec3> velocity, velocity_next;        // by node [m/s]
+    std::span<const Real> inverse_mass;             // by node [1/kg]
+    std::span<const Vec3> position;                 // by node [m]
+    std::span<const Vec3> velocity, velocity_next;  // by node [m/s]
     RoundSpins spins;
 
     static TieWorkInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
