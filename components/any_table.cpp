@@ -19,6 +19,7 @@
 #include "components/resting_contact_table.h"
 #include "components/rigid_body_table.h"
 #include "components/surface_table.h"
+#include "components/tie_table.h"
 
 namespace skerry {
 
@@ -86,6 +87,8 @@ template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();
 template std::span<const ColumnInfo> columns_of<SurfaceTables>();
 template std::span<const ColumnInfo> columns_of<TetrahedronBlockTable>();
+template std::span<const ColumnInfo> columns_of<TieRowTable>();
+template std::span<const ColumnInfo> columns_of<TieTable>();
 template std::span<const ColumnInfo> columns_of<TriangleTable>();
 template std::span<const ColumnInfo> columns_of<VertexTable>();
 template std::span<const ColumnInfo> columns_of<WarmStartTable>();

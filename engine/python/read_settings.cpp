@@ -221,6 +221,9 @@ void read(nb::handle from, JointPassive& to) {
 void read(nb::handle from, JointMotor& to) {
     read_members(from, to);
 }
+void read(nb::handle from, TieSettings& to) {
+    read_members(from, to);
+}
 void read(nb::handle from, ProblemSettings& to) {
     read_members(from, to);
 }

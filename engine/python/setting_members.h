@@ -12,6 +12,7 @@
 #include "skerry/joint.h"
 #include "skerry/problem.h"
 #include "skerry/settings.h"
+#include "skerry/tie.h"
 #include "skerry/world.h"
 
 namespace skerry::python {
@@ -143,6 +144,13 @@ void for_each_setting(Is<JointMotor> auto& s, auto&& visit) {
     visit("keys", s.keys);
 }
 
+void for_each_setting(Is<TieSettings> auto& s, auto&& visit) {
+    visit("kind", s.kind);
+    visit("break_force", s.break_force);
+    visit("close_gap", s.close_gap);
+    visit("bodies_touch", s.bodies_touch);
+}
+
 void for_each_setting(Is<ProblemSettings> auto& s, auto&& visit) {
     visit("method", s.method);
     visit("friction", s.friction);
@@ -197,6 +205,7 @@ static_assert(has_size<JointSettings, 15, std::optional<JointMotor>, JointPassiv
 static_assert(has_size<JointPassive, 4>);
 static_assert(has_size<MotorKey, 5>);
 static_assert(has_size<JointMotor, 6, std::vector<MotorKey>>);
+static_assert(has_size<TieSettings, 8, std::vector<Index>>);
 static_assert(has_size<ProblemSettings, 4>);
 
 /// True for the structs that have members listed here.

@@ -126,6 +126,13 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
         if (joint.second) settings.second = bodies[*joint.second];
         joints.push_back(called_at(joint.place, [&] { return Joints(world).add(settings); }));
     }
+    for (const TiePlan& tie : plan.ties) {
+        TieSettings settings = tie.settings;
+        settings.body = bodies[tie.body];
+        if (tie.to_body) settings.to_body = bodies[*tie.to_body];
+        if (tie.to_collider) settings.to_collider = colliders[*tie.to_collider];
+        called_at(tie.place, [&] { return Ties(world).add(settings); });
+    }
     called_at(top, [&] { world.settle_start(); });
     for (const ProbePlan& probe : plan.probes) scene.probes.push_back({probe.name, bodies[probe.body], probe.nodes});
     for (const SeriesPlan& series : plan.series)

@@ -10,6 +10,7 @@
 #include "engine/scene/values.h"
 #include "skerry/joint.h"
 #include "skerry/settings.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -155,6 +156,12 @@ struct ColliderEntry {
                   collision_mask = ColliderSettings{}.collision_mask;
     Place place;
 };
+/// A point that is fixed to a body, to a collider, or to the world.
+struct AnchorEntry {
+    std::optional<std::string> body, collider;
+    Vec3 point = Vec3::Zero();  // position in the own frame of the mesh or collider, or in the world [m]
+    Place place;
+};
 struct MotorEntry {
     std::optional<Real> speed, position;
     std::vector<MotorKey> keys;
@@ -172,6 +179,13 @@ struct JointEntry {
     JointPassive passive;
     bool bodies_touch = JointSettings{}.bodies_touch;
     Place place;
+};
+struct TieEntry : PartEntry {
+    TieKind kind = TieKind::weld;
+    std::string body;
+    std::optional<std::string> to_body, to_collider;
+    std::optional<Real> break_force;
+    bool close_gap = false, bodies_touch = false;
 };
 /// Quantity that a probe records. `contacts`: sticking and sliding of a part of a body, for the report. All other
 /// quantities are time series of numbers, for a file.
@@ -211,6 +225,7 @@ struct SceneFile {
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;
+    std::vector<TieEntry> ties;
     std::vector<ProbeEntry> probes;
     std::optional<Real> probe_step;
 };

@@ -12,6 +12,7 @@
 #include "engine/scene/place.h"
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
+#include "skerry/anchor.h"
 #include "skerry/scene.h"
 
 namespace skerry {
@@ -40,11 +41,22 @@ struct ColliderPlan {
     ColliderSettings settings;
     Place place;
 };
+struct AnchorPlan {
+    std::optional<std::size_t> body{}, collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
+    // Position in the own frame of the mesh or collider; without body and collider: in the world [m].
+    Vec3 point = Vec3::Zero();
+};
 struct JointPlan {
     std::string name;
     std::size_t first = 0;                // index in ScenePlan::bodies
     std::optional<std::size_t> second{};  // index in ScenePlan::bodies
     JointSettings settings;               // settings without body handles, because handles exist only in a built world
+    Place place;
+};
+struct TiePlan {
+    std::size_t body = 0;                                 // index in ScenePlan::bodies
+    std::optional<std::size_t> to_body{}, to_collider{};  // indices in ScenePlan::bodies and ScenePlan::colliders
+    TieSettings settings;  // settings without handles, because handles exist only in a built world
     Place place;
 };
 struct ProbePlan {
@@ -79,6 +91,7 @@ struct ScenePlan {
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
     std::vector<JointPlan> joints;
+    std::vector<TiePlan> ties;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;
     Real probe_step = 0;  // [s]
@@ -105,6 +118,24 @@ const MeshSet& find_set(const std::string& name, const Mesh& mesh, const std::ma
 std::string expected_set(const Mesh& mesh, const std::map<std::string, MeshSet>& sets);
 /// Resolves the sets of a body in a scene file.
 std::map<std::string, MeshSet> plan_sets(const Named<SetEntry>& entries, const Mesh& mesh, const Place& place);
+
+/// Returns the index of a body or a collider in a plan. Throws SceneError if the plan has none of this name.
+std::size_t find_body(const ScenePlan& plan, const std::string& name, const Place& place);
+std::size_t find_collider(const ScenePlan& plan, const std::string& name, const Place& place);
+
+/// Resolves the names of an anchor. The plan must already contain all bodies and colliders.
+AnchorPlan plan_anchor(const AnchorEntry& entry, const ScenePlan& plan);
+
+/// Bodies and colliders of a world that is being built, in the order of the plan.
+struct PlannedHandles {
+    const std::vector<BodyHandle>& bodies;
+    const std::vector<ColliderHandle>& colliders;
+};
+/// Returns a planned anchor in the form that a world takes.
+Anchor anchor_of(const AnchorPlan& anchor, const ScenePlan& plan, const World& world, const PlannedHandles& handles);
+
+/// Resolves the names and nodes of a tie. The plan must already contain all bodies and colliders.
+TiePlan plan_tie(const TieEntry& entry, const ScenePlan& plan);
 
 /// Adds a probe to a plan that already contains all bodies, colliders and joints.
 void plan_probe(const ProbeEntry& entry, ScenePlan& plan);

@@ -145,13 +145,15 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
-/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies are hashed, not their rows.
+/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies and colliders are hashed, not their
+/// rows.
 void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
     add_row_state(hash, table, row);
     for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
-        const auto* const bodies = reinterpret_cast<const Index*>(table.column(info).read());
-        hash.add(slot_of(model.bodies.slot, bodies[row]));
+        if (info.role != ColumnRole::body && info.role != ColumnRole::collider) continue;
+        const std::span<const std::uint32_t> slot =
+            info.role == ColumnRole::body ? model.bodies.slot.span() : model.colliders.slot.span();
+        hash.add(slot_of(slot, reinterpret_cast<const Index*>(table.column(info).read())[row]));
     }
 }
 
@@ -164,6 +166,17 @@ void add_keys(Hash& hash, const Table& table) {
         hash.add(table.slot[row]);
         add_rows(hash, keys);
         hash.add(keys.size());
+    }
+}
+
+/// Hashes the tied nodes of all ties.
+void add_tied_nodes(Hash& hash, TieTable& table) {
+    for (const std::size_t row : in_slot_order(table.slot)) {
+        const auto begin = static_cast<std::size_t>(table.nodes[row].begin),
+                   count = static_cast<std::size_t>(table.nodes[row].size());
+        table.for_each_node_column(
+            [&](const char*, auto& column, ColumnRole) { add_rows(hash, AnyColumn(column), begin, count); });
+        hash.add(count);
     }
 }
 
@@ -246,6 +259,7 @@ std::uint64_t state_hash(WorldState& world) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
         if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
     });
+    add_tied_nodes(hash, model.ties);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {

@@ -47,6 +47,7 @@ from ._settings import (
     StartOverlaps,
     Surface,
     SurfaceMesh,
+    TieKind,
 )
 from ._sweep import sweep
 from ._world import (
@@ -66,6 +67,8 @@ from ._world import (
     StartOverlap,
     StepLimitReport,
     StepReport,
+    Tie,
+    TieState,
     World,
     WorldReport,
 )
@@ -162,6 +165,9 @@ __all__ = [
     "Surface",
     "SurfaceHit",
     "SurfaceMesh",
+    "Tie",
+    "TieKind",
+    "TieState",
     "VelocityProbe",
     "VolumeProbe",
     "World",

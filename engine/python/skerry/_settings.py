@@ -25,6 +25,7 @@ MaterialModel: TypeAlias = Literal["linear", "corotational", "stable_neo_hookean
 ElementKind: TypeAlias = Literal["linear", "smoothed", "edge_smoothed", "edge_node_smoothed"]
 Dynamics: TypeAlias = Literal["explicit", "rigid", "implicit", "automatic"]
 JointKind: TypeAlias = Literal["ball", "hinge", "slider", "fixed"]
+TieKind: TypeAlias = Literal["weld", "slide"]
 
 Given = TypeVar("Given", contravariant=True)
 Held = TypeVar("Held", covariant=True)
@@ -442,4 +443,5 @@ __all__ = [
     "StartOverlaps",
     "Surface",
     "SurfaceMesh",
+    "TieKind",
 ]

@@ -5,8 +5,10 @@
 #include <span>
 #include <string>
 
+#include "components/pair_table.h"
 #include "engine/world/world_state.h"
 #include "skerry/joint.h"
+#include "skerry/tie.h"
 
 namespace skerry {
 
@@ -27,10 +29,21 @@ void hold_here(Model& model, std::size_t body, Real now);
 /// Enables all disabled pairs of a body or collider. Must be called before the slot of this object is reused.
 void enable_pairs_of(BodyHandle body, DisabledPairTable& disabled);
 void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
+/// Enables a disabled pair during a call of advance. `first`: row of BodyTable; `second`: row of BodyTable or
+/// ColliderTable, as `kind` says.
+void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
 
 // control_joints.cpp
 
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.
 JointState joint_state(const Model& model, JointHandle joint);
+
+// control_ties.cpp
+
+/// Returns the state of a tie, with the forces of the last step.
+TieState tie_state(const WorldState& world, TieHandle tie);
+/// Enables the collisions that ties have switched off, for each tie whose nodes have all broken off. Must be called
+/// after a step in which the last node of a tie has broken off.
+void release_ties(WorldState& world);
 
 }  // namespace skerry

@@ -83,6 +83,15 @@ void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled) {
     enable_if(disabled.key, [&](const PairSlots& pair) { return pair.is_collider && pair.second == collider.slot; });
 }
 
+void enable_pair(WorldState& world, PairKind kind, Index first, Index second) {
+    Column<std::uint64_t>& disabled = world.model.disabled_pairs.key;
+    const std::uint64_t key = pair_key(world.model.bodies, world.model.colliders, kind, first, second);
+    const auto place = std::lower_bound(disabled.begin(), disabled.end(), key);
+    if (place == disabled.end() || *place != key) return;
+    disabled.erase(static_cast<std::size_t>(place - disabled.begin()), 1);
+    world.cache.forget_body(world.model, static_cast<std::size_t>(first));
+}
+
 CollisionGroups World::collision_groups(BodyHandle body) const {
     const auto row = static_cast<std::size_t>(state_->model.row(body, "collision_groups"));
     const CollisionFilter& filter = state_->model.bodies.filter[row];

@@ -15,7 +15,8 @@ namespace skerry {
 
 namespace {
 
-/// Sets the stored impulses of the contacts and joints of a body to zero. They are the warm start of the next step.
+/// Sets the stored impulses of the contacts, joints and ties of a body to zero. They are the warm start of the next
+/// step.
 void forget_impulses(WorldState& world, std::size_t body) {
     Model& model = world.model;
     const std::uint32_t slot = model.bodies.slot[body];
@@ -33,6 +34,12 @@ void forget_impulses(WorldState& world, std::size_t body) {
         joints.impulse[j] = joints.moment[j] = Vec3::Zero();
         joints.coordinate[j] = joints.step[j] = 0;
         joints.axis_impulse[j] = {};
+    }
+    TieTable& ties = model.ties;
+    for (std::size_t t = 0; t < ties.size(); ++t) {
+        if (ties.first[t] != static_cast<Index>(body) && ties.second[t] != static_cast<Index>(body)) continue;
+        std::ranges::fill(rows_of(ties.impulse, ties.nodes[t]), Vec3::Zero());
+        ties.step[t] = 0;
     }
 }
 
@@ -136,6 +143,7 @@ void World::reset(const World& saved) {
     now.model.collider_map.differ_from(before.model.collider_map);
     now.model.attachment_map.differ_from(before.model.attachment_map);
     now.model.joint_map.differ_from(before.model.joint_map);
+    now.model.tie_map.differ_from(before.model.tie_map);
     std::swap(now.executor, before.executor);
     now.record.tracing = before.record.tracing;
     std::swap(now.record.problem_watch, before.record.problem_watch);

@@ -320,13 +320,15 @@ void check_rigid_bodies(const SavedFile& file, const RigidBodyTable& table) {
     }
 }
 
-/// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies.
-void check_joined_bodies(const SavedFile& file, const Model& model, const char* name, AnyTable table) {
+/// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies and colliders.
+void check_joined_objects(const SavedFile& file, const Model& model, const char* name, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
+        if (info.role != ColumnRole::body && info.role != ColumnRole::collider) continue;
         const AnyColumn column = table.column(info);
         const std::span<const Index> rows(reinterpret_cast<const Index*>(column.read()), column.size());
-        expect_rows_of(file, std::string(name) + "/" + info.name, rows, model.bodies.slot.size(), true);
+        const std::size_t count =
+            info.role == ColumnRole::body ? model.bodies.slot.size() : model.colliders.slot.size();
+        expect_rows_of(file, std::string(name) + "/" + info.name, rows, count, true);
     }
 }
 
@@ -393,6 +395,39 @@ void check_joints(const SavedFile& file, const Model& model) {
     }
 }
 
+void check_ties(const SavedFile& file, const Model& model) {
+    const TieTable& table = model.ties;
+    expect_partition(file, "ties/nodes", table.nodes, table.node.size());
+    AnyTable all(const_cast<TieTable&>(table));
+    for (const ColumnInfo& info : all.columns())
+        if (!info.has_row_each)
+            expect_size(file, std::string("ties/") + info.name, all.column(info).size(), table.node.size());
+    expect_rows_of(file, "ties/collider", table.collider, model.colliders.slot.size(), true);
+    expect_between(file, "ties/step", table.step, 0.0, infinity);
+    for (std::size_t t = 0; t < table.size(); ++t) {
+        const auto require = [&](bool good, const char* column, const char* found, const char* expected) {
+            if (!good) file.complain(std::string("ties/") + column, at_row(found, t), expected);
+        };
+        const Index first = table.first[t], second = table.second[t];
+        require(first != no_index && !model.is_rigid(static_cast<std::size_t>(first)), "first",
+                "-1 (the world) or a rigid body", "the index of a deformable body");
+        require(second != first && (second == no_index || table.collider[t] == no_index), "second",
+                "the first body, or a body beside a collider", "the index of another body, or -1");
+        require(table.break_force[t] > 0, "break_force", "a force that is not positive", "a force > 0 (N)");
+        const bool deforms = second != no_index && !model.is_rigid(static_cast<std::size_t>(second));
+        const auto is_node = [&](Index body, Index node) {
+            return node >= 0 && node < model.bodies.nodes[static_cast<std::size_t>(body)].size();
+        };
+        for (Index row = table.nodes[t].begin; row < table.nodes[t].end; ++row) {
+            const auto k = static_cast<std::size_t>(row);
+            require(is_node(first, table.node[k]), "node", "a node that does not exist", "a node of the first body");
+            for (const Index corner : table.corner[k])
+                require(!deforms || is_node(second, corner), "corner", "a node that does not exist",
+                        "a node of the second body");
+        }
+    }
+}
+
 void check_implicit_nodes(const SavedFile& file, const ImplicitNodeTable& table) {
     for (std::size_t row = 0; row < table.size(); ++row) {
         const std::string found = "a value that is not finite at row " + std::to_string(row);
@@ -417,8 +452,9 @@ void check_model(const SavedFile& file, Model& model) {
     check_clusters(file, model);
     check_rigid_bodies(file, model.rigid_bodies);
     model.for_each_joining(
-        [&](const char* name, auto& table, auto&) { check_joined_bodies(file, model, name, table); });
+        [&](const char* name, auto& table, auto&) { check_joined_objects(file, model, name, table); });
     check_joints(file, model);
+    check_ties(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);
 }

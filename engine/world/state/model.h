@@ -28,6 +28,7 @@
 #include "components/rigid_body_table.h"
 #include "components/step_watch.h"
 #include "components/surface_table.h"
+#include "components/tie_table.h"
 #include "engine/world/state/field_cache.h"
 #include "engine/world/state/known_elements.h"
 #include "engine/world/tuning.h"
@@ -102,12 +103,14 @@ struct Model {
     ColliderTable colliders;
     AttachmentTable attachments;
     JointTable joints;
+    TieTable ties;
     DisabledPairTable disabled_pairs;
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
+    HandleMap<TieHandle> tie_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
     std::vector<ColliderRecord> collider_records;  // one record for each row of ColliderTable
@@ -135,6 +138,7 @@ struct Model {
     Index row(MaterialHandle material, const char* call) const;
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
+    Index row(TieHandle tie, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
     ElementInputs all_elements() const;
@@ -227,12 +231,16 @@ struct Model {
         visit("colliders", colliders);
         visit("attachments", attachments);
         visit("joints", joints);
+        visit("ties", ties);
         visit("disabled_pairs", disabled_pairs);
     }
     /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
     /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
     /// their rows with a body.
-    void for_each_joining(auto&& visit) { visit("joints", joints, joint_map); }
+    void for_each_joining(auto&& visit) {
+        visit("joints", joints, joint_map);
+        visit("ties", ties, tie_map);
+    }
 };
 
 }  // namespace skerry

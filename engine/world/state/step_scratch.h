@@ -7,11 +7,14 @@
 #include "components/implicit_coupling.h"
 #include "components/joint_table.h"
 #include "components/region_table.h"
+#include "components/tie_table.h"
 #include "engine/world/tuning.h"
 #include "skerry/settings.h"
 #include "systems/collision/inputs/collision_inputs.h"
 #include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/measure_contacts.h"
+#include "systems/contact/measure_ties.h"
+#include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/check_state.h"
@@ -64,10 +67,12 @@ struct StepFindings {
     ExternalWork held, held_again;
     TakenByRest rest;
     JointMeasures joints;
-    Index unstrained = 0;  // number of bodies whose elements are skipped, because they are undeformed in free flight
-    Real relaxed = 0;      // energy dissipated by relaxation of the elements in this step [J]
-    Real viscous = 0;      // energy dissipated by the viscosity of implicit elements in this step [J]
-    Real damped = 0;       // energy dissipated by damping in this step [J]
+    TieMeasures ties;
+    Index released_ties = 0;  // number of ties of which the last node has broken off in this step
+    Index unstrained = 0;     // number of bodies whose elements are skipped, because they are undeformed in free flight
+    Real relaxed = 0;         // energy dissipated by relaxation of the elements in this step [J]
+    Real viscous = 0;         // energy dissipated by the viscosity of implicit elements in this step [J]
+    Real damped = 0;          // energy dissipated by damping in this step [J]
     // Energy that the clusters have gained at the start of this attempt, because their matrices were updated for
     // stiffened elements [J].
     Real stiffened = 0;
@@ -117,6 +122,7 @@ struct StepScratch {
     StepFindings findings;
     ContactTable contacts;
     JointBlockTable joints;
+    TieRowTable ties;
     RegionTable regions;
     Real awake_mass = 0;      // mass of bodies that are awake at the start of the step [kg]
     bool ran_inline = false;  // true if all stages ran on the calling thread

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/world/complaint.h"
+#include "engine/world/control/control.h"
 #include "engine/world/kernels.h"
 #include "engine/world/step/step.h"
 #include "jobs/arithmetic_scope.h"
@@ -274,6 +275,7 @@ StepReport World::advance(Real dt, const std::function<bool(const StepReport&)>&
         report.step_size = plan.h;
         world.drawn_behind = world.scratch.parameters.draws_late;
         if (world.scratch.findings.rest.bodies > 0) world.draw(true);
+        if (world.scratch.findings.released_ties > 0) release_ties(world);
         add_to_report(world, report);
         note_held(held_in_shapes(world, report.steps == 1), world, report);
         note_inversions(world, report);

@@ -9,13 +9,13 @@
 namespace skerry {
 
 Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
-    // Largest rotation of a body with a joint in a step [rad]. Joints keep their directions of the start of a step
-    // during the step. The resulting errors of energy and of the joint's position grow with the angle of rotation.
+    // Largest rotation of a body with a joint or tie in a step [rad]. Joints and ties keep their directions of the
+    // start of a step during the step. The resulting errors of energy and position grow with the angle of rotation.
     constexpr Real largest_turn = 0.1;
     const RigidBodyTable& rigid = model.rigid_bodies;
     Real step = shorter_than;
     const auto limit_by = [&](Index body) {
-        if (body == no_index) return;
+        if (body == no_index || !model.has_frame(static_cast<std::size_t>(body))) return;
         const auto r = static_cast<std::size_t>(model.bodies.rigid[static_cast<std::size_t>(body)].begin);
         const Real spin = spin_of(rigid.rotation[r], rigid.moments[r], rigid.angular_momentum[r]).norm();
         if (!(spin * step > largest_turn)) return;
@@ -25,6 +25,10 @@ Real step_of_turns(const Model& model, Real shorter_than, Index& fastest) {
     for (std::size_t j = 0; j < model.joints.slot.size(); ++j) {
         limit_by(model.joints.first[j]);
         limit_by(model.joints.second[j]);
+    }
+    for (std::size_t t = 0; t < model.ties.size(); ++t) {
+        limit_by(model.ties.first[t]);
+        limit_by(model.ties.second[t]);
     }
     return step;
 }

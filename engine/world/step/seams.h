@@ -45,6 +45,7 @@ struct MotionModel {
 /// stages of the law in one phase of the step. A null pointer means that the law has no stages in this phase.
 struct ConstraintLaw {
     ListStages find = nullptr;      // finds the rows of this step and the impulses with which the solver starts
+    ListStages take = nullptr;      // takes rows out of the contact table again that are not contacts, after the solve
     ListStages measure = nullptr;   // measures work, losses and errors of the rows after the solve
     ListStages check = nullptr;     // checks that no constraint is violated at the end of the step
     ListStages remember = nullptr;  // stores the impulses for the next step, if the step can be committed
@@ -52,7 +53,7 @@ struct ConstraintLaw {
 
 extern const ForceElement nodal_loads;
 extern const MotionModel explicit_nodes, node_clusters, rigid_bodies, implicit_bodies, held_axes;
-extern const ConstraintLaw contact_law, joint_law;
+extern const ConstraintLaw contact_law, joint_law, tie_law;
 
 /// All force elements. Nodal loads come first: their stage sets the total force on each node, to which the other force
 /// elements add.
@@ -61,8 +62,8 @@ inline constexpr std::array<const ForceElement*, 1> force_elements{&nodal_loads}
 /// frames of implicit bodies move like rigid bodies. Held axes come last, because they correct velocities.
 inline constexpr std::array<const MotionModel*, 5> motion_models{&explicit_nodes, &node_clusters, &rigid_bodies,
                                                                  &implicit_bodies, &held_axes};
-/// All constraint laws.
-inline constexpr std::array<const ConstraintLaw*, 2> constraint_laws{&contact_law, &joint_law};
+/// All constraint laws. Contacts come first, because the rows of ties follow the contacts in the contact table.
+inline constexpr std::array<const ConstraintLaw*, 3> constraint_laws{&contact_law, &joint_law, &tie_law};
 
 /// Condition of a stage that changes the state of the world: the stage runs only if the step can be committed.
 inline auto if_taken(const WorldState& world) {

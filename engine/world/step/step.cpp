@@ -6,6 +6,7 @@
 
 #include "engine/world/kernels.h"
 #include "engine/world/step/seams.h"
+#include "systems/contact/prepare_ties.h"
 #include "systems/contact/separate_regions.h"
 #include "systems/contact/sum_contact_impulses.h"
 #include "systems/dynamics/checks/measure_reactions.h"
@@ -65,6 +66,7 @@ void build_step(WorldState& w) {
     of_models<&MotionModel::couple>(w, g);
     g.begin_phase("Solve regions as concurrent jobs");
     solve(w, g);
+    of_laws<&ConstraintLaw::take>(w, g);
     of_laws<&ConstraintLaw::measure>(w, g);
     g.begin_phase("Apply impulses");
     of_models<&MotionModel::apply>(w, g);
@@ -120,6 +122,9 @@ void separate(WorldState& w, TaskGraph& g) {
             make(w.scratch.pressed), if_any_asleep);
     g.stage("dynamics/mark_driven", mark_driven, inputs<JointInputs>(m.joints, m.bodies, m.rigid_bodies, m.any_asleep),
             value(w.clock.time), value(p.h), write(w.scratch.pressed), if_any_asleep);
+    g.stage("contact/mark_led", mark_led,
+            inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep),
+            write(w.scratch.pressed), if_any_asleep);
     g.stage("contact/separate_regions", separate_regions, read(c.stencil), read(m.nodes.inverse_mass),
             inputs<NodeGroups>(m.clusters, m.nodes, m.bodies, m.rigid_bodies, w.scratch.joints),
             value(p.contact_regions), make(w.scratch.separation_memory), make(w.scratch.regions), write(c.region));

@@ -135,8 +135,11 @@ struct RegionInputs {
     std::span<const Index> first_body{}, second_body{};
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
-    TouchPlaces touch{};                 // data of contact points on cylinders
+    TouchPlaces touch{};                 // contact points on cylinders, and points of ties
 
+    /// True if the row is a tie, which is an equation (see FrictionLimits). The column `point` then holds the point at
+    /// which the impulse acts on both partners.
+    bool is_tie(Index row) const { return dynamic_friction[static_cast<std::size_t>(row)] == infinity; }
     bool clustered() const { return clusters != nullptr && !clusters->empty(); }
 
     /// The column `velocity` holds the node velocities at the start of the step.

@@ -27,9 +27,20 @@ inline Vec3 shortened(const Vec4& v) {
 
 /// Static and dynamic friction coefficients. An impulse inside the static cone sticks. An impulse outside of it slides
 /// with the dynamic coefficient.
+///
+/// If `slide` is infinite, the row is an equation (a tie): its impulse may also pull. It then stops the velocity along
+/// the normal if `stick` is zero, and the whole velocity if `stick` is infinite.
 struct FrictionLimits {
     Real stick, slide;
+
+    bool ties() const { return slide == infinity; }
 };
+
+/// Impulse of a row that is an equation, where `z` is the impulse that would stop all directions.
+template <class V>
+inline V project_tie(const V& z, const V& normal, FrictionLimits mu) {
+    return mu.stick == 0 ? V(normal.dot(z) * normal) : z;
+}
 
 /// Exact Coulomb solution of one contact with isotropic mobility. `z` is the impulse that would stop the contact. The
 /// tangential part is scaled down to the friction limit; the normal part is unchanged (docs/methods/friction.md 2.1).
@@ -37,7 +48,7 @@ struct FrictionLimits {
 template <class V>
 inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
-    if (along <= 0) return V::Zero();
+    if (along <= 0) return mu.ties() ? project_tie(z, normal, mu) : V(V::Zero());
     const V pressed = along * normal;
     if (mu.stick == 0) return pressed;
     const V tangential = z - pressed;
@@ -52,7 +63,7 @@ inline V project_coulomb(const V& z, const V& normal, FrictionLimits mu) {
 template <class V>
 inline V project_pyramid(const V& z, const V& normal, FrictionLimits mu) {
     const Real along = normal.dot(z);
-    if (along <= 0) return V::Zero();
+    if (along <= 0) return mu.ties() ? project_tie(z, normal, mu) : V(V::Zero());
     V result = along * normal;
     if (mu.stick == 0) return result;
     const TangentFrame frame = tangent_frame(shortened(normal));
@@ -94,6 +105,7 @@ inline V feasible_direction(const V& residual, const V& impulse, const V& normal
                             Friction friction) {
     const Real along = normal.dot(impulse);
     const Real growth = normal.dot(residual);
+    if (mu.ties()) return project_tie(residual, normal, mu);
     if (along <= 0) return std::max(Real(0), growth) * normal;
     if (mu.stick == 0) return growth * normal;
     // Relative distance from the cone surface below which a projected impulse counts as on the surface.

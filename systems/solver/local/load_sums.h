@@ -12,13 +12,14 @@ struct LoadSums {
     Real moving = 0;             // sum of |u|^2 / D over all contacts, closing or not, with the contact velocity u [J]
     Real inverse_diagonals = 0;  // sum of 1/D over the contacts, with the mobility D [kg]
     bool separating = true;      // true if no contact closes, so that zero impulses are the solution
-    bool frictionless = true;    // true if no contact has friction
-    bool one_friction = true;    // true if each contact has equal static and dynamic coefficients
+    bool frictionless = true;    // true if no contact has friction, and no row is a tie
+    // true if each contact has equal static and dynamic coefficients, and no row is a tie
+    bool one_friction = true;
 
     /// `u` is the velocity of the contact without impulses [m/s]
     void add(const LumpedContact& contact, Friction friction, const Vec4& u) {
-        frictionless &= contact.friction.stick == 0;
-        one_friction &= contact.friction.stick == contact.friction.slide;
+        frictionless &= contact.friction.stick == 0 && !contact.friction.ties();
+        one_friction &= contact.friction.stick == contact.friction.slide && !contact.friction.ties();
         if (contact.inverse_diagonal == 0) return;
         inverse_diagonals += contact.inverse_diagonal;
         moving += contact.inverse_diagonal * u.squaredNorm();

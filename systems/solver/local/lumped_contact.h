@@ -78,7 +78,7 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
 [[gnu::flatten]] inline Vec4 natural_map(const LumpedContact& contact, Friction friction, const Vec4& impulse,
                                          const Vec4& u) {
     const FrictionLimits mu = contact.friction;
-    if (friction == Friction::cone && mu.stick == mu.slide) {
+    if (friction == Friction::cone && mu.stick == mu.slide && !mu.ties()) {
         const Vec4 tangential = u - contact.normal.dot(u) * contact.normal;
         const Vec4 shifted = u + (mu.stick * tangential.norm()) * contact.normal;
         return impulse -
@@ -87,9 +87,9 @@ inline Real solve_contact(const LumpedContact& contact, Friction friction, Real 
     return impulse - project_friction(Vec4(impulse - contact.inverse_diagonal * u), contact.normal, mu, friction);
 }
 
-/// True if a contact with velocity u opens, so that it needs no impulse.
+/// True if a contact with velocity u opens, so that it needs no impulse. Ties do not open.
 inline bool separates(const LumpedContact& contact, const Vec4& u) {
-    return contact.normal.dot(u) >= 0;
+    return contact.normal.dot(u) >= 0 && !contact.friction.ties();
 }
 
 }  // namespace skerry

@@ -46,6 +46,11 @@ inline Real push_bias_turned(Real bias, Real normal_velocity, Real gap, Real slo
     return left < 0 ? std::max(left, loss) : left;
 }
 
+/// Normal impulse of the push, from the impulse that would stop the normal pseudo velocity. Only ties may pull.
+inline Real pushed_impulse(FrictionLimits mu, Real stopping) {
+    return mu.ties() ? stopping : std::max(Real(0), stopping);
+}
+
 /// Gauss-Seidel step of one contact on the pseudo velocities. `apply` changes the pseudo velocities by an impulse.
 /// Returns D (change of the impulse)^2 with the mobility D (LumpedContact::diagonal) [J]
 template <class Apply>
@@ -53,7 +58,7 @@ inline Real push_contact(const LumpedContact& contact, Real bias, Vec4* velocity
     Real along = bias;
     for (Index a = 0; a < contact.node_count; ++a)
         along += contact.weight[a] * contact.normal.dot(velocity[contact.node[a]]);
-    const Real next = std::max(Real(0), impulse - contact.inverse_diagonal * along);
+    const Real next = pushed_impulse(contact.friction, impulse - contact.inverse_diagonal * along);
     const Real change = next - impulse;
     if (change == 0) return 0;
     apply(contact, change * contact.normal, velocity);

@@ -15,7 +15,11 @@ struct CoulombAnswer {
     Mat3 derivative;
 };
 
-CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, Real mu) {
+CoulombAnswer answer_coulomb(const Vec3& z, const Vec3& normal, FrictionLimits limits) {
+    if (limits.ties())
+        return {project_tie(z, normal, limits),
+                limits.stick == 0 ? Mat3(normal * normal.transpose()) : Mat3::Identity()};
+    const Real mu = limits.slide;
     const Real along = normal.dot(z);
     if (!(along > 0)) return {Vec3::Zero(), Mat3::Zero()};
     const Vec3 tangential = z - along * normal;
@@ -38,7 +42,7 @@ public:
         memory_.change.resize(3 * op_.size());
         memory_.contact.clear();
         for (Index i = 0; i < op_.size(); ++i)
-            memory_.contact.push_back({op_.normal(i), op_.mobility(i), op_.limits(i).slide});
+            memory_.contact.push_back({op_.normal(i), op_.mobility(i), op_.limits(i)});
     }
 
     /// Takes steps until several steps in a row do not lower the error. The error may rise before the correct sets of
@@ -84,7 +88,7 @@ private:
         for (Index i = 0; i < op_.size(); ++i) {
             const NewtonMemory::Contact& contact = memory_.contact[i];
             const Vec4 z = contact.mobility > 0 ? Vec4(impulse_[i] + pull_[i] / contact.mobility) : Vec4(Vec4::Zero());
-            if (contact.normal.dot(z) > 0) {
+            if (contact.normal.dot(z) > 0 || (contact.mu.ties() && contact.mobility > 0)) {
                 memory_.active.push_back(i);
             } else {
                 memory_.change.segment<3>(3 * i) = -impulse_[i].head<3>();

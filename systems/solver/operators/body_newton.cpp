@@ -253,6 +253,8 @@ struct Answer {
     Vec3 way = Vec3::Zero();  // sliding direction; zero if the contact does not slide
 };
 Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
+    if (mu.ties())
+        return {project_tie(z, normal, mu), mu.stick == 0 ? Mat3(normal * normal.transpose()) : Mat3::Identity()};
     const Real along = normal.dot(z);
     if (!(along > 0)) return {Vec3::Zero(), Mat3::Zero(), true};
     const Vec3 tangential = z - along * normal;

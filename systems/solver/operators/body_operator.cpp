@@ -1,5 +1,6 @@
 #include "systems/solver/operators/body_operator.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -14,9 +15,13 @@ Vec4 in_frame(const Columns3& frame, const Vec4& vector) {
     return {frame[0].dot(vector), frame[1].dot(vector), frame[2].dot(vector), 0};
 }
 
-/// Impulse r of Coulomb's law for one contact in world axes. b = u - W_ii r is the velocity without this impulse, where
+/// Impulse r of one contact or tie in world axes. b = u - W_ii r is the velocity without this impulse, where
 /// u is the contact velocity and W_ii the diagonal block of the contact.
 Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
+    if (mu.ties()) {
+        if (mu.stick == 0) return -(part.frame[0].dot(b) / part.block.normal) * part.frame[0];
+        return padded(-(matrix_of(part.mobility).inverse() * b.head<3>()));
+    }
     const Vec3 local = in_frame(part.frame, b).head<3>();
     Vec3 impulse = solve_block(part.block, local, mu.stick);
     // A contact at the limit of static friction slides, so the dynamic coefficient applies.

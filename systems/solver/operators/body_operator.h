@@ -3,7 +3,6 @@
 // rigid body has two velocity rows: the velocity of its centre and its spin (docs/methods/rigid_bodies.md 3).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 #include "systems/solver/equations/body_equations.h"
 #include "systems/solver/equations/pool.h"
 #include "systems/solver/local/joint_law.h"
+#include "systems/solver/local/push_contact.h"
 #include "systems/solver/local/rigid_part.h"
 #include "systems/solver/operators/contact_operator.h"
 #include "systems/solver/operators/contact_runs.h"
@@ -91,7 +91,7 @@ public:
         if (!(mobility > 0)) return 0;
         const Vec4& normal = contact(i).normal;
         const Real along = bias + normal.dot(velocity_at(i, velocity));
-        const Real next = std::max(Real(0), impulse - along / mobility);
+        const Real next = pushed_impulse(limits(i), impulse - along / mobility);
         const Real change = next - impulse;
         if (change == 0) return 0;
         apply_undeformed(i, change * normal, velocity);

@@ -13,7 +13,8 @@ namespace skerry {
 struct NewtonMemory {
     struct Contact {
         Vec4 normal;
-        Real mobility, mu;
+        Real mobility;
+        FrictionLimits mu;
     };
 
     Eigen::MatrixXd operator_matrix;  // W

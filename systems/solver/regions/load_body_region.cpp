@@ -113,6 +113,7 @@ private:
 
     void add_term(RigidPart& part, Index body, Index node, Real weight, std::size_t i) {
         const RigidInputs& rigid = stage_.inputs.rigid;
+        const bool is_tie = stage_.inputs.is_tie(region_.row[i]);
         Index k = 0;
         while (k < part.term_count && part.term[static_cast<std::size_t>(k)].row != body) ++k;
         RigidTerm& term = part.term[static_cast<std::size_t>(k)];
@@ -120,13 +121,15 @@ private:
             ++part.term_count;
             const auto place = std::find(region_.rigid.begin(), region_.rigid.end(), body) - region_.rigid.begin();
             // Vector from the core of a round body to the contact point on its surface.
-            const Vec3 beside = rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
-                                                        contact_normal(i), stage_.inputs.touch);
+            const Vec3 beside = is_tie ? Vec3(Vec3::Zero())
+                                       : rigid.nodes.beside_core(node, weight, static_cast<std::size_t>(region_.row[i]),
+                                                                 contact_normal(i), stage_.inputs.touch);
             term = {.row = body, .slot = static_cast<Index>(2 * place), .arm = padded(beside), .spin_step = {}};
         }
         term.weight += weight;
-        term.arm += weight * padded(rigid.position[static_cast<std::size_t>(node)] -
-                                    rigid.center[static_cast<std::size_t>(body)]);
+        const Vec3& acts_at = is_tie ? stage_.inputs.touch.point[static_cast<std::size_t>(region_.row[i])]
+                                     : rigid.position[static_cast<std::size_t>(node)];
+        term.arm += weight * padded(acts_at - rigid.center[static_cast<std::size_t>(body)]);
     }
 
     void find_mobility(LumpedContact& contact, RigidPart& part) const {

@@ -37,7 +37,7 @@ PushedBodies::PushedBodies(const RegionStage& stage, std::span<const Index> row,
 }
 
 Real PushedBodies::loss(std::size_t i, std::span<const Vec4> push) const {
-    if (!any_turns_) return 0;
+    if (!any_turns_ || op_.limits(static_cast<Index>(i)).ties()) return 0;
     constexpr Real rounding = 1e-12;  // rounding error of positions, as in push_slop [m]
     const RigidInputs& rigid = stage_.inputs.rigid;
     const Vec3& normal = stage_.inputs.normal[static_cast<std::size_t>(row_[i])];

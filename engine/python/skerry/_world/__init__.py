@@ -17,6 +17,7 @@ from .reports import (
     StepReport,
     WorldReport,
 )
+from .tie import Tie, TieState
 from .world import World
 
 __all__ = [
@@ -36,6 +37,8 @@ __all__ = [
     "StartOverlap",
     "StepLimitReport",
     "StepReport",
+    "Tie",
+    "TieState",
     "World",
     "WorldReport",
 ]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Unpack, cast
+
+from numpy.typing import ArrayLike
 
 from .._arrays import RotationLike, VectorLike, checked, flag, index_array, name_text, read_only, real, vector, whole
 from .._arrays import rotation as rotation_vector
@@ -27,6 +30,7 @@ from .._settings import (
     Shape,
     Sphere,
     SurfaceMesh,
+    TieKind,
 )
 from .body import Attachment, Body, Indices
 from .changes import MaterialChanges
@@ -35,6 +39,7 @@ from .joint import Joint, joint_label
 from .material import MaterialHandle
 from .objects import Objects, PosedObject
 from .reports import StepReport
+from .tie import Tie
 
 if TYPE_CHECKING:
     from .._recorder import Follower
@@ -243,9 +248,39 @@ class Building:
         other = None if second is None else self._own(second, "second", Body)
         return self._joint(self._core.add_joint(one, other, given))
 
-    def remove(self, removed: PosedObject | Joint) -> None:
-        """Removes a body, a collider, an attachment or a joint. BufferError: arrays of views() are in use."""
-        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint)
+    def add_tie(
+        self,
+        body: Body,
+        nodes: ArrayLike,
+        to: Body | Collider | None = None,
+        *,
+        kind: TieKind = "weld",
+        break_force: float = math.inf,
+        close_gap: bool = False,
+        bodies_touch: bool = False,
+    ) -> Tie:
+        """Ties nodes of a deformable body in their present places to the nearest points of another body or a collider,
+        or to the world, and returns the tie.
+
+        kind: "weld", or "slide" for nodes that may move in the plane of the surface. break_force: force at which a node
+        breaks off [N]. close_gap: True: the nodes move to the surface. bodies_touch: True: the two objects may collide
+        while nodes are tied. SceneError: the body is rigid, or a value is out of range. BufferError: arrays of views()
+        are in use."""
+        given = Arguments(
+            of="tie",
+            kind=kind,
+            break_force=real(break_force, "break_force"),
+            close_gap=flag(close_gap, "close_gap"),
+            bodies_touch=flag(bodies_touch, "bodies_touch"),
+        )
+        tied = self._own(body, "body", Body)
+        other = None if to is None else self._own(to, "to", Body, Collider)
+        to_body, to_collider = (None, other) if isinstance(to, Collider) else (other, None)
+        return self._tie(self._core.add_tie(tied, index_array(nodes, "nodes", ("n",)), to_body, to_collider, given))
+
+    def remove(self, removed: PosedObject | Joint | Tie) -> None:
+        """Removes a body, a collider, an attachment, a joint or a tie. BufferError: arrays of views() are in use."""
+        handle = self._own(removed, "removed", Body, Collider, Attachment, Joint, Tie)
         self._core.remove(handle)
         self._mesh_arrays.pop(handle, None)
 
@@ -263,6 +298,11 @@ class Building:
     def joints(self) -> list[Joint]:
         """The joints in the order added. They have no names."""
         return [self._joint(handle) for handle in self._core.joints()]
+
+    @property
+    def ties(self) -> list[Tie]:
+        """The ties in the order added. They have no names."""
+        return [self._tie(handle) for handle in self._core.ties()]
 
     @property
     def attachments(self) -> list[Attachment]:
@@ -291,6 +331,9 @@ class Building:
             state["kind"], self._core.name(state["first"]), None if second is None else self._core.name(second)
         )
         return Joint(self._self, handle, label)
+
+    def _tie(self, handle: Any) -> Tie:
+        return Tie(self._self, handle, f"tie of body '{self._core.name(self._core.tie_state(handle)['body'])}'")
 
     def _mesh_of(self, body: Any) -> tuple[Indices, Indices]:
         """Surface and tetrahedra of a body, which never change."""

@@ -1,0 +1,24 @@
+// The kinds of ties, and the handle of a tie.
+#pragma once
+
+#include <cstdint>
+
+#include "components/handle.h"
+#include "components/options.h"
+
+namespace skerry {
+
+using TieHandle = Handle<struct TieTag>;
+
+/// Motion of a tied node relative to its point on the other object. weld: none. slide: in the plane through the point,
+/// normal to the surface.
+enum class TieKind : std::uint8_t { weld, slide };
+template <>
+struct EnumNames<TieKind> {
+    static constexpr std::array<std::pair<TieKind, std::string_view>, 2> table{{
+        {TieKind::weld, "weld"},
+        {TieKind::slide, "slide"},
+    }};
+};
+
+}  // namespace skerry

@@ -1,0 +1,109 @@
+// Ties: nodes of a deformable body that are fixed to points on another object (docs/methods/ties.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/column.h"
+#include "components/column_role.h"
+#include "components/contact_table.h"
+#include "components/range.h"
+#include "components/row_type.h"
+#include "components/tie_kind.h"
+#include "components/types.h"
+
+namespace skerry {
+
+/// One row per tie. Each row has a range of rows in the columns of tied nodes.
+struct TieTable {
+    Column<std::uint32_t> slot;
+    Column<TieKind> kind;
+    Column<std::uint8_t> parts;  // 1: the tie switches off collisions between its two bodies
+    Column<Index> first;         // row of BodyTable; the deformable body whose nodes are tied
+    Column<Index> second;        // row of BodyTable, or no_index
+    Column<Index> collider;      // row of ColliderTable, or no_index; without body and collider: the world
+    Column<Range> nodes;         // rows of the columns by tied node
+    Column<Real> break_force;    // force at which a node breaks off; may be infinite [N]
+    Column<Real> step;           // time for which the impulses acted in the last step; 0 before the first step [s]
+
+    // By tied node. Nodes have their numbers in the meshes of the bodies.
+    Column<Index> node;  // node of the first body
+    // Triangle of the second body, and weights of its corners. Used only if the second body deforms.
+    Column<std::array<Index, 3>> corner;
+    Column<Vec3> weight;
+    // Place of the node [m]. On a deformable body: relative to the point on the triangle, in the frame of the triangle
+    // (explicit body) or in the frame of the mesh (implicit body). Otherwise: in the frame of the mesh of the rigid
+    // body, in the frame of the collider, or in the world.
+    Column<Vec3> place;
+    // Unit normal of the surface in the same frame. Deformable bodies use the normal of the triangle instead.
+    Column<Vec3> normal;
+    Column<Vec3> impulse;  // impulse on the node in the last step [N s]
+    Column<Real> broken;   // time at which the node broke off; infinite if it is tied [s]
+
+    std::size_t size() const { return slot.size(); }
+
+    void erase_keys_of(std::size_t tie);
+
+    /// Visits the columns with one row per tie.
+    void for_each_row_column(auto&& visit) {
+        visit("slot", slot, ColumnRole::state);
+        visit("kind", kind, ColumnRole::state);
+        visit("parts", parts, ColumnRole::state);
+        visit("first", first, ColumnRole::body);
+        visit("second", second, ColumnRole::body);
+        visit("collider", collider, ColumnRole::collider);
+        visit("nodes", nodes, ColumnRole::link);
+        visit("break_force", break_force, ColumnRole::state);
+        visit("step", step, ColumnRole::state);
+    }
+    /// Visits the columns with one row per tied node.
+    void for_each_node_column(auto&& visit) {
+        visit("node", node, ColumnRole::state);
+        visit("corner", corner, ColumnRole::state);
+        visit("weight", weight, ColumnRole::state);
+        visit("place", place, ColumnRole::state);
+        visit("normal", normal, ColumnRole::state);
+        visit("impulse", impulse, ColumnRole::state);
+        visit("broken", broken, ColumnRole::state);
+    }
+    void for_each_column(auto&& visit) {
+        for_each_row_column(visit);
+        for_each_node_column(visit);
+    }
+};
+
+/// Removes the tied nodes of a tie.
+inline void TieTable::erase_keys_of(std::size_t tie) {
+    const Range gone = nodes[tie];
+    for_each_node_column([&](const char*, auto& column, ColumnRole) {
+        column.erase(static_cast<std::size_t>(gone.begin), static_cast<std::size_t>(gone.size()));
+    });
+    nodes[tie] = {};
+    for (Range& other : nodes)
+        if (other.begin > gone.begin) other = {other.begin - gone.size(), other.end - gone.size()};
+}
+
+/// Rows of ties in the contact problem of a step. They stand behind the contacts in ContactTable while regions are
+/// solved.
+struct TieRowTable {
+    Column<Index> tie;   // row of TieTable
+    Column<Index> node;  // row of the columns by tied node
+    Column<Stencil> stencil;
+    Column<Vec3> point;    // place of the tied node at the start of the step [m]
+    Column<Vec3> impulse;  // impulse on the node; before the solve: the warm start [N s]
+    // By row of TieTable: 1 if its bodies are asleep. The tie then keeps its last impulses.
+    Column<std::uint8_t> rests;
+
+    std::size_t size() const { return tie.size(); }
+    void for_each_column(auto&& visit) {
+        visit("tie", tie, ColumnRole::scratch);
+        visit("node", node, ColumnRole::scratch);
+        visit("stencil", stencil, ColumnRole::scratch);
+        visit("point", point, ColumnRole::scratch);
+        visit("impulse", impulse, ColumnRole::scratch);
+        visit("rests", rests, ColumnRole::scratch);
+    }
+};
+
+}  // namespace skerry

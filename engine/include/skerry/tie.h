@@ -1,0 +1,79 @@
+// Ties: nodes of a deformable body that are fixed to another object (docs/methods/ties.md).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "components/handle.h"
+#include "components/tie_kind.h"
+#include "components/types.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+class World;
+
+/// A tie between nodes of a deformable body and another object: a body of any kind, a collider, or the world if neither
+/// is given. Each node is tied in its present position to the nearest point of the other object. The tie of a single
+/// node acts like a ball joint.
+struct TieSettings {
+    TieKind kind = TieKind::weld;
+    BodyHandle body{};           // a deformable body
+    std::vector<Index> nodes{};  // numbers of its tied nodes in its mesh, each given once
+    // At most one of the two may be given. A tie of kind `slide` needs one of them, since the world has no surface.
+    std::optional<BodyHandle> to_body{};
+    std::optional<ColliderHandle> to_collider{};
+    // Force at which a node breaks off, > 0 [N]. It applies to each node: the node breaks off at the end of the first
+    // step in which its force is greater. By default, a tie does not break.
+    Real break_force = infinity;
+    // false: each node keeps its distance from the surface. true: the distance is closed at Settings::recovery_speed.
+    bool close_gap = false;
+    // false: the body and the other object do not collide while at least one node is tied.
+    bool bodies_touch = false;
+};
+
+/// State of a tied node.
+struct TiedNode {
+    Index node = 0;                // number in the mesh of the body
+    Vec3 force = Vec3::Zero();     // force of the last step on the node [N]
+    Real error = 0;                // distance of the node from the place that the tie demands [m]
+    std::optional<Real> broken{};  // time at which the node broke off [s]
+};
+
+/// State of a tie. Force and moment are those of the last step and act on the body whose nodes are tied.
+struct TieState {
+    TieKind kind = TieKind::weld;
+    BodyHandle body{};
+    std::optional<BodyHandle> to_body{};
+    std::optional<ColliderHandle> to_collider{};
+    Real break_force = infinity;  // [N]
+    Vec3 point = Vec3::Zero();    // mean position of the tied nodes [m]
+    Vec3 force = Vec3::Zero();    // [N]
+    Vec3 moment = Vec3::Zero();   // moment about `point` [N m]
+    Real error = 0;               // largest error of a node that has not broken off [m]
+    std::vector<TiedNode> nodes{};
+};
+
+/// A view of the ties of a world. It is valid until the world is moved or destroyed. Like the functions of World,
+/// functions that change ties may only be called between calls of advance. They throw SceneError and change nothing if
+/// a handle is stale or a value is out of range. Ties belong to the state of the world: they are saved, cloned and
+/// hashed.
+class Ties {
+public:
+    explicit Ties(World& world) : world_(&world) {}
+
+    /// Ties nodes of a body. The tie is removed together with either object.
+    TieHandle add(const TieSettings& tie);
+    void remove(TieHandle tie);
+    bool alive(TieHandle tie) const;
+    std::vector<TieHandle> all() const;  // all ties, in the order added
+    TieState state(TieHandle tie) const;
+    /// Sets the force at which a node breaks off [N]. Nodes that have broken off stay so.
+    void set_break_force(TieHandle tie, Real force);
+
+private:
+    World* world_;
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,326 @@
+// Functions that add, remove and change ties between steps (docs/methods/ties.md).
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/world/complaint.h"
+#include "engine/world/control/control.h"
+#include "engine/world/edit/joining_rows.h"
+#include "engine/world/edit/rigid_bodies.h"
+#include "engine/world/query/fitted_tree.h"
+#include "engine/world/validate.h"
+#include "skerry/tie.h"
+#include "systems/collision/narrow/collider_distance.h"
+#include "systems/contact/prepare_ties.h"
+#include "systems/dynamics/motion/move_colliders.h"
+
+namespace skerry {
+
+namespace {
+
+[[noreturn]] void refuse_tie(const char* field, const std::string& found, const std::string& expected) {
+    refuse("tie", field, found, expected);
+}
+
+std::string title_of_tied(const Model& model, Index body) {
+    return "body '" + model.body_records[static_cast<std::size_t>(body)].name + "'";
+}
+
+void validate_break_force(Real force) {
+    if (!(force > 0)) refuse_tie("break_force", short_text(force), "a force > 0 (N)");
+}
+
+void validate_nodes(const Model& model, Index body, const std::vector<Index>& nodes) {
+    if (nodes.empty()) refuse_tie("nodes", "no node", "at least one node of " + title_of_tied(model, body));
+    require_nodes("tie", nodes, model.bodies.nodes[static_cast<std::size_t>(body)].size());
+    std::vector<Index> sorted = nodes;
+    std::ranges::sort(sorted);
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+        refuse_tie("nodes", "node " + std::to_string(*twice) + " twice", "each node once");
+}
+
+/// Present poses of all colliders.
+std::vector<RigidMotion> present_poses(const WorldState& world) {
+    const ColliderTable& table = world.model.colliders;
+    std::vector<RigidMotion> poses;
+    for (std::size_t c = 0; c < table.slot.size(); ++c) {
+        const RigidPose pose = pose_at(table.script[c], table.keyframe, table.initial[c], world.clock.time);
+        poses.push_back({pose.position, pose.rotation, Vec3::Zero(), Vec3::Zero()});
+    }
+    return poses;
+}
+
+/// Rows of the objects that a new tie joins.
+struct TiedObjects {
+    Index first, second = no_index, collider = no_index;
+};
+
+TiedObjects objects_of(const Model& model, const TieSettings& tie) {
+    if (tie.to_body && tie.to_collider) refuse_tie("to_body, to_collider", "a body and a collider", "one of the two");
+    TiedObjects objects{model.row(tie.body, "add_tie")};
+    if (model.is_rigid(static_cast<std::size_t>(objects.first)))
+        refuse_tie("body", title_of_tied(model, objects.first) + ", which is rigid",
+                   "a deformable body (ties fix its nodes; joints connect rigid bodies)");
+    if (tie.to_body) objects.second = model.row(*tie.to_body, "add_tie");
+    if (tie.to_collider) objects.collider = model.row(*tie.to_collider, "add_tie");
+    if (objects.second == objects.first)
+        refuse_tie("to_body", title_of_tied(model, objects.first) + " itself", "another body, a collider or the world");
+    if (tie.kind == TieKind::slide && !tie.to_body && !tie.to_collider)
+        refuse_tie("kind", "a slide to the world, which has no surface", "a body or collider to slide on, or a weld");
+    return objects;
+}
+
+/// Nearest point of a surface, and the triangle that contains it if the surface has triangles.
+struct OnSurface {
+    Vec3 point, normal;
+    std::array<Index, 3> corner{};
+    Vec3 weight = Vec3::Zero();
+};
+
+OnSurface on_triangles(WorldState& world, std::size_t body, const Vec3& point) {
+    const Model& model = world.model;
+    const std::optional<TrianglePoint> found = nearest_point(fitted_tree(world, body), point, infinity);
+    if (!found)
+        refuse_tie("to_body", title_of_tied(model, static_cast<Index>(body)) + ", which has no surface",
+                   "a body with a surface");
+    const auto& corner = model.surface.triangles.node[static_cast<std::size_t>(found->triangle)];
+    const auto at = [&](std::size_t a) -> const Vec3& {
+        return model.nodes.position[static_cast<std::size_t>(corner[a])];
+    };
+    OnSurface place{.point = Vec3::Zero(), .normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized()};
+    for (std::size_t a = 0; a < 3; ++a) {
+        place.corner[a] = corner[a] - model.bodies.nodes[body].begin;
+        place.weight[static_cast<Index>(a)] = found->weight[a];
+        place.point += found->weight[a] * at(a);
+    }
+    return place;
+}
+
+OnSurface on_shape(const ColliderGeometry& geometry, const RigidMotion& pose, const Vec3& point) {
+    const SurfacePoint found = distance_to_collider(geometry, pose, point);
+    return {.point = found.point, .normal = found.normal};
+}
+
+/// Nearest point of the object to which a node at `point` is tied. For the world it is `point` itself.
+OnSurface nearest_place(WorldState& world, const TiedObjects& objects, std::span<const RigidMotion> pose,
+                        const Vec3& point) {
+    const Model& model = world.model;
+    if (objects.second != no_index) {
+        const auto body = static_cast<std::size_t>(objects.second);
+        const auto round = model.round_shape(body);
+        return round ? on_shape(round->geometry, round->motion, point) : on_triangles(world, body, point);
+    }
+    if (objects.collider == no_index) return {.point = point, .normal = Vec3::UnitZ()};
+    const auto c = static_cast<std::size_t>(objects.collider);
+    if (const Index mesh = model.colliders.body[c]; mesh != no_index)
+        return on_triangles(world, static_cast<std::size_t>(mesh), point);
+    return on_shape(model.colliders.geometry[c], pose[c], point);
+}
+
+/// Frame in which TieTable stores the place of a node.
+RigidPose frame_of(const Model& model, const TiedObjects& objects, std::span<const RigidMotion> pose) {
+    if (objects.second != no_index && model.has_frame(static_cast<std::size_t>(objects.second)))
+        return pose_of_body(model, static_cast<std::size_t>(objects.second));
+    if (objects.collider == no_index) return {Vec3::Zero(), Mat3::Identity()};
+    const RigidMotion& of = pose[static_cast<std::size_t>(objects.collider)];
+    return {of.position, of.rotation};
+}
+
+void append_node(TieTable& table, Index node, const OnSurface& on, const Vec3& place, const Vec3& normal) {
+    table.node.push_back(node);
+    table.corner.push_back(on.corner);
+    table.weight.push_back(on.weight);
+    table.place.push_back(place);
+    table.normal.push_back(normal);
+    table.impulse.push_back(Vec3::Zero());
+    table.broken.push_back(infinity);
+}
+
+/// Appends a tied node at its present place.
+void tie_node(WorldState& world, const TieSettings& tie, const TiedObjects& objects, std::span<const RigidMotion> pose,
+              Index node) {
+    Model& model = world.model;
+    const auto first = static_cast<std::size_t>(objects.first);
+    const Vec3 point = model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[first].begin + node)];
+    const OnSurface on = nearest_place(world, objects, pose, point);
+    const Vec3& target = tie.close_gap ? on.point : point;
+    const RigidPose frame = frame_of(model, objects, pose);
+    const bool deforms = objects.second != no_index && !model.is_rigid(static_cast<std::size_t>(objects.second));
+    const Mat3 to_frame = frame.rotation.transpose();
+    if (!deforms) {
+        append_node(model.ties, node, on, to_frame * (target - frame.position), to_frame * on.normal);
+        return;
+    }
+    const auto second = static_cast<std::size_t>(objects.second);
+    Mat3 axes = frame.rotation;
+    if (!model.has_frame(second)) {
+        const auto at = [&](std::size_t a) -> const Vec3& {
+            return model.nodes.position[static_cast<std::size_t>(model.bodies.nodes[second].begin + on.corner[a])];
+        };
+        axes = triangle_axes({at(0), at(1), at(2)});
+    }
+    append_node(model.ties, node, on, axes.transpose() * (target - on.point), Vec3::Zero());
+}
+
+void wake_tied(Model& model, std::size_t tie) {
+    model.wake(static_cast<std::size_t>(model.ties.first[tie]));
+    if (model.ties.second[tie] != no_index) model.wake(static_cast<std::size_t>(model.ties.second[tie]));
+}
+
+/// True if another tie of the same two objects switches off their collisions.
+bool parted_by_another(const TieTable& ties, std::size_t tie) {
+    for (std::size_t other = 0; other < ties.size(); ++other) {
+        const bool same_pair =
+            ties.collider[other] == ties.collider[tie] &&
+            std::minmax(ties.first[other], ties.second[other]) == std::minmax(ties.first[tie], ties.second[tie]);
+        if (other != tie && ties.parts[other] != 0 && same_pair) return true;
+    }
+    return false;
+}
+
+BodyHandle handle_of(const Model& model, Index body) {
+    return model.body_map.handle_of_slot(model.bodies.slot[static_cast<std::size_t>(body)]);
+}
+ColliderHandle handle_of_collider(const Model& model, Index collider) {
+    return model.collider_map.handle_of_slot(model.colliders.slot[static_cast<std::size_t>(collider)]);
+}
+
+/// Switches the collisions of the two objects of a tie on or off. Returns whether they were on.
+bool switch_collisions(World& world, const Model& model, std::size_t tie, bool on) {
+    const BodyHandle first = handle_of(model, model.ties.first[tie]);
+    const auto set = [&](auto other) {
+        const bool were_on = world.may_collide(first, other);
+        world.set_collision(first, other, on);
+        return were_on;
+    };
+    if (model.ties.second[tie] != no_index) return set(handle_of(model, model.ties.second[tie]));
+    return model.ties.collider[tie] != no_index && set(handle_of_collider(model, model.ties.collider[tie]));
+}
+
+}  // namespace
+
+TieHandle Ties::add(const TieSettings& tie) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("add_tie");
+    state.settle();
+    Model& model = state.model;
+    const TiedObjects objects = objects_of(model, tie);
+    validate_nodes(model, objects.first, tie.nodes);
+    validate_break_force(tie.break_force);
+    const std::vector<RigidMotion> poses = present_poses(state);
+    TieTable& table = model.ties;
+    // The search for the places comes first, because it refuses objects without a surface.
+    if (tie.nodes.size() > 0)
+        nearest_place(state, objects, poses,
+                      model.nodes.position[static_cast<std::size_t>(
+                          model.bodies.nodes[static_cast<std::size_t>(objects.first)].begin + tie.nodes.front())]);
+    const std::size_t row = table.size();
+    AnyTable(table).resize(row + 1);
+    const TieHandle handle = model.tie_map.insert(static_cast<Index>(row));
+    table.slot[row] = handle.slot;
+    table.kind[row] = tie.kind;
+    table.first[row] = objects.first;
+    table.second[row] = objects.second;
+    table.collider[row] = objects.collider;
+    table.break_force[row] = tie.break_force;
+    table.step[row] = 0;
+    const auto begin = static_cast<Index>(table.node.size());
+    for (const Index node : tie.nodes) tie_node(state, tie, objects, poses, node);
+    table.nodes[row] = {begin, static_cast<Index>(table.node.size())};
+    table.parts[row] = 0;
+    if (!tie.bodies_touch)
+        table.parts[row] = switch_collisions(*world_, model, row, false) || parted_by_another(table, row);
+    wake_tied(model, row);
+    model.links_open = true;
+    return handle;
+}
+
+void Ties::remove(TieHandle tie) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("remove");
+    Model& model = state.model;
+    const auto row = static_cast<std::size_t>(model.row(tie, "remove"));
+    wake_tied(model, row);
+    if (model.ties.parts[row] != 0 && !parted_by_another(model.ties, row)) switch_collisions(*world_, model, row, true);
+    std::vector<bool> gone(model.ties.size(), false);
+    gone[row] = true;
+    erase_joining_rows(gone, model.ties, model.tie_map);
+    model.links_open = true;
+}
+
+void release_ties(WorldState& world) {
+    TieTable& ties = world.model.ties;
+    for (std::size_t t = 0; t < ties.size(); ++t) {
+        const auto is_broken = [](Real time) { return time < infinity; };
+        if (ties.parts[t] == 0 || !std::ranges::all_of(rows_of(ties.broken, ties.nodes[t]), is_broken)) continue;
+        ties.parts[t] = 0;
+        if (parted_by_another(ties, t)) continue;
+        const bool of_collider = ties.collider[t] != no_index;
+        if (of_collider || ties.second[t] != no_index)
+            enable_pair(world, of_collider ? PairKind::collider : PairKind::bodies, ties.first[t],
+                        of_collider ? ties.collider[t] : ties.second[t]);
+    }
+}
+
+bool Ties::alive(TieHandle tie) const {
+    return WorldAccess::state_of(*world_).model.tie_map.row(tie) != no_index;
+}
+
+std::vector<TieHandle> Ties::all() const {
+    std::vector<TieHandle> handles;
+    const Model& model = WorldAccess::state_of(*world_).model;
+    for (const std::uint32_t slot : model.ties.slot) handles.push_back(model.tie_map.handle_of_slot(slot));
+    return handles;
+}
+
+TieState Ties::state(TieHandle tie) const {
+    return tie_state(WorldAccess::state_of(*world_), tie);
+}
+
+TieState tie_state(const WorldState& world, TieHandle tie) {
+    const Model& model = world.model;
+    const auto t = static_cast<std::size_t>(model.row(tie, "tie"));
+    const TieTable& table = model.ties;
+    TieInputs inputs =
+        TieInputs::bind({}, table, model.bodies, model.nodes, model.rigid_bodies, model.colliders, model.any_asleep);
+    const std::vector<RigidMotion> poses = present_poses(world);
+    inputs.motion = poses;
+    TieState now;
+    now.kind = table.kind[t];
+    now.body = handle_of(model, table.first[t]);
+    if (table.second[t] != no_index) now.to_body = handle_of(model, table.second[t]);
+    if (table.collider[t] != no_index) now.to_collider = handle_of_collider(model, table.collider[t]);
+    now.break_force = table.break_force[t];
+    const auto position = [&](std::size_t k) -> const Vec3& {
+        return model.nodes.position[static_cast<std::size_t>(inputs.row_of(table.first[t], table.node[k]))];
+    };
+    const Range nodes = table.nodes[t];
+    for (Index k = nodes.begin; k < nodes.end; ++k)
+        now.point += position(static_cast<std::size_t>(k)) / static_cast<Real>(nodes.size());
+    for (Index row = nodes.begin; row < nodes.end; ++row) {
+        const auto k = static_cast<std::size_t>(row);
+        TiedNode& node = now.nodes.emplace_back();
+        node.node = table.node[k];
+        if (table.step[t] > 0) node.force = table.impulse[k] / table.step[t];
+        if (table.broken[k] < infinity) node.broken = table.broken[k];
+        const TiePlace place = inputs.place(t, k);
+        const Vec3 apart = position(k) - place.point;
+        node.error = now.kind == TieKind::slide ? std::abs(place.normal.dot(apart)) : apart.norm();
+        now.force += node.force;
+        now.moment += (position(k) - now.point).cross(node.force);
+        if (!node.broken) now.error = std::max(now.error, node.error);
+    }
+    return now;
+}
+
+void Ties::set_break_force(TieHandle tie, Real force) {
+    WorldState& state = WorldAccess::state_of(*world_);
+    state.require_between_steps("set_break_force");
+    const Index row = state.model.row(tie, "set_break_force");
+    validate_break_force(force);
+    state.model.ties.break_force[static_cast<std::size_t>(row)] = force;
+}
+
+}  // namespace skerry

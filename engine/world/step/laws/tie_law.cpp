@@ -1,0 +1,57 @@
+// Constraint law of ties: nodes of deformable bodies that are fixed to other objects (docs/methods/ties.md). The rows
+// of ties stand behind the contacts in the contact table while regions are solved.
+#include "engine/world/step/seams.h"
+
+namespace skerry {
+
+namespace {
+
+auto tie_inputs(const Model& m) {
+    return inputs<TieInputs>(m.ties, m.bodies, m.nodes, m.rigid_bodies, m.colliders, m.any_asleep);
+}
+
+auto if_any_tie(const Model& m) {
+    return only_if([](std::span<const std::uint32_t> slot) { return !slot.empty(); }, read(m.ties.slot));
+}
+
+bool prepare(const TieInputs& ties, const StepParameters& p, ContactTable& contacts, TieRowTable& rows) {
+    const TieStep step{p.h, p.kick, p.solver.recovery_speed, p.solver.warm_start};
+    return prepare_ties(ties, step, contacts, rows);
+}
+
+Index store(const TieRowTable& rows, std::span<const Range> body_implicit, Real start, const StepParameters& p,
+            TieTable& ties) {
+    return store_ties(rows, body_implicit, {start + p.h, p.h, p.kick}, ties);
+}
+
+void list_tie_rows(WorldState& w, TaskGraph& g) {
+    g.stage("contact/prepare_ties", prepare, tie_inputs(w.model), value(w.scratch.parameters), make(w.scratch.contacts),
+            make(w.scratch.ties), if_any_tie(w.model));
+}
+
+void list_taken_rows(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage_with_result("contact/take_tie_rows", w.scratch.findings.ties, take_tie_rows,
+                        inputs<TieWorkInputs>(m.nodes, m.bodies, m.rigid_bodies), make(w.scratch.contacts),
+                        make(w.scratch.ties), if_any_tie(m));
+}
+
+void list_led_bodies(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage("contact/keep_led_awake", keep_led_awake, tie_inputs(m), value(w.scratch.parameters.h),
+            write(m.bodies.still_time), if_any_tie(m), if_taken(w));
+}
+
+void list_tie_memory(WorldState& w, TaskGraph& g) {
+    Model& m = w.model;
+    g.stage_with_result("contact/store_ties", w.scratch.findings.released_ties, store, read(w.scratch.ties),
+                        read(m.bodies.implicit), value(w.clock.time), value(w.scratch.parameters), make(m.ties),
+                        if_any_tie(m), if_taken(w));
+}
+
+}  // namespace
+
+constinit const ConstraintLaw tie_law{
+    .find = list_tie_rows, .take = list_taken_rows, .check = list_led_bodies, .remember = list_tie_memory};
+
+}  // namespace skerry

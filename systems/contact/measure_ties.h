@@ -1,0 +1,49 @@
+// Impulses and work of ties after the solve, and their breaking.
+#pragma once
+
+#include <span>
+
+#include "components/contact_table.h"
+#include "components/node_table.h"
+#include "components/tie_table.h"
+#include "jobs/access.h"
+#include "systems/contact/measure_contacts.h"
+
+namespace skerry {
+
+struct TieMeasures {
+    Vec3 impulse = Vec3::Zero();  // impulse that ties transmit from the world, colliders and held nodes [N s]
+    Real work = 0;                // work of ties on all moving nodes and bodies [J]
+};
+
+/// Nodes and bodies after the solve.
+struct TieWorkInputs {
+    std::span<const Real> inverse_mass;             // by node [1/kg]
+    std::span<const Vec3> position;                 // by node [m]
+    std::span<const Vec3> velocity, velocity_next;  // by node [m/s]
+    RoundSpins spins;
+
+    static TieWorkInputs bind(const Binder& binder, const NodeTable& node, const BodyTable& body,
+                              const RigidBodyTable& rigid) {
+        return {.inverse_mass = binder.read(node.inverse_mass),
+                .position = binder.read(node.position),
+                .velocity = binder.read(node.velocity),
+                .velocity_next = binder.read(node.velocity_next),
+                .spins = RoundSpins::bind(binder, node, body, rigid)};
+    }
+};
+
+/// Takes the rows of ties out of the contacts after the solve, and stores their impulses in `rows`. Returns the sums
+/// over all rows. Sequential, in row order.
+TieMeasures take_tie_rows(const TieWorkInputs& motion, ContactTable& contacts, TieRowTable& rows);
+
+/// Times of a step [s]: its end, its length, and the interval in which forces act on nodes with their own mass.
+struct TieTimes {
+    Real end = 0, h = 0, kick = 0;
+};
+
+/// Stores the impulses of a committed step. A node breaks off if its force exceeds the limit of its tie. Returns the
+/// number of ties of which the last node has broken off.
+Index store_ties(const TieRowTable& rows, std::span<const Range> body_implicit, const TieTimes& times, TieTable& ties);
+
+}  // namespace skerry

@@ -1,0 +1,249 @@
+#include "systems/contact/prepare_ties.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+
+#include "systems/geometry/rotation.h"
+
+namespace skerry {
+
+Mat3 triangle_axes(const std::array<Vec3, 3>& corner) {
+    const Vec3 along = (corner[1] - corner[0]).normalized();
+    const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+    Mat3 axes;
+    axes << along, normal.cross(along), normal;
+    return axes;
+}
+
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// Weights of the corners for the point of the plane of a triangle that is nearest to `point`.
+Vec3 weights_at(const Corners& corner, const Vec3& point) {
+    const Vec3 first = corner[1] - corner[0], second = corner[2] - corner[0], to = point - corner[0];
+    const Real a = first.squaredNorm(), b = first.dot(second), c = second.squaredNorm();
+    const Real of_first = to.dot(first), of_second = to.dot(second), size = a * c - b * b;
+    const Real one = (c * of_first - b * of_second) / size, two = (a * of_second - b * of_first) / size;
+    return {1 - one - two, one, two};
+}
+
+Vec3 sum_of(const Corners& corner, const Vec3& weight) {
+    return weight[0] * corner[0] + weight[1] * corner[1] + weight[2] * corner[2];
+}
+
+Corners corners_of(const TieInputs& ties, std::size_t t, std::size_t k) {
+    Corners corner;
+    for (std::size_t a = 0; a < 3; ++a)
+        corner[a] = ties.position[static_cast<std::size_t>(ties.row_of(ties.tie.second[t], ties.tie.corner[k][a]))];
+    return corner;
+}
+
+/// Rotation of the mesh frame of a rigid or implicit body.
+Mat3 mesh_axes(const TieInputs& ties, Index frame) {
+    const auto r = static_cast<std::size_t>(frame);
+    return ties.rotation[r] * ties.axes[r].transpose();
+}
+
+/// Motion of a point that moves with the frame of a body, after the kick (the velocity change by forces).
+struct FrameMotion {
+    Vec3 turning = Vec3::Zero();       // part of the velocity that stems from the spin [m/s]
+    Vec3 velocity = Vec3::Zero();      // [m/s]
+    Vec3 acceleration = Vec3::Zero();  // of the free rotation [m/s^2]
+};
+
+/// `node`: row of NodeTable of a node at the point if the body is implicit, else no_index.
+FrameMotion frame_motion(const TieInputs& ties, Index frame, const Vec3& point, Index node) {
+    FrameMotion at;
+    if (frame == no_index) return at;
+    const auto r = static_cast<std::size_t>(frame);
+    const Vec3 arm = point - ties.center[r], spin = ties.spins.kicked(r);
+    at.turning = spin.cross(arm);
+    at.velocity = (ties.momentum[r] + ties.kick[r]) / ties.mass[r] + at.turning;
+    at.acceleration = spin.cross(at.turning);
+    if (ties.holder[r] == no_index)
+        at.acceleration +=
+            (ties.spins.inverse_inertia[r] * (ties.spins.angular_momentum[r] + ties.spins.moment_kick[r]).cross(spin))
+                .cross(arm);
+    if (node != no_index)
+        at.acceleration += 2 * spin.cross(ties.velocity_next[static_cast<std::size_t>(node)] - at.velocity);
+    return at;
+}
+
+/// Velocity with which the offset of a tie from its triangle turns with the triangle, for predicted velocities [m/s]
+Vec3 turning_offset(const TieInputs& ties, std::size_t t, std::size_t k, Real h) {
+    const Vec3& offset = ties.tie.place[k];
+    if (offset.isZero(0)) return Vec3::Zero();
+    const Corners corner = corners_of(ties, t, k);
+    Corners next = corner;
+    for (std::size_t a = 0; a < 3; ++a)
+        next[a] +=
+            h * ties.velocity_next[static_cast<std::size_t>(ties.row_of(ties.tie.second[t], ties.tie.corner[k][a]))];
+    return (triangle_axes(next) - triangle_axes(corner)) * offset / h;
+}
+
+/// Mean velocity over the step of a point that moves with a collider [m/s]
+Vec3 led_velocity(const RigidMotion& motion, const Vec3& point, Real h) {
+    const Vec3 arm = point - motion.position;
+    return motion.velocity + (rotation_matrix(h * motion.angular_velocity) * arm - arm) / h;
+}
+
+/// Row of one tied node.
+class TieRow {
+public:
+    TieRow(const TieInputs& ties, const TieStep& step, std::size_t t, std::size_t k)
+        : ties_(ties), step_(step), t_(t), k_(k), place_(ties.place(t, k)) {
+        const TieTable& tie = ties.tie;
+        node_ = ties.row_of(tie.first[t], tie.node[k]);
+        stencil_ = {{node_, node_, node_, node_}, {1, 0, 0, 0}};
+        if (ties.deforms(tie.second[t])) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                stencil_.node[a + 1] = ties.row_of(tie.second[t], tie.corner[k][a]);
+                stencil_.weight[a + 1] = -place_.weight[static_cast<Index>(a)];
+            }
+        } else if (const Index frame = ties.frame(tie.second[t]);
+                   frame != no_index && ties.holder[static_cast<std::size_t>(frame)] == no_index) {
+            stencil_.node[1] = ties.row_of(tie.second[t], 0);
+            stencil_.weight[1] = -1;
+        }
+    }
+
+    const Stencil& stencil() const { return stencil_; }
+    const Vec3& point() const { return ties_.position[static_cast<std::size_t>(node_)]; }
+    const Vec3& normal() const { return place_.normal; }
+
+    /// Velocity that the row demands of the node relative to the nodes of the other object [m/s]
+    Vec3 demanded() const {
+        const TieTable& tie = ties_.tie;
+        const Index second = tie.second[t_], first_frame = ties_.frame(tie.first[t_]), frame = ties_.frame(second);
+        const FrameMotion of_first =
+            frame_motion(ties_, first_frame, point(), first_frame == no_index ? no_index : node_);
+        const FrameMotion of_second = frame_motion(ties_, frame, point(), no_index);
+        Vec3 velocity = Vec3::Zero();
+        if (tie.collider[t_] != no_index)
+            velocity = led_velocity(ties_.motion[static_cast<std::size_t>(tie.collider[t_])], place_.point, step_.h);
+        else if (frame != no_index && stencil_.weight[1] == 0)
+            velocity = of_second.velocity;
+        else if (ties_.deforms(second) && frame == no_index)
+            velocity = turning_offset(ties_, t_, k_, step_.h);
+        Vec3 error = point() - place_.point;
+        if (tie.kind[t_] == TieKind::slide) error = place_.normal.dot(error) * place_.normal;
+        Vec3 pull = error / step_.h;
+        const Real fastest = step_.recovery_speed + of_first.turning.norm() + of_second.turning.norm();
+        if (const Real speed = pull.norm(); speed > fastest) pull *= fastest / speed;
+        return velocity - pull - step_.h / 2 * (of_first.acceleration - of_second.acceleration);
+    }
+
+private:
+    const TieInputs& ties_;
+    const TieStep& step_;
+    std::size_t t_, k_;
+    TiePlace place_;
+    Index node_;
+    Stencil stencil_;
+};
+
+/// Key of the row of a tied node. It differs from all keys of contacts and is greater.
+ContactKey key_of(const TieTable& tie, std::size_t t, std::size_t k) {
+    constexpr std::uint64_t of_ties = std::uint64_t{1} << 63;
+    return {of_ties | tie.slot[t], static_cast<std::uint64_t>(k) - static_cast<std::uint64_t>(tie.nodes[t].begin)};
+}
+
+void append(const TieTable& tie, std::size_t t, std::size_t k, const TieRow& row, const Vec3& impulse,
+            ContactTable& contacts) {
+    contacts.key.push_back(key_of(tie, t, k));
+    contacts.kind.push_back(ContactKind::point_triangle);
+    contacts.stencil.push_back(row.stencil());
+    contacts.point.push_back(row.point());
+    contacts.normal.push_back(row.normal());
+    contacts.gap.push_back(0);
+    contacts.distance.push_back(0);
+    contacts.surface_velocity.push_back(row.demanded());
+    contacts.static_friction.push_back(tie.kind[t] == TieKind::weld ? infinity : 0);
+    contacts.dynamic_friction.push_back(infinity);
+    contacts.restitution.push_back(0);
+    contacts.first_body.push_back(tie.first[t]);
+    contacts.second_body.push_back(tie.second[t]);
+    contacts.collider.push_back(tie.collider[t]);
+    contacts.impulse.push_back(impulse);
+    contacts.region.push_back(no_index);
+    contacts.slip.push_back(Vec3::Zero());
+    contacts.state.push_back(ContactState::open);
+}
+
+}  // namespace
+
+bool TieInputs::rests(std::size_t t) const {
+    if (body_asleep.empty() || is_led(t)) return false;
+    const Index second = tie.second[t];
+    return body_asleep[static_cast<std::size_t>(tie.first[t])] != 0 &&
+           (second == no_index || body_asleep[static_cast<std::size_t>(second)] != 0);
+}
+
+TiePlace TieInputs::place(std::size_t t, std::size_t k) const {
+    const Index second = tie.second[t], frame = this->frame(second);
+    if (deforms(second)) {
+        const Corners corner = corners_of(*this, t, k);
+        const Mat3 of_triangle = triangle_axes(corner);
+        const Vec3& node = position[static_cast<std::size_t>(row_of(tie.first[t], tie.node[k]))];
+        const Vec3 weight = tie.kind[t] == TieKind::slide ? weights_at(corner, node) : tie.weight[k];
+        const Vec3 offset = (frame == no_index ? of_triangle : mesh_axes(*this, frame)) * tie.place[k];
+        return {sum_of(corner, weight) + offset, of_triangle.col(2), weight};
+    }
+    if (frame != no_index) {
+        const auto r = static_cast<std::size_t>(frame);
+        const Mat3 turn = mesh_axes(*this, frame);
+        return {center[r] + turn * (tie.place[k] - rest_center[r]), turn * tie.normal[k]};
+    }
+    if (tie.collider[t] == no_index) return {tie.place[k], tie.normal[k]};
+    const RigidMotion& of = motion[static_cast<std::size_t>(tie.collider[t])];
+    return {of.position + of.rotation * tie.place[k], of.rotation * tie.normal[k]};
+}
+
+bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows) {
+    const TieTable& tie = ties.tie;
+    rows.rests.resize(tie.size());
+    rows.tie.clear();
+    rows.node.clear();
+    rows.stencil.clear();
+    rows.point.clear();
+    for (std::size_t t = 0; t < tie.size(); ++t) {
+        rows.rests[t] = ties.rests(t);
+        if (rows.rests[t]) continue;
+        const Real scale = step.warm_start == WarmStart::on && tie.step[t] > 0 ? step.kick / tie.step[t] : 0;
+        for (Index k = tie.nodes[t].begin; k < tie.nodes[t].end; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            if (tie.broken[at] < infinity) continue;
+            const TieRow row(ties, step, t, at);
+            append(tie, t, at, row, scale * tie.impulse[at], contacts);
+            rows.tie.push_back(static_cast<Index>(t));
+            rows.node.push_back(k);
+            rows.stencil.push_back(row.stencil());
+            rows.point.push_back(row.point());
+        }
+    }
+    return tie.size() > 0;
+}
+
+bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked) {
+    bool any = false;
+    for (std::size_t t = 0; t < ties.tie.size(); ++t) {
+        if (!ties.is_led(t)) continue;
+        any = true;
+        marked[static_cast<std::size_t>(ties.tie.first[t])] = 1;
+    }
+    return any;
+}
+
+bool keep_led_awake(const TieInputs& ties, Real h, std::span<Real> still_time) {
+    bool any = false;
+    for (std::size_t t = 0; t < ties.tie.size(); ++t) {
+        if (!ties.is_led(t)) continue;
+        any = true;
+        still_time[static_cast<std::size_t>(ties.tie.first[t])] = -h;
+    }
+    return any;
+}
+
+}  // namespace skerry

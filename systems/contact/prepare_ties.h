@@ -1,0 +1,108 @@
+// Prepares the equations of the ties in this step (docs/methods/ties.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "components/body_table.h"
+#include "components/collider_table.h"
+#include "components/contact_table.h"
+#include "components/node_table.h"
+#include "components/options.h"
+#include "components/rigid_body_table.h"
+#include "components/tie_table.h"
+#include "jobs/access.h"
+#include "systems/contact/node_groups.h"
+
+namespace skerry {
+
+/// Point of the other object to which a node is tied, at the start of the step.
+struct TiePlace {
+    Vec3 point;   // [m]
+    Vec3 normal;  // unit normal of the surface
+    // Weights of the corners of the triangle, if the other object is a deformable body.
+    Vec3 weight = Vec3::Zero();
+};
+
+struct TieInputs {
+    const TieTable& tie;
+    std::span<const Range> body_nodes, body_rigid, body_implicit;  // BodyTable
+    std::span<const std::uint8_t> body_asleep;                     // column of BodyTable; empty if no body is asleep
+    // By node. `velocity_next`: predicted velocity [m/s]
+    std::span<const Vec3> position, velocity_next;
+    // RigidBodyTable
+    std::span<const Vec3> center, rest_center;
+    std::span<const Mat3> axes, rotation;
+    std::span<const Real> mass;
+    std::span<const Vec3> momentum, kick;
+    std::span<const Index> holder;
+    RigidSpins spins;
+    std::span<const RigidMotion> motion;  // by collider
+
+    static TieInputs bind(const Binder& binder, const TieTable& tie, const BodyTable& body, const NodeTable& node,
+                          const RigidBodyTable& rigid, const ColliderTable& collider, const bool& any_asleep) {
+        return {.tie = binder.read(tie),
+                .body_nodes = binder.read(body.nodes),
+                .body_rigid = binder.read(body.rigid),
+                .body_implicit = binder.read(body.implicit),
+                .body_asleep = binder.read_if(binder.value(any_asleep), body.asleep),
+                .position = binder.read(node.position),
+                .velocity_next = binder.read(node.velocity_next),
+                .center = binder.read(rigid.center),
+                .rest_center = binder.read(rigid.rest_center),
+                .axes = binder.read(rigid.axes),
+                .rotation = binder.read(rigid.rotation),
+                .mass = binder.read(rigid.mass),
+                .momentum = binder.read(rigid.momentum),
+                .kick = binder.read(rigid.kick),
+                .holder = binder.read(rigid.holder),
+                .spins = RigidSpins::bind(binder, rigid),
+                .motion = binder.read(collider.motion)};
+    }
+
+    /// Row of RigidBodyTable of a rigid or implicit body; no_index for explicit bodies and for no body.
+    Index frame(Index body) const {
+        if (body == no_index) return no_index;
+        const Range rows = body_rigid[static_cast<std::size_t>(body)];
+        return rows.size() > 0 ? rows.begin : no_index;
+    }
+    bool deforms(Index body) const {
+        return body != no_index &&
+               (frame(body) == no_index || body_implicit[static_cast<std::size_t>(body)].size() > 0);
+    }
+    /// Row of NodeTable of a node that is numbered as in the mesh of its body.
+    Index row_of(Index body, Index node) const { return body_nodes[static_cast<std::size_t>(body)].begin + node; }
+    std::span<const Index> nodes_of(std::size_t t) const { return rows_of(tie.node.span(), tie.nodes[t]); }
+    /// True if the tie is fixed to a collider that moves in this step.
+    bool is_led(std::size_t t) const {
+        const Index collider = tie.collider[t];
+        return collider != no_index && !motion[static_cast<std::size_t>(collider)].stands_still();
+    }
+    /// True if no object of tie `t` can move in this step, because its bodies are asleep.
+    bool rests(std::size_t t) const;
+    /// Present place to which node `k` of the columns by tied node is tied. `t`: row of its tie.
+    TiePlace place(std::size_t t, std::size_t k) const;
+};
+
+/// Frame of a triangle: the first axis along its first edge, the third along its normal.
+Mat3 triangle_axes(const std::array<Vec3, 3>& corner);
+
+/// Lengths of the step and of the interval in which forces act [s], and settings of the solver.
+struct TieStep {
+    Real h = 0, kick = 0;
+    Real recovery_speed = 0;  // greatest speed at which position errors are corrected [m/s]
+    WarmStart warm_start = WarmStart::on;
+};
+
+/// Appends a row to the contacts for each tied node of a tie that does not rest. The rows demand that the position
+/// error is zero at the end of the step. Returns false if there is no tie (skipped).
+bool prepare_ties(const TieInputs& ties, const TieStep& step, ContactTable& contacts, TieRowTable& rows);
+
+/// Marks bodies that are tied to a moving collider. Returns false if there is none.
+bool mark_led(const TieInputs& ties, std::span<std::uint8_t> marked);
+/// Sets the time for which a body has been still to -h if the body is tied to a moving collider, so that it cannot fall
+/// asleep at the end of the step. Returns false if there is none.
+bool keep_led_awake(const TieInputs& ties, Real h, std::span<Real> still_time);
+
+}  // namespace skerry
