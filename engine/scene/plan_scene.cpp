@@ -201,9 +201,10 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     }
 }
 
-ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::vector<std::string>& notes) {
+ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, ScenePlan& plan) {
     ColliderPlan collider;
-    collider.shape = make_collider_shape(entry.shape, notes);
+    collider.shape = make_collider_shape(entry.shape, plan.notes);
+    if (entry.material) collider.material = find_material(plan, *entry.material, entry.place.key("material"));
     collider.settings.position = entry.position;
     collider.settings.rotation = entry.rotation.value;
     collider.settings.motion = make_motion(entry.motion);
@@ -217,6 +218,17 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::
     collider.settings.name = entry.name.empty() ? "collider_" + std::to_string(number) : entry.name;
     collider.place = entry.place;
     return collider;
+}
+
+PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
+    const Place place = entry.place.key("materials");
+    return {.first = find_material(plan, entry.materials[0], place.item(0)),
+            .second = find_material(plan, entry.materials[1], place.item(1)),
+            .surface = {.friction = entry.friction,
+                        .static_friction = entry.static_friction,
+                        .dynamic_friction = entry.dynamic_friction,
+                        .restitution = entry.restitution},
+            .place = entry.place};
 }
 
 std::size_t find_joined_body(const ScenePlan& plan, const std::string& wanted, const Place& place) {
@@ -281,12 +293,13 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     plan.settings = scene.settings;
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
+    for (const PairEntry& pair : scene.pairs) plan.pairs.push_back(plan_pair(pair, plan));
     PlannedBodies so_far;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
+        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);
     return plan;

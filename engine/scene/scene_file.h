@@ -1,6 +1,7 @@
 // Content of a scene file, key by key, before meshes are read and names are resolved.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -116,10 +117,17 @@ struct ColliderEntry {
     Vec3 position = Vec3::Zero();
     Rotation rotation;
     MotionEntry motion;
+    std::optional<std::string> material;
     std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Real contact_distance = 0;
     std::uint32_t collision_group = ColliderSettings{}.collision_group,
                   collision_mask = ColliderSettings{}.collision_mask;
+    Place place;
+};
+/// Surface properties of contacts between two materials.
+struct PairEntry {
+    std::array<std::string, 2> materials;
+    std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Place place;
 };
 struct MotorEntry {
@@ -174,6 +182,7 @@ struct SceneFile {
     OneOrMore<FilePath> include;
     Settings settings;
     Named<MaterialSettings> materials;
+    std::vector<PairEntry> pairs;
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;

@@ -33,6 +33,12 @@ struct BodyPlan {
 struct ColliderPlan {
     Shape shape;
     ColliderSettings settings;
+    std::optional<std::size_t> material{};  // index in ScenePlan::materials
+    Place place;
+};
+struct PairPlan {
+    std::size_t first = 0, second = 0;  // indices in ScenePlan::materials
+    SurfaceSettings surface;
     Place place;
 };
 struct JointPlan {
@@ -73,6 +79,7 @@ struct ScenePlan {
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
+    std::vector<PairPlan> pairs;
     std::vector<JointPlan> joints;
     std::vector<ProbePlan> probes;
     std::vector<SeriesPlan> series;

@@ -1,5 +1,5 @@
-// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp and
-// probe_rules.cpp define.
+// Keys of scene files: declarations of the rules that scene_rules.cpp, shape_rules.cpp, joint_rules.cpp,
+// surface_rules.cpp and probe_rules.cpp define.
 #pragma once
 
 #include "engine/scene/scene_file.h"
@@ -50,6 +50,8 @@ template <>
 const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
+template <>
+const Rule<PairEntry>& rule_of<PairEntry>();
 template <>
 const Rule<MotorKey>& rule_of<MotorKey>();
 template <>

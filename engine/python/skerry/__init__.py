@@ -64,6 +64,7 @@ from ._world import (
     StartOverlap,
     StepLimitReport,
     StepReport,
+    SurfaceSet,
     World,
     WorldReport,
 )
@@ -154,6 +155,7 @@ __all__ = [
     "StepLimitReport",
     "StepProblem",
     "StepReport",
+    "SurfaceSet",
     "StressProbe",
     "Surface",
     "SurfaceHit",

@@ -33,4 +33,9 @@ void enable_pairs_of(ColliderHandle collider, DisabledPairTable& disabled);
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.
 JointState joint_state(const Model& model, JointHandle joint);
 
+// control_materials.cpp
+
+/// The properties that are set; a negative property is not.
+SurfaceSettings set_values_of(const SurfaceProperties& surface);
+
 }  // namespace skerry

@@ -23,6 +23,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
         append_gone(Range{index, index + 1}, ranges);
         map.forget(map.handle_of_slot(table.slot[row]));
         if constexpr (requires { table.erase_keys_of(row); }) table.erase_keys_of(row);
+        if constexpr (requires { table.erase_members_of(row); }) table.erase_members_of(row);
     }
     if (ranges.empty()) return;
     AnyTable(table).erase(ranges);

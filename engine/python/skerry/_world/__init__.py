@@ -17,6 +17,7 @@ from .reports import (
     StepReport,
     WorldReport,
 )
+from .surface import SurfaceSet
 from .world import World
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "StartOverlap",
     "StepLimitReport",
     "StepReport",
+    "SurfaceSet",
     "World",
     "WorldReport",
 ]
