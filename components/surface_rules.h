@@ -1,5 +1,5 @@
 // Surface properties that differ from those of bodies and colliders: by pair of materials, and by place on a body
-// (docs/methods/friction.md 7).
+// (docs/methods/friction.md 4).
 #pragma once
 
 #include <algorithm>

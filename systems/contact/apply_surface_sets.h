@@ -1,4 +1,4 @@
-// Friction and restitution of contacts in parts of surfaces that have their own (docs/methods/friction.md 7).
+// Friction and restitution of contacts in parts of surfaces that have their own (docs/methods/friction.md 4).
 #pragma once
 
 #include "components/contact_table.h"

@@ -1,4 +1,4 @@
-// Friction by pair of materials and by place, in whole steps, against closed forms (docs/methods/friction.md 7).
+// Friction by pair of materials and by place, in whole steps, against closed forms (docs/methods/friction.md 4).
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -119,10 +119,10 @@ TEST_CASE("the order of a pair of materials does not matter, for bodies of every
     for (const BodyDynamics dynamics :
          {BodyDynamics::rigid, BodyDynamics::explicit_elastic, BodyDynamics::implicit_elastic}) {
         std::vector<std::uint64_t> hashes;
-        std::vector<Real> way;
+        std::vector<Real> gained;
         for (const bool swapped : {false, true}) {
             Settings settings = with_step(tilted_gravity(20));
-            settings.step_size = 0;
+            settings.step_size.reset();
             World world(settings);
             const auto a = world.add_material({.young_modulus = 1e6, .friction = 0.9}),
                        b = world.add_material({.young_modulus = 1e6, .friction = 0.9});
@@ -131,13 +131,16 @@ TEST_CASE("the order of a pair of materials does not matter, for bodies of every
                                               placed(a, {0, 0, 0.025}, BodyDynamics::rigid)),
                        above = world.add_body(block, placed(b, {0, 0, 0.075}, dynamics));
             SurfacePairs(world).set(swapped ? b : a, swapped ? a : b, {.friction = 0.2});
-            REQUIRE(world.advance(0.2).ok());
+            const auto speed = [&] { return (world.velocity(above).velocity - world.velocity(below).velocity).x(); };
+            REQUIRE(world.advance(0.1).ok());
+            const Real before = speed();
+            REQUIRE(world.advance(0.1).ok());
             hashes.push_back(world.state_hash());
-            way.push_back((world.center_of_mass(above) - world.center_of_mass(below)).x());
+            gained.push_back(speed() - before);
         }
         CHECK(hashes[0] == hashes[1]);
-        const Real gain = g * (std::sin(20 * degree) - 0.2 * std::cos(20 * degree));
-        CHECK(way[0] == Approx(0.5 * gain * 0.04).epsilon(0.05));  // explicit blocks also shear while they settle
+        CAPTURE(name_of(dynamics));
+        CHECK(gained[0] == Approx(0.1 * g * (std::sin(20 * degree) - 0.2 * std::cos(20 * degree))).epsilon(0.01));
     }
 }
 
@@ -172,6 +175,7 @@ TEST_CASE("a sliding plate that is half rubber and half ice turns about its cent
         CHECK(lost / twist.angular_velocity.z() == Approx(expected).epsilon(5e-3));
         Index rubber_contacts = 0;
         for (const Contact& contact : world.contacts()) {
+            if (contact.impulse.isZero(0)) continue;
             const bool left = plate.nodes[contact.node[0]].x() < 0;
             CHECK(contact.dynamic_friction == Approx(left ? 0.7 : 0).margin(1e-15));
             rubber_contacts += left;
@@ -183,17 +187,22 @@ TEST_CASE("a sliding plate that is half rubber and half ice turns about its cent
 TEST_CASE("friction with two coefficients holds up to the ellipse, whatever the downhill direction",
           "[scene][surface]") {
     constexpr Real along = 0.6, across = 0.2;
-    for (const Real heading : {0.0, 25 * degree, 60 * degree, 90 * degree}) {
-        const Real critical = std::atan(1 / std::hypot(std::cos(heading) / along, std::sin(heading) / across));
-        for (const Real beside : {-0.1, 0.1}) {
-            SkiBlock ski(with_step(incline(critical + beside * degree, heading)), along, across);
-            REQUIRE(ski.world.advance(0.1).ok());
-            const Vec3 start = ski.world.center_of_mass(ski.body);
-            REQUIRE(ski.world.advance(0.1).ok());
-            const Real slip = (ski.world.center_of_mass(ski.body) - start).norm();
-            CHECK((beside < 0 ? slip < 1e-9 : slip > 1e-6));
+    for (const Real dynamic : {1.0, 0.75})  // as a multiple of static friction, in both directions
+        for (const Real heading : {0.0, 25 * degree, 60 * degree, 90 * degree}) {
+            const Real critical = std::atan(1 / std::hypot(std::cos(heading) / along, std::sin(heading) / across));
+            // With two coefficients, a contact that reaches its limit before the others slides and loads them more.
+            for (const Real beside : {dynamic < 1 ? -3 : -0.1, 0.1}) {
+                SkiBlock ski(with_step(incline(critical + beside * degree, heading)), along, across);
+                SurfaceSets(ski.world).set_surface(
+                    ski.set, {.static_friction = along, .dynamic_friction = dynamic * along}, dynamic * across);
+                REQUIRE(ski.world.advance(0.1).ok());
+                const Vec3 start = ski.world.center_of_mass(ski.body);
+                REQUIRE(ski.world.advance(0.1).ok());
+                const Real slip = (ski.world.center_of_mass(ski.body) - start).norm();
+                CAPTURE(dynamic, heading, beside, slip);
+                CHECK((beside < 0 ? slip < 1e-9 : slip > 1e-6));
+            }
         }
-    }
 }
 
 TEST_CASE("a block slides off an incline in the direction of the elliptic friction law", "[scene][surface]") {
@@ -224,10 +233,10 @@ TEST_CASE("a block slides off an incline in the direction of the elliptic fricti
         for (int i = 0; i < 60; ++i) (excess((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
         const bool limit = now.steeper < degree;
         if (limit)
-            CHECK(low == Approx(std::atan(along * along / (across * across) * std::tan(now.heading))).epsilon(0.02));
+            CHECK(low == Approx(std::atan(along * along / (across * across) * std::tan(now.heading))).epsilon(0.005));
         Settings settings = with_step(incline(critical + now.steeper, now.heading + now.turned), 1.0 / 1000);
         const bool deforms = now.dynamics == BodyDynamics::explicit_elastic;
-        if (deforms) settings.step_size = 0;
+        if (deforms) settings.step_size.reset();
         SkiBlock ski(settings, along, across, now.dynamics, now.turned, {.young_modulus = 2e6, .damping = 200});
         REQUIRE(ski.world.advance(0.05).ok());
         const Vec3 before = ski.world.velocity(ski.body).velocity;
@@ -257,9 +266,9 @@ TEST_CASE("friction with two coefficients does not depend on the step, and never
         const Real start = mass * (0.5 * (0.49 + 0.25) + g * 0.025);
         CHECK(energy.kinetic + energy.potential + energy.dissipated == Approx(start).epsilon(1e-9));
         CHECK(energy.dissipated > 0);
-        end.push_back(ski.world.center_of_mass(ski.body));
+        end.push_back(ski.world.velocity(ski.body).velocity);
     }
-    CHECK((end[0] - end[1]).norm() < 1e-3 * horizontal(end[1]).norm());
+    CHECK((end[0] - end[1]).norm() < 1e-3 * end[1].norm());
 }
 
 TEST_CASE("worlds with pairs and surface sets keep their bits", "[scene][surface]") {
@@ -267,7 +276,8 @@ TEST_CASE("worlds with pairs and surface sets keep their bits", "[scene][surface
         World world;
         explicit Course(Index threads)
             : world([&] {
-                  Settings settings = with_step(incline(30 * degree, 0.7), 0);
+                  Settings settings = with_step(incline(30 * degree, 0.7));
+                  settings.step_size.reset();
                   settings.threads = threads;
                   return settings;
               }()) {
@@ -371,7 +381,7 @@ TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
     World world(Settings{});
     const auto material = world.add_material({});
     const auto body = world.add_body(block, {.material = material, .name = "sledge"});
-    const auto ball = world.add_body(Sphere{0.1}, {.material = material, .name = "ball", .position = {1, 0, 0}});
+    const auto ball = world.add_body(Sphere{0.1}, {.material = material, .position = {1, 0, 0}, .name = "ball"});
     SurfaceSets sets(world);
     const std::vector<Index> node{0};
     const auto refusal = [&](const SurfaceSetSettings& set) -> std::string {

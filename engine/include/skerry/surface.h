@@ -1,4 +1,4 @@
-// Friction and restitution by pair of materials and by place on a body (docs/methods/friction.md 7).
+// Friction and restitution by pair of materials and by place on a body (docs/methods/friction.md 4).
 #pragma once
 
 #include <array>
