@@ -123,6 +123,12 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     SurfacePairs pairs(world);
     for (std::size_t c = 0; c < colliders.size(); ++c)
         if (plan.colliders[c].material) pairs.set_material(colliders[c], materials[*plan.colliders[c].material]);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (const SurfacePlan& surface : plan.bodies[b].surfaces) {
+            SurfaceSetSettings settings = surface.settings;
+            settings.body = bodies[b];
+            called_at(surface.place, [&] { return SurfaceSets(world).add(settings); });
+        }
     for (const PairPlan& pair : plan.pairs)
         called_at(pair.place, [&] { pairs.set(materials[pair.first], materials[pair.second], pair.surface); });
     std::vector<JointHandle> joints;

@@ -79,6 +79,24 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh, const std::map<std::st
             .place = entry.place};
 }
 
+/// The values of an entry that has keys of friction and restitution.
+SurfaceSettings surface_of(const auto& entry) {
+    return {.friction = entry.friction,
+            .static_friction = entry.static_friction,
+            .dynamic_friction = entry.dynamic_friction,
+            .restitution = entry.restitution};
+}
+
+SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std::map<std::string, MeshSet>& sets) {
+    SurfacePlan surface{.settings = {.surface = surface_of(entry),
+                                     .friction_across = entry.friction_across,
+                                     .direction = entry.direction},
+                        .place = entry.place};
+    if (entry.set) surface.settings.faces = find_set(*entry.set, mesh, sets, entry.place.key("set")).faces;
+    if (surface.settings.faces.empty()) surface.settings.nodes = nodes_of(entry, mesh, sets);
+    return surface;
+}
+
 /// Returns the positions of all copies of a body.
 std::vector<Vec3> positions_of(const BodyEntry& entry) {
     std::vector<Vec3> positions = entry.positions;
@@ -161,6 +179,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     planned.sets = plan_sets(entry.sets, mesh, entry.place.key("sets"));
     plan_materials(entry, mesh, plan, planned);
     for (const PinEntry& pin : entry.pin.items) planned.pins.push_back(plan_pin(pin, mesh, planned.sets));
+    for (const SurfaceEntry& surface : entry.surfaces)
+        planned.surfaces.push_back(plan_surface(surface, mesh, planned.sets));
 
     const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
     const bool copies = entry.repeat || !entry.positions.empty();
@@ -215,10 +235,7 @@ PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
     const Place place = entry.place.key("materials");
     return {.first = find_material(plan, entry.materials[0], place.item(0)),
             .second = find_material(plan, entry.materials[1], place.item(1)),
-            .surface = {.friction = entry.friction,
-                        .static_friction = entry.static_friction,
-                        .dynamic_friction = entry.dynamic_friction,
-                        .restitution = entry.restitution},
+            .surface = surface_of(entry),
             .place = entry.place};
 }
 

@@ -101,6 +101,11 @@ struct PinEntry : PartEntry {
     std::optional<std::vector<WorldAxis>> axes;
     std::optional<Vec3> direction;
 };
+/// A part of the surface of a body with its own friction and restitution.
+struct SurfaceEntry : PartEntry {
+    std::optional<Real> friction, static_friction, dynamic_friction, restitution, friction_across;
+    std::optional<Vec3> direction;
+};
 /// A grid of copies of a body.
 struct RepeatEntry {
     std::array<int, 3> count{1, 1, 1};
@@ -132,6 +137,7 @@ struct BodyEntry {
     std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
+    std::vector<SurfaceEntry> surfaces;
     Place place;
 };
 

@@ -13,6 +13,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/world/tuning.h"
 #include "skerry/scene.h"
+#include "skerry/surface.h"
 
 namespace skerry {
 
@@ -21,6 +22,10 @@ struct PinPlan {
     Motion motion;
     Vec3 pivot = Vec3::Zero();       // position of the pivot in world coordinates [m]
     std::vector<Vec3> directions{};  // directions along which the nodes are held; empty: all
+    Place place;
+};
+struct SurfacePlan {
+    SurfaceSetSettings settings;  // settings without the body handle, because handles exist only in a built world
     Place place;
 };
 struct BodyPlan {
@@ -33,6 +38,7 @@ struct BodyPlan {
     std::vector<std::pair<std::string, std::size_t>> set_materials;  // pairs (set, index in ScenePlan::materials)
     std::map<std::string, MeshSet> sets;                             // sets of the scene, in addition to Mesh::sets
     std::vector<PinPlan> pins;
+    std::vector<SurfacePlan> surfaces;
     Place place;
 };
 struct ColliderPlan {

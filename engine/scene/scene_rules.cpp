@@ -107,6 +107,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "pinned nodes"})
+            .key("surfaces", &BodyEntry::surfaces,
+                 {.meaning = "parts of the surface with their own friction and restitution. Where they overlap, the "
+                             "last one counts"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});

@@ -59,6 +59,8 @@ const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
 template <>
+const Rule<SurfaceEntry>& rule_of<SurfaceEntry>();
+template <>
 const Rule<PairEntry>& rule_of<PairEntry>();
 template <>
 const Rule<MotorKey>& rule_of<MotorKey>();

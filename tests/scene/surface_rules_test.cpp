@@ -377,6 +377,19 @@ TEST_CASE("a surface set goes with its body, and follows it when other bodies ar
     CHECK(kept.surface.friction == 0.1 * 3);
 }
 
+TEST_CASE("a surface set stays with a body whose dynamics change", "[scene][surface]") {
+    SkiBlock ski(with_step({0, 0, -g}), 0.4, 0.1, BodyDynamics::explicit_elastic);
+    REQUIRE(ski.world.advance(0.01).ok());
+    for (const BodyDynamics next : {BodyDynamics::rigid, BodyDynamics::implicit_elastic}) {
+        ski.world.set_dynamics(ski.body, next);
+        REQUIRE(ski.world.advance(0.01).ok());
+        CHECK(SurfaceSets(ski.world).settings(ski.set).body == ski.body);
+        REQUIRE(!ski.world.contacts().empty());
+        for (const Contact& contact : ski.world.contacts())
+            if (!contact.impulse.isZero(0)) CHECK(contact.friction_across == Approx(0.1));
+    }
+}
+
 TEST_CASE("surface rules refuse what cannot be", "[scene][surface]") {
     World world(Settings{});
     const auto material = world.add_material({});

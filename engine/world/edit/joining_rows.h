@@ -34,7 +34,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
 /// removed. Wakes all bodies of the removed rows.
 void erase_rows_joining(std::size_t body, Model& model);
 
-/// True if a row, such as a joint, joins the body to another body or to the world.
+/// True if a row, such as a joint, joins the body to another body or to the world. Surface sets do not count.
 bool has_rows_joining(std::size_t body, Model& model);
 
 /// Renumbers the bodies in joining rows after other bodies were removed. `body_now`: new row of each body, by its old

@@ -1,4 +1,4 @@
-// Friction by pair of materials in scene files.
+// Friction by pair of materials and by place in scene files.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -52,6 +52,39 @@ TEST_CASE("errors of pairs name the file, the place and the materials", "[unit][
     CHECK_THAT(refusal(R"({"materials": ["steel", "rubber"], "static_friction": 0.1, "dynamic_friction": 0.2})"),
                Contains("pairs[0].dynamic_friction"));
     CHECK_THAT(refusal("", R"("material": "ice")"), Contains("colliders[0].material") && Contains("\"steel\""));
+}
+
+TEST_CASE("a scene gives parts of a surface their own friction", "[unit][surface]") {
+    const TemporaryFolder folder;
+    const std::string sets = R"("sets": {"bottom": {"half_space": {"normal": [0, 0, -1], "point": [0, 0, -0.49]}}}, )";
+    Scene built = build_scene(
+        plan_scene(folder.write("s.json", body_with(sets + R"("positions": [[0, 0, 0], [5, 0, 0]], "surfaces": [
+            {"set": "bottom", "mu": 0.2, "friction_across": 0.5, "direction": [0, 3, 0]},
+            {"box": {"lower": [-1, -1, -1], "upper": [0, 1, 1]}, "restitution": 0.4}])"))));
+    SurfaceSets found(built.world);
+    REQUIRE(found.all().size() == 4);
+    const SurfaceSetSettings ski = found.settings(found.all()[2]), left = found.settings(found.all()[3]);
+    CHECK(ski.body == built.world.bodies()[1]);
+    CHECK(ski.nodes.size() + 3 * ski.faces.size() >= 4);
+    CHECK(ski.surface.friction == 0.2);
+    CHECK(*ski.friction_across == Approx(0.5));
+    CHECK(*ski.direction == Vec3(0, 1, 0));
+    CHECK(left.surface.restitution == 0.4);
+    CHECK(!left.surface.friction);
+    const auto fault = [&](const std::string& surface) -> std::string {
+        try {
+            build_scene(plan_scene(folder.write("s.json", body_with(sets + "\"surfaces\": [" + surface + "]"))));
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    using Catch::Matchers::Contains;
+    CHECK_THAT(fault(R"({"set": "botom", "friction": 1})"), Contains("surfaces[0].set") && Contains("bottom"));
+    CHECK_THAT(fault(R"({"set": "bottom", "friction": 1, "friction_across": 2})"), Contains("direction"));
+    CHECK_THAT(fault(R"({"set": "bottom", "friction_across": 2, "direction": [1, 0, 0]})"),
+               Contains("surfaces[0]") && Contains("friction"));
+    CHECK_THAT(fault(R"({"friction": 1})"), Contains("surfaces[0]") && Contains("\"set\""));
 }
 
 }  // namespace skerry::test::scene_surface_test
