@@ -58,9 +58,7 @@ def test_a_set_has_its_own_friction_in_two_directions() -> None:
     world, body, _, steel = slope_world()
     world.colliders["slope"].material = None
     bottom = np.flatnonzero(BLOCK.nodes[:, 2] < 0)
-    ski = world.add_surface_set(
-        body, sk.Surface(friction=0.1), nodes=bottom, friction_across=0.4, direction=(1, 1, 0)
-    )
+    ski = world.add_surface_set(body, sk.Surface(friction=0.1), nodes=bottom, friction_across=0.4, direction=(1, 1, 0))
     assert world.surface_sets == [ski] and ski.body == body and ski.alive
     assert ski.nodes == bottom.tolist() and ski.faces == []
     assert ski.surface_values == sk.Surface(friction=0.1)

@@ -184,11 +184,11 @@ class Building:
         """Adds a collider and returns it.
 
         shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh. position, rotation: pose (3,) [m, rad].
-        motion: velocities, or keys, which are poses at absolute times. material: see Collider.material. friction, static_friction, dynamic_friction: a
-        contact uses the geometric mean of this value and that of the body, or that of the body if not given.
-        restitution: a contact uses the larger value. contact_distance: thickness of the contact shell of a SurfaceMesh
-        [m]. collision_group, collision_mask: see Collider.set_collision_groups(). name: unique in the world, default
-        "collider N".
+        motion: velocities, or keys, which are poses at absolute times. material: see Collider.material. friction,
+        static_friction, dynamic_friction: a contact uses the geometric mean of this value and that of the body, or that
+        of the material or the body if not given. restitution: a contact uses the larger value. contact_distance:
+        thickness of the contact shell of a SurfaceMesh [m]. collision_group, collision_mask: see
+        Collider.set_collision_groups(). name: unique in the world, default "collider N".
 
         SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
         name = self._new_name(name, "collider", self.colliders)
