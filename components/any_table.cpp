@@ -18,6 +18,7 @@
 #include "components/region_table.h"
 #include "components/resting_contact_table.h"
 #include "components/rigid_body_table.h"
+#include "components/surface_rules.h"
 #include "components/surface_table.h"
 #include "components/tie_table.h"
 
@@ -78,6 +79,7 @@ template std::span<const ColumnInfo> columns_of<ElementNodeTable>();
 template std::span<const ColumnInfo> columns_of<ImplicitNodeTable>();
 template std::span<const ColumnInfo> columns_of<JointBlockTable>();
 template std::span<const ColumnInfo> columns_of<JointTable>();
+template std::span<const ColumnInfo> columns_of<MaterialPairTable>();
 template std::span<const ColumnInfo> columns_of<MaterialTable>();
 template std::span<const ColumnInfo> columns_of<NodeBlockTable>();
 template std::span<const ColumnInfo> columns_of<NodeTable>();
@@ -85,6 +87,7 @@ template std::span<const ColumnInfo> columns_of<PairTable>();
 template std::span<const ColumnInfo> columns_of<RegionTable>();
 template std::span<const ColumnInfo> columns_of<RestingContactTable>();
 template std::span<const ColumnInfo> columns_of<RigidBodyTable>();
+template std::span<const ColumnInfo> columns_of<SurfaceSetTable>();
 template std::span<const ColumnInfo> columns_of<SurfaceTables>();
 template std::span<const ColumnInfo> columns_of<TetrahedronBlockTable>();
 template std::span<const ColumnInfo> columns_of<TieRowTable>();

@@ -76,6 +76,7 @@ struct ColliderTable {
     Column<Keyframe> keyframe;  // keyframes of all colliders; each script refers to a range of these rows
     // surface properties of the collider; a negative property is replaced by the property of the touching body
     Column<SurfaceProperties> surface;
+    Column<Index> material;          // row of MaterialTable: material of the surface, or no_index
     Column<CollisionFilter> filter;  // groups that the collider belongs to, and groups that it collides with
     Column<Index> body;              // row of BodyTable: kinematic body of a mesh collider, else no_index
     // Bound on the motion of those points of the collider that are near a body, similar to BodyTable::travel [m].
@@ -89,6 +90,7 @@ struct ColliderTable {
         visit("initial", initial, ColumnRole::state);
         visit("script", script, ColumnRole::link);
         visit("surface", surface, ColumnRole::state);
+        visit("material", material, ColumnRole::link);
         visit("filter", filter, ColumnRole::link);
         visit("body", body, ColumnRole::link);
         visit("travel", travel, ColumnRole::memory);

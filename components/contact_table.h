@@ -45,6 +45,15 @@ struct MembersOf<Stencil> {
     static std::span<const Member> list();
 };
 
+/// Tangent of a contact along which its friction coefficients apply. Across this direction the coefficients are
+/// multiplied by `across`, in (0, 1]. If `across` is 1, friction is the same in all directions.
+struct FrictionAxis {
+    Vec3 direction = Vec3::Zero();
+    Real across = 1;
+};
+template <>
+struct NumbersOf<FrictionAxis> : Reals<4> {};
+
 /// One contact with all its fields. find_contacts writes it.
 struct ContactRow {
     ContactKey key;
@@ -78,6 +87,7 @@ struct ContactTable {
     Column<Real> static_friction;
     Column<Real> dynamic_friction;
     Column<Real> restitution;
+    Column<FrictionAxis> friction_axis;
     Column<Index> first_body;
     Column<Index> second_body;
     Column<Index> collider;
@@ -98,6 +108,7 @@ struct ContactTable {
         visit("static_friction", static_friction, ColumnRole::scratch);
         visit("dynamic_friction", dynamic_friction, ColumnRole::scratch);
         visit("restitution", restitution, ColumnRole::scratch);
+        visit("friction_axis", friction_axis, ColumnRole::scratch);
         visit("first_body", first_body, ColumnRole::scratch);
         visit("second_body", second_body, ColumnRole::scratch);
         visit("collider", collider, ColumnRole::scratch);

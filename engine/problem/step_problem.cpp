@@ -1,5 +1,6 @@
 #include "engine/problem/step_problem.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,6 +20,10 @@ std::string description_of(const StepContacts& step, const SolverSettings& setti
             "; static friction differs from dynamic friction, and mu is the coefficient of dynamic friction, so the "
             "engine's solution does "
             "not solve this problem";
+    if (std::ranges::any_of(step.contacts.friction_axis, [](const FrictionAxis& axis) { return axis.across != 1; }))
+        text +=
+            "; the friction of some contacts depends on the direction, and mu is the larger coefficient, so the "
+            "engine's solution does not solve this problem";
     if (settings.friction == Friction::pyramid)
         text += "; the engine's solution is for the friction pyramid, not for the cone";
     return text;

@@ -4,6 +4,7 @@
 #include "engine/scene/scene_plan.h"
 #include "engine/world/tuning.h"
 #include "skerry/scene.h"
+#include "skerry/surface.h"
 
 namespace skerry {
 
@@ -119,6 +120,17 @@ Scene build_scene(const ScenePlan& plan, const std::function<void(std::size_t)>&
     for (const ColliderPlan& collider : plan.colliders)
         colliders.push_back(
             called_at(collider.place, [&] { return world.add_collider(collider.shape, collider.settings); }));
+    SurfacePairs pairs(world);
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        if (plan.colliders[c].material) pairs.set_material(colliders[c], materials[*plan.colliders[c].material]);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (const SurfacePlan& surface : plan.bodies[b].surfaces) {
+            SurfaceSetSettings settings = surface.settings;
+            settings.body = bodies[b];
+            called_at(surface.place, [&] { return SurfaceSets(world).add(settings); });
+        }
+    for (const PairPlan& pair : plan.pairs)
+        called_at(pair.place, [&] { pairs.set(materials[pair.first], materials[pair.second], pair.surface); });
     std::vector<JointHandle> joints;
     for (const JointPlan& joint : plan.joints) {
         JointSettings settings = joint.settings;

@@ -79,6 +79,24 @@ PinPlan plan_pin(const PinEntry& entry, const Mesh& mesh, const std::map<std::st
             .place = entry.place};
 }
 
+/// The values of an entry that has keys of friction and restitution.
+SurfaceSettings surface_of(const auto& entry) {
+    return {.friction = entry.friction,
+            .static_friction = entry.static_friction,
+            .dynamic_friction = entry.dynamic_friction,
+            .restitution = entry.restitution};
+}
+
+SurfacePlan plan_surface(const SurfaceEntry& entry, const Mesh& mesh, const std::map<std::string, MeshSet>& sets) {
+    SurfacePlan surface{.settings = {.surface = surface_of(entry),
+                                     .friction_across = entry.friction_across,
+                                     .direction = entry.direction},
+                        .place = entry.place};
+    if (entry.set) surface.settings.faces = find_set(*entry.set, mesh, sets, entry.place.key("set")).faces;
+    if (surface.settings.faces.empty()) surface.settings.nodes = nodes_of(entry, mesh, sets);
+    return surface;
+}
+
 /// Returns the positions of all copies of a body.
 std::vector<Vec3> positions_of(const BodyEntry& entry) {
     std::vector<Vec3> positions = entry.positions;
@@ -161,6 +179,8 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     planned.sets = plan_sets(entry.sets, mesh, entry.place.key("sets"));
     plan_materials(entry, mesh, plan, planned);
     for (const PinEntry& pin : entry.pin.items) planned.pins.push_back(plan_pin(pin, mesh, planned.sets));
+    for (const SurfaceEntry& surface : entry.surfaces)
+        planned.surfaces.push_back(plan_surface(surface, mesh, planned.sets));
 
     const std::string name = entry.name.empty() ? "body_" + std::to_string(number) : entry.name;
     const bool copies = entry.repeat || !entry.positions.empty();
@@ -192,9 +212,10 @@ void plan_body(const BodyEntry& entry, std::size_t number, PlannedBodies& so_far
     }
 }
 
-ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::vector<std::string>& notes) {
+ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, ScenePlan& plan) {
     ColliderPlan collider;
-    collider.shape = make_collider_shape(entry.shape, notes);
+    collider.shape = make_collider_shape(entry.shape, plan.notes);
+    if (entry.material) collider.material = find_material(plan, *entry.material, entry.place.key("material"));
     collider.settings.position = entry.position;
     collider.settings.rotation = entry.rotation.value;
     collider.settings.motion = make_motion(entry.motion);
@@ -208,6 +229,14 @@ ColliderPlan plan_collider(const ColliderEntry& entry, std::size_t number, std::
     collider.settings.name = entry.name.empty() ? "collider_" + std::to_string(number) : entry.name;
     collider.place = entry.place;
     return collider;
+}
+
+PairPlan plan_pair(const PairEntry& entry, const ScenePlan& plan) {
+    const Place place = entry.place.key("materials");
+    return {.first = find_material(plan, entry.materials[0], place.item(0)),
+            .second = find_material(plan, entry.materials[1], place.item(1)),
+            .surface = surface_of(entry),
+            .place = entry.place};
 }
 
 JointPlan plan_joint(const JointEntry& entry, std::size_t number, const ScenePlan& plan) {
@@ -265,12 +294,13 @@ ScenePlan plan_scene(const SceneFile& scene, const std::filesystem::path& file, 
     plan.settings = scene.settings;
     apply(overrides, plan.settings);
     plan.materials = scene.materials.items;
+    for (const PairEntry& pair : scene.pairs) plan.pairs.push_back(plan_pair(pair, plan));
     PlannedBodies so_far;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) plan_body(scene.bodies[i], i, so_far, plan);
     if (overrides.element)
         for (BodyPlan& body : plan.bodies) body.settings.element = *overrides.element;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan.notes));
+        plan.colliders.push_back(plan_collider(scene.colliders[i], i, plan));
     for (std::size_t i = 0; i < scene.joints.size(); ++i) plan.joints.push_back(plan_joint(scene.joints[i], i, plan));
     for (const TieEntry& tie : scene.ties) plan.ties.push_back(plan_tie(tie, plan));
     for (const ProbeEntry& probe : scene.probes) plan_probe(probe, plan);

@@ -1,6 +1,7 @@
 // Content of a scene file, key by key, before meshes are read and names are resolved.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -101,6 +102,11 @@ struct PinEntry : PartEntry {
     std::optional<std::vector<WorldAxis>> axes;
     std::optional<Vec3> direction;
 };
+/// A part of the surface of a body with its own friction and restitution.
+struct SurfaceEntry : PartEntry {
+    std::optional<Real> friction, static_friction, dynamic_friction, restitution, friction_across;
+    std::optional<Vec3> direction;
+};
 /// A grid of copies of a body.
 struct RepeatEntry {
     std::array<int, 3> count{1, 1, 1};
@@ -132,6 +138,7 @@ struct BodyEntry {
     std::uint32_t collision_group = BodySettings{}.collision_group, collision_mask = BodySettings{}.collision_mask;
     ElementKind element = BodySettings{}.element;
     OneOrMore<PinEntry> pin;
+    std::vector<SurfaceEntry> surfaces;
     Place place;
 };
 
@@ -150,6 +157,7 @@ struct ColliderEntry {
     Vec3 position = Vec3::Zero();
     Rotation rotation;
     MotionEntry motion;
+    std::optional<std::string> material;
     std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Real contact_distance = 0;
     std::uint32_t collision_group = ColliderSettings{}.collision_group,
@@ -160,6 +168,12 @@ struct ColliderEntry {
 struct AnchorEntry {
     std::optional<std::string> body, collider;
     Vec3 point = Vec3::Zero();  // position in the own frame of the mesh or collider, or in the world [m]
+    Place place;
+};
+/// Surface properties of contacts between two materials.
+struct PairEntry {
+    std::array<std::string, 2> materials;
+    std::optional<Real> friction, static_friction, dynamic_friction, restitution;
     Place place;
 };
 struct MotorEntry {
@@ -222,6 +236,7 @@ struct SceneFile {
     OneOrMore<FilePath> include;
     Settings settings;
     Named<MaterialSettings> materials;
+    std::vector<PairEntry> pairs;
     std::vector<BodyEntry> bodies;
     std::vector<ColliderEntry> colliders;
     std::vector<JointEntry> joints;

@@ -14,6 +14,7 @@
 #include "engine/world/tuning.h"
 #include "skerry/anchor.h"
 #include "skerry/scene.h"
+#include "skerry/surface.h"
 
 namespace skerry {
 
@@ -22,6 +23,10 @@ struct PinPlan {
     Motion motion;
     Vec3 pivot = Vec3::Zero();       // position of the pivot in world coordinates [m]
     std::vector<Vec3> directions{};  // directions along which the nodes are held; empty: all
+    Place place;
+};
+struct SurfacePlan {
+    SurfaceSetSettings settings;  // settings without the body handle, because handles exist only in a built world
     Place place;
 };
 struct BodyPlan {
@@ -34,11 +39,18 @@ struct BodyPlan {
     std::vector<std::pair<std::string, std::size_t>> set_materials;  // pairs (set, index in ScenePlan::materials)
     std::map<std::string, MeshSet> sets;                             // sets of the scene, in addition to Mesh::sets
     std::vector<PinPlan> pins;
+    std::vector<SurfacePlan> surfaces;
     Place place;
 };
 struct ColliderPlan {
     Shape shape;
     ColliderSettings settings;
+    std::optional<std::size_t> material{};  // index in ScenePlan::materials
+    Place place;
+};
+struct PairPlan {
+    std::size_t first = 0, second = 0;  // indices in ScenePlan::materials
+    SurfaceSettings surface;
     Place place;
 };
 struct AnchorPlan {
@@ -90,6 +102,7 @@ struct ScenePlan {
     std::vector<std::string> notes;                 // remarks about mesh files that were corrected on reading
     std::vector<BodyPlan> bodies;
     std::vector<ColliderPlan> colliders;
+    std::vector<PairPlan> pairs;
     std::vector<JointPlan> joints;
     std::vector<TiePlan> ties;
     std::vector<ProbePlan> probes;

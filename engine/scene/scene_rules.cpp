@@ -107,6 +107,9 @@ const Rule<BodyEntry>& rule_of<BodyEntry>() {
             .key("collision_mask", &BodyEntry::collision_mask, mask_doc)
             .key("element", &BodyEntry::element, {.meaning = "type of the elements that carry the stress"})
             .key("pin", &BodyEntry::pin, {.meaning = "pinned nodes"})
+            .key("surfaces", &BodyEntry::surfaces,
+                 {.meaning = "parts of the surface with their own friction and restitution. Where they overlap, the "
+                             "last one counts"})
             .exactly_one({"mesh", "shape"})
             .at_most_one({"position", "positions"})
             .at_most_one({"positions", "repeat"});
@@ -123,9 +126,11 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
             .key("position", &Entry::position, {.meaning = "position of the shape's origin", .unit = "m"})
             .key("rotation", &Entry::rotation, {.meaning = "rotation about the shape's origin"})
             .key("motion", &Entry::motion, {.meaning = "prescribed motion; default: none"})
+            .key("material", &Entry::material,
+                 {.meaning = "name of one of the materials, for friction, restitution and \"pairs\"; default: none"})
             .key("friction", &Entry::friction,
                  {.meaning = "friction coefficient of the collider. A contact uses the geometric mean of this value "
-                             "and the value of the touching body; default: the value of the body",
+                             "and the value of the touching body; default: the value of the material or of the body",
                   .alias = "mu",
                   .limits = at_least(0)})
             .key("static_friction", &Entry::static_friction,
@@ -134,7 +139,7 @@ const Rule<ColliderEntry>& rule_of<ColliderEntry>() {
                  {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
             .key("restitution", &Entry::restitution,
                  {.meaning = "coefficient of restitution of the collider. A contact uses the larger of this value and "
-                             "the value of the touching body; default: the value of the body",
+                             "the value of the touching body; default: the value of the material or of the body",
                   .limits = within(0, 1)})
             .key("contact_distance", &Entry::contact_distance,
                  {.meaning = "thickness of the contact shell of a mesh collider", .unit = "m", .limits = at_least(0)})
@@ -296,6 +301,7 @@ const Rule<SceneFile>& rule_of<SceneFile>() {
                  {.meaning = "time between frames of output; default: 1/60", .unit = "s", .limits = above(0)})
             .key("settings", &SceneFile::settings, {.meaning = "settings of time steps and contacts"})
             .key("materials", &SceneFile::materials, {.meaning = "materials by name"})
+            .key("pairs", &SceneFile::pairs, {.meaning = "friction and restitution by pair of materials"})
             .key("bodies", &SceneFile::bodies, {.meaning = "deformable and rigid bodies"})
             .key("colliders", &SceneFile::colliders,
                  {.meaning = "rigid shapes that are fixed or follow a prescribed motion"})

@@ -58,6 +58,9 @@ const Rule<ShapeEntry>& rule_of<ShapeEntry>();
 template <>
 const Rule<ColliderEntry>& rule_of<ColliderEntry>();
 template <>
+const Rule<SurfaceEntry>& rule_of<SurfaceEntry>();
+template <>
+const Rule<PairEntry>& rule_of<PairEntry>();
 const Rule<AnchorEntry>& rule_of<AnchorEntry>();
 template <>
 const Rule<MotorKey>& rule_of<MotorKey>();

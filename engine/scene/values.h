@@ -106,7 +106,7 @@ void check_count(const Json& json, const Place& place, std::size_t count, const 
 template <class T, std::size_t N>
 struct Value<std::array<T, N>> {
     static void read(const Json& json, const Place& place, const KeyDoc& doc, std::array<T, N>& out) {
-        check_count(json, place, N, "numbers");
+        check_count(json, place, N, std::is_arithmetic_v<T> ? "numbers" : "texts");
         for (std::size_t i = 0; i < N; ++i) Value<T>::read(json[i], place.item(i), doc, out[i]);
     }
     static Json schema(SchemaBook& book, const KeyDoc& doc) { return list_schema(Value<T>::schema(book, doc), N); }

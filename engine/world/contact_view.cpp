@@ -47,6 +47,11 @@ Contact contact_at(const Model& model, const ContactTable& table, std::size_t c)
     contact.normal = table.normal[c];
     contact.distance = table.distance[c];
     contact.gap = table.gap[c];
+    const FrictionAxis& axis = table.friction_axis[c];
+    contact.static_friction = table.static_friction[c];
+    contact.dynamic_friction = table.dynamic_friction[c];
+    contact.friction_across = axis.across * table.dynamic_friction[c];
+    if (axis.across != 1) contact.friction_direction = axis.direction;
     contact.slip = table.slip[c];
     contact.impulse = table.impulse[c];
     contact.motion = static_cast<ContactMotion>(table.state[c]);

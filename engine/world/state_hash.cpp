@@ -180,11 +180,21 @@ void add_tied_nodes(Hash& hash, TieTable& table) {
     }
 }
 
+/// Hashes the members of all surface sets.
+void add_members_of_sets(Hash& hash, const SurfaceSetTable& table) {
+    for (const std::size_t row : in_slot_order(table.slot)) {
+        hash.add(table.slot[row]);
+        add_rows(hash, table.members_of(row));
+        hash.add(table.members_of(row).size());
+    }
+}
+
 void add_collider(Hash& hash, Model& model, std::size_t c) {
     ColliderTable& table = model.colliders;
     add_row_state(hash, table, c);
     add_script(hash, table.script[c], table.keyframe);
     add_filter(hash, table.filter[c]);
+    if (table.material[c] != no_index) hash.add(slot_of(model.materials.slot, table.material[c]));
     if (table.body[c] != no_index) hash.add(body_hash(model, static_cast<std::size_t>(table.body[c])));
 }
 
@@ -258,9 +268,11 @@ std::uint64_t state_hash(WorldState& world) {
     model.for_each_joining([&](const char*, auto& table, auto&) {
         for (std::size_t row : in_slot_order(table.slot)) add_joining_row(hash, model, table, row);
         if constexpr (requires { table.keys_of(0); }) add_keys(hash, table);
+        if constexpr (requires { table.members_of(0); }) add_members_of_sets(hash, table);
     });
     add_tied_nodes(hash, model.ties);
     add_rows(hash, std::span<const std::uint64_t>(model.disabled_pairs.key));
+    add_state(hash, model.material_pairs, {0, static_cast<Index>(model.material_pairs.size())});
     const AnyTable warm_start(world.cache.warm_start);
     for (const ColumnInfo& info : warm_start.columns()) {
         const AnyColumn column = warm_start.column(info);

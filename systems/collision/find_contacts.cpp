@@ -141,6 +141,7 @@ void write_rows(std::span<const ContactRow> found, std::size_t first, ContactTab
         contacts.static_friction[c] = row.static_friction;
         contacts.dynamic_friction[c] = row.dynamic_friction;
         contacts.restitution[c] = row.restitution;
+        contacts.friction_axis[c] = {};
         contacts.first_body[c] = row.first_body;
         contacts.second_body[c] = row.second_body;
         contacts.collider[c] = row.collider;

@@ -19,24 +19,28 @@ Vec3 relative_velocity(const Stencil& stencil, const Vec3& surface_velocity, std
 }
 
 /// Size of the tangential impulse in the sense of the friction law. For the cone it is the length, for the pyramid the
-/// larger of the two tangential components.
-Real tangential_load(const Vec3& tangential, const Vec3& normal, Friction friction) {
+/// larger of the two tangential components. With a friction axis, the component across it is divided by `across`.
+Real tangential_load(const Vec3& tangential, const Vec3& normal, const FrictionAxis& axis, Friction friction) {
+    if (axis.across != 1) {
+        const Real along = tangential.dot(axis.direction);
+        return std::hypot(along, (tangential - along * axis.direction).norm() / axis.across);
+    }
     if (friction != Friction::pyramid) return tangential.norm();
     const TangentFrame frame = tangent_frame(normal);
     return std::max(std::abs(tangential.dot(frame.first)), std::abs(tangential.dot(frame.second)));
 }
 
-ContactState state_of(const Vec3& impulse, const Vec3& normal, Real static_friction, Real dynamic_friction,
-                      Friction friction) {
+ContactState state_of(const ContactTable& contacts, std::size_t i, Friction friction) {
+    const Vec3 &impulse = contacts.impulse[i], &normal = contacts.normal[i];
     const Real along = impulse.dot(normal);
     if (!(along > 0)) return ContactState::open;
     // The solver puts the impulse of a sliding contact onto the dynamic friction limit, up to rounding. The rotation of
     // impulses in the warm start does not change the ratio of tangential to normal impulse.
     constexpr Real rounding = 1e-9;
-    const Real load = tangential_load(impulse - along * normal, normal, friction);
-    const Real limit = dynamic_friction * along;
+    const Real load = tangential_load(impulse - along * normal, normal, contacts.friction_axis[i], friction);
+    const Real limit = contacts.dynamic_friction[i] * along;
     const bool on_limit =
-        std::abs(load - limit) <= rounding * limit || load >= static_friction * along * (1 - rounding);
+        std::abs(load - limit) <= rounding * limit || load >= contacts.static_friction[i] * along * (1 - rounding);
     return on_limit ? ContactState::slide : ContactState::stick;
 }
 
@@ -93,7 +97,7 @@ ContactMeasures measure_contacts(Executor& executor, const ContactTable& contact
                 relative_velocity(stencil, contacts.surface_velocity[i], velocity_next) +
                 spins.nodes.rolling(stencil, i, normal, places, [&](std::size_t r) { return spins.after(r); });
             slip[i] = after - after.dot(normal) * normal;
-            state[i] = state_of(impulse, normal, contacts.static_friction[i], contacts.dynamic_friction[i], friction);
+            state[i] = state_of(contacts, i, friction);
             part.max_penetration = std::max(part.max_penetration, -contacts.distance[i]);
             part.max_gap_violation = std::max(part.max_gap_violation, -contacts.gap[i]);
             part.stick_count += state[i] == ContactState::stick;

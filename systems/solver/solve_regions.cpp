@@ -23,7 +23,7 @@ void solve_task(const RegionStage& stage, const RegionTask& task, bool lanes, Re
         const std::span<const Index> row = regions.contacts[number];
         const Index base = regions.contacts.offset[number];
         RegionOutcome outcome;
-        if (touches_rigid(stage.memory, number)) {
+        if (needs_blocks(stage.memory, number)) {
             const std::span<const Index> joints = regions.joints_of(static_cast<std::size_t>(number));
             outcome = solve_bodies(stage, row, joints, number, base);
         } else if (touches_cluster(stage.memory, number)) {
@@ -97,7 +97,7 @@ bool solve_regions(Executor& executor, const RegionInputs& contacts, const Solve
     }
     const std::size_t region_nodes = find_region_blocks(contacts, regions, data);
     data.make_room_for(data.rows, region_nodes, contacts.inverse_mass.size(), settings);
-    if (contacts.rigid.any()) {
+    if (contacts.rigid.any() || !contacts.friction_axis.empty()) {
         data.make_room_for_rigid(data.rows, region_nodes, settings.method);
         data.newton.make_room(static_cast<std::size_t>(executor.worker_count()));
         data.runs.make_room(static_cast<std::size_t>(executor.worker_count()));

@@ -60,7 +60,7 @@ struct CollisionWorld {
         collider.geometry[row] = {shape, size};
         collider.motion[row] = collider.initial[row] = motion;
         collider.surface[row] = {-1, -1, -1};  // negative: the values of the body are used
-        collider.body[row] = no_index;
+        collider.body[row] = collider.material[row] = no_index;
         return static_cast<Index>(row);
     }
 

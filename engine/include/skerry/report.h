@@ -63,8 +63,12 @@ struct Contact {
     // Distance by which the surfaces may still approach [m]: `distance` minus the contact distance, or slightly more at
     // nearly flat edges.
     Real gap = 0;
-    Vec3 slip = Vec3::Zero();     // tangential relative velocity after the step [m/s]
-    Vec3 impulse = Vec3::Zero();  // impulse on the first body [N s]
+    // Friction coefficients of this contact. If they depend on the direction, they apply along `friction_direction`,
+    // and `friction_across` is the coefficient of sliding across it.
+    Real static_friction = 0, dynamic_friction = 0, friction_across = 0;
+    Vec3 friction_direction = Vec3::Zero();  // unit tangent; zero: friction is the same in all directions
+    Vec3 slip = Vec3::Zero();                // tangential relative velocity after the step [m/s]
+    Vec3 impulse = Vec3::Zero();             // impulse on the first body [N s]
     // Duration of the forces in this step [s], by which force() divides the impulse: the time from the middle of the
     // previous step to the middle of this step. It equals the step length if both steps are equally long, with
     // leapfrog, and for contacts of implicit bodies alone.

@@ -32,6 +32,10 @@ contact_dtype = np.dtype(
         ("slip", np.float64, (3,)),  # tangential relative velocity after the step [m/s]
         ("impulse", np.float64, (3,)),  # impulse on `first` [N s]
         ("force", np.float64, (3,)),  # mean force on `first` during the step [N]
+        ("friction_direction", np.float64, (3,)),  # direction of the friction coefficients; 0: the same in all
+        ("static_friction", np.float64),  # friction coefficient of sticking along friction_direction
+        ("dynamic_friction", np.float64),  # friction coefficient of sliding along friction_direction
+        ("friction_across", np.float64),  # friction coefficient of sliding across friction_direction
         ("distance", np.float64),  # distance of the surfaces; negative if they overlap [m]
         ("gap", np.float64),  # distance by which the surfaces may still approach [m]
         ("seconds", np.float64),  # duration of the forces [s]

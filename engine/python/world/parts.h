@@ -14,6 +14,7 @@ void bind_advance(WorldClass& type);
 void bind_state(WorldClass& type);
 void bind_control(WorldClass& type);
 void bind_joints(WorldClass& type);
+void bind_surface(WorldClass& type);
 void bind_ties(WorldClass& type);
 void bind_sets(WorldClass& type);
 void bind_views(WorldClass& type);

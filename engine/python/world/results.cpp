@@ -36,6 +36,8 @@ struct ContactRow {
     std::array<Index, 4> node{};
     std::array<Real, 4> weight{};
     Triple point{}, normal{}, slip{}, impulse{}, force{};
+    Triple friction_direction{};
+    Real static_friction = 0, dynamic_friction = 0, friction_across = 0;
     Real distance = 0, gap = 0, seconds = 0;
     std::uint8_t motion = 0;
     Index region = no_index;
@@ -72,6 +74,10 @@ nb::ndarray<nb::numpy, std::uint8_t> contacts(World& world) {
                         .slip = triple_of(contact.slip),
                         .impulse = triple_of(contact.impulse),
                         .force = triple_of(contact.force()),
+                        .friction_direction = triple_of(contact.friction_direction),
+                        .static_friction = contact.static_friction,
+                        .dynamic_friction = contact.dynamic_friction,
+                        .friction_across = contact.friction_across,
                         .distance = contact.distance,
                         .gap = contact.gap,
                         .seconds = contact.seconds,

@@ -38,6 +38,11 @@ void enable_pair(WorldState& world, PairKind kind, Index first, Index second);
 /// Returns the present pose and motion of a joint, and its force and moment in the last step.
 JointState joint_state(const Model& model, JointHandle joint);
 
+// control_materials.cpp
+
+/// The properties that are set; a negative property is not.
+SurfaceSettings set_values_of(const SurfaceProperties& surface);
+
 // control_ties.cpp
 
 /// Returns the state of a tie, with the forces of the last step.

@@ -209,6 +209,7 @@ void take_state(WorldState& world, std::size_t before, std::size_t after) {
     const Range from = model.bodies.nodes[before], to = model.bodies.nodes[after];
     const WholeMotion whole = motion_of(model, before);
     model.bodies.surface[after] = model.bodies.surface[before];
+    std::ranges::replace(model.surface_sets.body, static_cast<Index>(before), static_cast<Index>(after));
     copy_node_rows(model.nodes.load, from, to);
     copy_node_rows(model.nodes.applied_before, from, to);
     model.note_loads(after, false);

@@ -101,7 +101,8 @@ void require_changeable(const MaterialRow& now, const MaterialRow& next) {
                    ", because the law of an existing material cannot change; for another law, add a new material");
 }
 
-/// The properties that are set; a negative property is not.
+}  // namespace
+
 SurfaceSettings set_values_of(const SurfaceProperties& surface) {
     const auto given = [](Real value) { return value < 0 ? std::optional<Real>() : value; };
     if (surface.static_friction == surface.dynamic_friction)
@@ -110,8 +111,6 @@ SurfaceSettings set_values_of(const SurfaceProperties& surface) {
             .dynamic_friction = given(surface.dynamic_friction),
             .restitution = given(surface.restitution)};
 }
-
-}  // namespace
 
 std::vector<MaterialHandle> World::materials() const {
     std::vector<MaterialHandle> handles;

@@ -150,6 +150,7 @@ Index append_collider(Model& model, Column<Real>& stiffness_sum, std::uint32_t s
     table.motion[row] = {present.position, present.rotation, Vec3::Zero(), Vec3::Zero()};
     table.surface[row] = surface_properties(
         {settings.friction, settings.static_friction, settings.dynamic_friction, settings.restitution});
+    table.material[row] = no_index;
     table.filter[row] = {settings.collision_group, settings.collision_mask};
     table.body[row] = no_index;
     table.travel[row] = 0;

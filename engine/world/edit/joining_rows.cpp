@@ -1,6 +1,7 @@
 #include "engine/world/edit/joining_rows.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace skerry {
@@ -38,8 +39,9 @@ void erase_rows_joining(ColumnRole role, Index object, Model& model) {
 bool has_rows_joining(std::size_t body, Model& model) {
     bool found = false;
     model.for_each_joining([&](const char*, auto& table, auto&) {
-        for_each_joined(table, ColumnRole::body,
-                        [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
+        if constexpr (!std::is_same_v<std::decay_t<decltype(table)>, SurfaceSetTable>)
+            for_each_joined(table, ColumnRole::body,
+                            [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
     });
     return found;
 }

@@ -23,6 +23,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
         append_gone(Range{index, index + 1}, ranges);
         map.forget(map.handle_of_slot(table.slot[row]));
         if constexpr (requires { table.erase_keys_of(row); }) table.erase_keys_of(row);
+        if constexpr (requires { table.erase_members_of(row); }) table.erase_members_of(row);
     }
     if (ranges.empty()) return;
     AnyTable(table).erase(ranges);
@@ -34,7 +35,7 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
 /// ColliderTable.
 void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
-/// True if a row, such as a joint, joins the body to another body or to the world.
+/// True if a row, such as a joint, joins the body to another body or to the world. Surface sets do not count.
 bool has_rows_joining(std::size_t body, Model& model);
 
 /// Renumbers the bodies or colliders in joining rows after other bodies or colliders were removed. `role`: `body` or

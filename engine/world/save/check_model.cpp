@@ -454,6 +454,7 @@ void check_model(const SavedFile& file, Model& model) {
     model.for_each_joining(
         [&](const char* name, auto& table, auto&) { check_joined_objects(file, model, name, table); });
     check_joints(file, model);
+    check_surface_rules(file, model);
     check_ties(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);

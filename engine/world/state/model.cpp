@@ -62,6 +62,9 @@ Index Model::row(MaterialHandle material, const char* call) const {
 Index Model::row(AttachmentHandle attachment, const char* call) const {
     return live_row(attachment_map, attachment, call, "attachment");
 }
+Index Model::row(SurfaceSetHandle set, const char* call) const {
+    return live_row(surface_set_map, set, call, "surface set");
+}
 Index Model::row(JointHandle joint, const char* call) const {
     return live_row(joint_map, joint, call, "joint");
 }

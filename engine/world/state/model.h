@@ -27,6 +27,7 @@
 #include "components/range.h"
 #include "components/rigid_body_table.h"
 #include "components/step_watch.h"
+#include "components/surface_rules.h"
 #include "components/surface_table.h"
 #include "components/tie_table.h"
 #include "engine/world/state/field_cache.h"
@@ -34,6 +35,7 @@
 #include "engine/world/tuning.h"
 #include "skerry/mesh.h"
 #include "skerry/settings.h"
+#include "skerry/surface.h"
 #include "skerry/world.h"
 #include "systems/dynamics/elements/compute_element_forces.h"
 #include "systems/dynamics/implicit/move_implicit_bodies.h"
@@ -105,11 +107,15 @@ struct Model {
     JointTable joints;
     TieTable ties;
     DisabledPairTable disabled_pairs;
+    MaterialPairTable material_pairs;
+    SurfaceSetTable surface_sets;
+    SetOfFeature set_of_feature;  // derived from surface_sets: note_changed_seams
     HandleMap<MaterialHandle> material_map;
     HandleMap<BodyHandle> body_map;
     HandleMap<ColliderHandle> collider_map;
     HandleMap<AttachmentHandle> attachment_map;
     HandleMap<JointHandle> joint_map;
+    HandleMap<SurfaceSetHandle> surface_set_map;
     HandleMap<TieHandle> tie_map;
     StepWatch watch;
     std::vector<BodyRecord> body_records;          // one record for each row of BodyTable
@@ -138,6 +144,7 @@ struct Model {
     Index row(MaterialHandle material, const char* call) const;
     Index row(AttachmentHandle attachment, const char* call) const;
     Index row(JointHandle joint, const char* call) const;
+    Index row(SurfaceSetHandle set, const char* call) const;
     Index row(TieHandle tie, const char* call) const;
 
     /// All elements, including the elements of sleeping and of unstrained bodies.
@@ -210,6 +217,11 @@ struct Model {
     /// Copies surface and hierarchy from one of the last bodies with the same mesh. If there is no such body, returns
     /// false and does nothing.
     bool append_outline_again(std::size_t body);
+    /// For each face, given by local nodes in any order: the row of TriangleTable, or no_index if the surface of the
+    /// body has no such face.
+    std::vector<Index> triangles_of(std::size_t body, std::span<const std::array<Index, 3>> faces) const;
+    /// Computes set_of_feature. Where sets overlap, the last one counts.
+    void index_surface_sets();
     /// Rebuilds the surfaces and bounding volume hierarchies of all bodies.
     void rebuild_outlines();
 
@@ -233,12 +245,15 @@ struct Model {
         visit("joints", joints);
         visit("ties", ties);
         visit("disabled_pairs", disabled_pairs);
+        visit("material_pairs", material_pairs);
+        visit("surface_sets", surface_sets);
     }
     /// Visits the tables whose rows join bodies, each with its handles. The column role `body` marks the columns that
     /// contain the joined bodies. Generic code can therefore save, check, hash and renumber these tables, and erase
     /// their rows with a body.
     void for_each_joining(auto&& visit) {
         visit("joints", joints, joint_map);
+        visit("surface_sets", surface_sets, surface_set_map);
         visit("ties", ties, tie_map);
     }
 };

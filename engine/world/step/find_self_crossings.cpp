@@ -47,7 +47,7 @@ void find_self_crossings(Executor& executor, Model& model, Real time, Column<Ind
                          std::vector<SelfCrossing>& crossings) {
     const CollisionInputs inputs =
         CollisionInputs::bind({}, model.bodies, model.colliders, model.surface, model.materials, model.bvh,
-                              model.bvh_leaves, model.nodes, model.disabled_pairs);
+                              model.bvh_leaves, model.nodes, model.disabled_pairs, model.material_pairs);
     places.resize(model.bodies.slot.size());
     parallel_for(executor, places.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b)

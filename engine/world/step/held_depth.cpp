@@ -52,7 +52,7 @@ void add_nodes_inside(WorldState& world, Index body, Index other, std::uint64_t 
     if (tree.tree.size() == 0) return;
     const CollisionInputs inputs =
         CollisionInputs::bind({}, model.bodies, model.colliders, model.surface, model.materials, model.bvh,
-                              model.bvh_leaves, model.nodes, model.disabled_pairs);
+                              model.bvh_leaves, model.nodes, model.disabled_pairs, model.material_pairs);
     for_each_held(model, body, [&](Index node) {
         const Vec3& point = model.nodes.position[static_cast<std::size_t>(node)];
         const std::optional<TrianglePoint> found = nearest_point(tree, point, infinity);

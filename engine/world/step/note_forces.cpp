@@ -53,6 +53,7 @@ void note_changed_seams(Model& model) {
     if (model.forced && std::ranges::none_of(force_elements, has_one)) note_forces(model);
     if (!model.links_open) return;
     model.links_open = false;
+    model.index_surface_sets();
     model.links.first.clear();
     model.links.second.clear();
     model.for_each_joining([&](const char*, auto& table, auto&) { add_links(table, model.links); });

@@ -140,7 +140,7 @@ void solve(WorldState& w, TaskGraph& g) {
             inputs<KeptFrames>(m.rigid_bodies, m.implicit_nodes), make(s.kept_velocities), if_wanted);
     g.stage("solver/solve_regions", kernels().solve_regions,
             inputs<RegionInputs>(s.contacts, n, n.velocity, p.collision.gravity, m.clusters, s.cluster_kick, m.bodies,
-                                 m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints),
+                                 m.rigid_bodies, m.implicit_nodes, s.coupling, s.joints, m.surface_sets),
             value(p.solver), value(p.h), make(s.solver_memory), make(s.regions),
             outputs<RegionOutputs>(s.contacts, n, m.rigid_bodies, m.implicit_nodes, s.joints));
 }

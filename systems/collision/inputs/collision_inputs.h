@@ -10,6 +10,7 @@
 #include "components/collision_filter.h"
 #include "components/material_table.h"
 #include "components/node_table.h"
+#include "components/surface_rules.h"
 #include "components/surface_table.h"
 #include "jobs/access.h"
 
@@ -30,11 +31,12 @@ struct CollisionInputs {
     // Position of each node in the rest shape [m]; empty: self-contact is not compared with the rest shape.
     std::span<const Vec3> rest_position = {};
     std::span<const std::uint64_t> disabled_pairs = {};  // keys of the disabled pairs (ContactKey::pair), ascending
+    const MaterialPairTable* material_pairs = nullptr;   // null: no pair of materials has its own properties
 
     static CollisionInputs bind(const Binder& binder, const BodyTable& body, const ColliderTable& collider,
                                 const SurfaceTables& surface, const MaterialTable& material, const BvhTable& bvh,
-                                const BvhLeafTable& bvh_leaf, const NodeTable& node,
-                                const DisabledPairTable& disabled) {
+                                const BvhLeafTable& bvh_leaf, const NodeTable& node, const DisabledPairTable& disabled,
+                                const MaterialPairTable& material_pairs) {
         // The column uninverted_until is excluded, because find_inversions writes it while find_crossings runs.
         return {.body = binder.read_but(body, body.uninverted_until),
                 .collider = binder.read(collider),
@@ -48,7 +50,8 @@ struct CollisionInputs {
                 .position = binder.read(node.position),
                 .velocity = binder.read(node.velocity),
                 .rest_position = binder.read(node.rest_position),
-                .disabled_pairs = binder.read(disabled.key)};
+                .disabled_pairs = binder.read(disabled.key),
+                .material_pairs = &binder.read(material_pairs)};
     }
 };
 

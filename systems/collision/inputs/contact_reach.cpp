@@ -7,19 +7,18 @@ namespace skerry {
 
 namespace {
 
-/// Returns `properties` with each property replaced by the one in `given` if that is not negative.
+SurfaceProperties surface_of_body(const CollisionInputs& inputs, Index body) {
+    return with_given(inputs.material_surface[inputs.body.material[body]], inputs.body.surface[body]);
+}
+
+}  // namespace
+
 SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given) {
     if (given.static_friction >= 0) properties.static_friction = given.static_friction;
     if (given.dynamic_friction >= 0) properties.dynamic_friction = given.dynamic_friction;
     if (given.restitution >= 0) properties.restitution = given.restitution;
     return properties;
 }
-
-SurfaceProperties surface_of_body(const CollisionInputs& inputs, Index body) {
-    return with_given(inputs.material_surface[inputs.body.material[body]], inputs.body.surface[body]);
-}
-
-}  // namespace
 
 PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
     const BodyTable& body = inputs.body;
@@ -42,17 +41,30 @@ PairScale pair_scale(const CollisionInputs& inputs, PairKind kind, Index first, 
     return scale;
 }
 
-SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
-    const SurfaceProperties own = surface_of_body(inputs, first);
-    SurfaceProperties other = own;
-    if (kind == PairKind::collider || inputs.body.kind[second] == BodyKind::kinematic) {
-        const Index collider = kind == PairKind::collider ? second : inputs.body.collider[second];
-        other = with_given(own, inputs.collider.surface[collider]);
-    } else {
-        other = surface_of_body(inputs, second);
-    }
+PartnerSurface partner_surface(const CollisionInputs& inputs, Index body, Index collider) {
+    if (collider == no_index && inputs.body.kind[body] == BodyKind::kinematic) collider = inputs.body.collider[body];
+    if (collider == no_index) return {inputs.body.material[body], surface_of_body(inputs, body)};
+    const Index material = inputs.collider.material[collider];
+    const SurfaceProperties of_material =
+        material == no_index ? SurfaceProperties{} : inputs.material_surface[material];
+    return {material, with_given(of_material, inputs.collider.surface[collider])};
+}
+
+SurfaceProperties mean_surface(const SurfaceProperties& own, const SurfaceProperties& partner) {
+    const SurfaceProperties other = with_given(own, partner);
     return {std::sqrt(own.static_friction * other.static_friction),
             std::sqrt(own.dynamic_friction * other.dynamic_friction), std::max(own.restitution, other.restitution)};
+}
+
+SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second) {
+    const PartnerSurface own = partner_surface(inputs, first, no_index),
+                         other = kind == PairKind::collider ? partner_surface(inputs, no_index, second)
+                                                            : partner_surface(inputs, second, no_index);
+    const SurfaceProperties mean = mean_surface(own.surface, other.surface);
+    if (inputs.material_pairs == nullptr || inputs.material_pairs->size() == 0) return mean;
+    const MaterialPairTable& pairs = *inputs.material_pairs;
+    const std::size_t row = pairs.place_of(own.material, other.material);
+    return pairs.is_pair(row, own.material, other.material) ? with_given(mean, pairs.surface[row]) : mean;
 }
 
 }  // namespace skerry

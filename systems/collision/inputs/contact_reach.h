@@ -106,9 +106,24 @@ inline PairScale pair_scale_as_known(const CollisionSettings& settings, PairStat
     return scale;
 }
 
-/// Friction coefficients and restitution of a pair. The friction coefficients are geometric means of the values of both
-/// partners; the restitution is the larger value. If a collider does not specify a value, the value of the body is
-/// used.
+/// Returns `properties` with each property replaced by the one in `given` if that is not negative.
+SurfaceProperties with_given(SurfaceProperties properties, const SurfaceProperties& given);
+
+/// Surface of one partner of a contact: row of its material, or no_index for a collider without a material, and its
+/// properties. Properties that a collider does not specify are negative.
+struct PartnerSurface {
+    Index material;
+    SurfaceProperties surface;
+};
+/// Surface of a body, or of a collider if `collider` is not no_index. A kinematic body has the surface of its collider.
+PartnerSurface partner_surface(const CollisionInputs& inputs, Index body, Index collider);
+
+/// Properties of contacts between two surfaces. The friction coefficients are geometric means of the values of both
+/// partners; the restitution is the larger value. A negative value of `partner` is replaced by that of `own`.
+SurfaceProperties mean_surface(const SurfaceProperties& own, const SurfaceProperties& partner);
+
+/// Friction coefficients and restitution of a pair: those of the pair of materials if they are set, otherwise those of
+/// mean_surface.
 SurfaceProperties pair_surface(const CollisionInputs& inputs, PairKind kind, Index first, Index second);
 
 /// Sum of the displacements of the two partners relative to their frames, since the origins of the displacements were

@@ -10,6 +10,7 @@
 #include "components/node_clusters.h"
 #include "components/node_table.h"
 #include "components/rigid_body_table.h"
+#include "components/surface_rules.h"
 #include "components/types.h"
 #include "jobs/access.h"
 #include "systems/contact/node_groups.h"
@@ -136,6 +137,8 @@ struct RegionInputs {
     std::span<const BodyKind> body_kind{};
     std::span<const Real> still_time{};  // [s]
     TouchPlaces touch{};                 // contact points on cylinders, and points of ties
+    // By contact; empty: friction is the same in all directions.
+    std::span<const FrictionAxis> friction_axis{};
 
     /// True if the row is a tie, which is an equation (see FrictionLimits). The column `point` then holds the point at
     /// which the impulse acts on both partners.
@@ -147,7 +150,7 @@ struct RegionInputs {
                              const Column<Vec3>& velocity, const Real& gravity, const NodeClusters& clusters,
                              const Column<Vec3>& cluster_kick, const BodyTable& body, const RigidBodyTable& rigid,
                              const ImplicitNodeTable& implicit, const ImplicitCoupling& coupling,
-                             const JointBlockTable& joints) {
+                             const JointBlockTable& joints, const SurfaceSetTable& sets) {
         return {.stencil = binder.read(contact.stencil),
                 .normal = binder.read(contact.normal),
                 .gap = binder.read(contact.gap),
@@ -168,7 +171,8 @@ struct RegionInputs {
                 .second_body = binder.read(contact.second_body),
                 .body_kind = binder.read(body.kind),
                 .still_time = binder.read(body.still_time),
-                .touch = TouchPlaces::bind(binder, contact)};
+                .touch = TouchPlaces::bind(binder, contact),
+                .friction_axis = binder.read_if(binder.read(sets).any_direction(), contact.friction_axis)};
     }
 };
 

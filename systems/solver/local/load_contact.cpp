@@ -56,6 +56,7 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next) {
     if (inputs.dynamic_friction[row] == 0 || inputs.is_tie(row)) return Vec3::Zero();
+    if (!inputs.friction_axis.empty() && inputs.friction_axis[row].across != 1) return Vec3::Zero();
     const auto [before, now] = around_kick(inputs, row, velocity_next);
     const Vec3& normal = inputs.normal[row];
     const Vec3 slip_before = before - normal.dot(before) * normal, slip = now - normal.dot(now) * normal,

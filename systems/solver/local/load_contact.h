@@ -18,7 +18,8 @@ Real contact_bias(const RegionInputs& inputs, Index row, std::span<const Vec3> v
 /// Correction of the direction of friction [m/s]: half of the change of the sliding velocity by the forces of this
 /// step, perpendicular to the sliding direction. The friction law uses the velocity at the end of the step, whose
 /// direction has a first-order error. With the correction, friction acts along the sliding direction at the middle of
-/// the step. Zero if there is no friction, no sliding or no change of direction.
+/// the step. Zero if there is no friction, no sliding or no change of direction, and for friction that depends on the
+/// direction, which itself turns the slip.
 Vec3 midpoint_slip(const RegionInputs& inputs, Index row, std::span<const Vec3> velocity_next);
 
 /// Loads contact `row`. `local(node)` returns the region's row of a moving node. `velocity_next` holds the predicted

@@ -39,7 +39,10 @@ struct RigidPart {
     std::span<const RigidTerm> terms() const { return {term.data(), static_cast<std::size_t>(term_count)}; }
     Columns3 mobility;  // W_ii [1/kg]
     Columns3 frame;     // contact frame; its columns are the normal and two tangents
-    LocalBlock block;   // W_ii in the contact frame, prepared for solve_block
+    LocalBlock block;   // W_ii in the contact frame, scaled by `across`, prepared for solve_block
+    // Friction coefficient along the second tangent, as a multiple of that along the first one. solve_block works with
+    // the impulse (r_n, r_1, r_2 / across) and the velocity (u_n, u_1, across u_2) (docs/methods/friction.md 4.2).
+    Real across = 1;
     Real along_normal;  // n W_ii n for the normal n if deformable bodies were rigid [1/kg]
     Real steepest;      // upper bound of the largest eigenvalue of W_ii [1/kg]
 };

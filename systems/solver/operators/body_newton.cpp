@@ -266,6 +266,34 @@ Answer answer_coulomb_at(const Vec3& z, const Vec3& normal, FrictionLimits mu) {
     return {along * normal + mu.slide * along * h, pressing + turning + mu.slide * h * normal.transpose(), false, h};
 }
 
+/// Columns of the contact frame, the last one multiplied by `across`: F S of docs/methods/friction.md 4.2.
+Mat3 scaled_frame(const RigidPart& part) {
+    Mat3 frame = matrix_of(part.frame);
+    frame.col(2) *= part.across;
+    return frame;
+}
+
+/// Matrix A of the impulse `start - A u / soft` of a sticking contact with the velocity u.
+Mat3 sticking(const RigidPart& part) {
+    if (part.across == 1) return Mat3::Identity();
+    const Mat3 scaled = scaled_frame(part);
+    return scaled * scaled.transpose();
+}
+
+/// The answer of a contact with the velocity u to the impulse `start - u / soft`. If friction depends on the direction,
+/// this is Coulomb's law in scaled variables; the derivative is with respect to `-u / soft`.
+Answer answer_at(const RigidPart& part, const Vec3& start, const Vec3& u, Real soft, FrictionLimits mu) {
+    if (part.across == 1) return answer_coulomb_at(start - u / soft, part.frame[0].head<3>(), mu);
+    const Mat3 scaled = scaled_frame(part);
+    Vec3 z = matrix_of(part.frame).transpose() * start;
+    z[2] /= part.across;
+    Answer answer = answer_coulomb_at(z - scaled.transpose() * u / soft, Vec3::UnitX(), mu);
+    answer.impulse = scaled * answer.impulse;
+    answer.derivative = scaled * answer.derivative * scaled.transpose();
+    answer.way = matrix_of(part.frame) * answer.way;
+    return answer;
+}
+
 }  // namespace
 
 /// Evaluates the motion `present`. Sets the impulses to P(start - u / (softness D)), where u is the contact velocity, D
@@ -284,14 +312,14 @@ Real BodyOperator::answer_motion(BodyEquations& equations, std::span<const Vec4>
         const auto at = static_cast<std::size_t>(i);
         const Real soft = equations.softness * contact(i).diagonal;
         const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
-        const Answer answer = answer_coulomb_at(start[at].head<3>() - u / soft, contact(i).normal.head<3>(), limits(i));
+        const Answer answer = answer_at(part(i), start[at].head<3>(), u, soft, limits(i));
         memory_.impulse[at] = padded(answer.impulse);
         if (!with_matrix) continue;
         equations.answer[at] = answer.derivative;
         if (runs_ && wanted == Evaluation::turns) equations.stops[at] = equations.way[at].dot(answer.way) < 0 ? 1 : 0;
         equations.way[at] = answer.way;
         if (answer.open) continue;
-        equations.add(i, (equations.stops[at] != 0 ? Mat3(Mat3::Identity()) : answer.derivative) / soft);
+        equations.add(i, (equations.stops[at] != 0 ? sticking(part(i)) : answer.derivative) / soft);
     }
     const Real lack = compare_motion(equations, start);
     if (with_matrix) stop_turned(equations, start);
@@ -307,7 +335,7 @@ void BodyOperator::stop_turned(BodyEquations& equations, std::span<const Vec4> s
         const auto at = static_cast<std::size_t>(i);
         if (equations.stops[at] == 0 || equations.way[at].isZero(0)) continue;
         const Vec3 u = equations.offset[at] + equations.velocity(i, equations.present.span());
-        const Vec3 stopping = start[at].head<3>() - u / (equations.softness * contact(i).diagonal);
+        const Vec3 stopping = start[at].head<3>() - sticking(part(i)) * u / (equations.softness * contact(i).diagonal);
         equations.add_right(i, stopping - memory_.impulse[at].head<3>());
     }
 }

@@ -22,14 +22,18 @@ Vec4 answer_in_frame(RigidPart& part, const Vec4& b, FrictionLimits mu) {
         if (mu.stick == 0) return -(part.frame[0].dot(b) / part.block.normal) * part.frame[0];
         return padded(-(matrix_of(part.mobility).inverse() * b.head<3>()));
     }
-    const Vec3 local = in_frame(part.frame, b).head<3>();
+    Vec3 local = in_frame(part.frame, b).head<3>();
+    local[2] *= part.across;
     Vec3 impulse = solve_block(part.block, local, mu.stick);
     // A contact at the limit of static friction slides, so the dynamic coefficient applies.
     constexpr Real rounding = 1e-12;
     if (mu.slide != mu.stick && impulse.tail<2>().norm() >= mu.stick * impulse[0] * (1 - rounding))
         impulse = solve_block(part.block, local, mu.slide);
+    impulse[2] *= part.across;
     return times(part.frame, padded(impulse));
 }
+
+const Vec4 first_axis{1, 0, 0, 0};
 
 }  // namespace
 
@@ -39,11 +43,20 @@ Vec4 BodyOperator::answer(Index i, const Vec4& impulse, const Vec4& u) {
         const Vec3 r = in_frame(of.frame, impulse).head<3>();
         return times(of.frame, padded(law->answer(in_frame(of.frame, u).head<3>() - law->block * r)));
     }
-    if (of.term_count > 0 && friction_ == Friction::cone)
+    if (of.across != 1 || (of.term_count > 0 && friction_ == Friction::cone))
         return answer_in_frame(of, u - times(of.mobility, impulse), contact(i).friction);
     // The exact step would use the diagonal block W_ii. This step uses an upper bound on the eigenvalues of W_ii
     // instead: it is exact if W_ii is a scalar times the identity, otherwise it is damped.
     return project(i, impulse - u / of.steepest);
+}
+
+Vec4 BodyOperator::project_in_frame(Index i, const Vec4& impulse) const {
+    const RigidPart& of = part(i);
+    Vec4 local = in_frame(of.frame, impulse);
+    local[2] /= of.across;
+    local = project_coulomb(local, first_axis, contact(i).friction);
+    local[2] *= of.across;
+    return times(of.frame, local);
 }
 
 Real BodyOperator::step(Index i, Real relaxation) {
@@ -113,6 +126,15 @@ void BodyOperator::extrapolate(Real factor) {
 Real BodyOperator::squared_residual(Index i) const {
     const Vec4& impulse = memory_.impulse[static_cast<std::size_t>(i)];
     const JointLaw* const law = joint(i);
+    if (law == nullptr && part(i).across != 1) {
+        // The natural map of the isotropic problem in scaled variables.
+        Vec4 r = in_frame(part(i).frame, impulse), u = in_frame(part(i).frame, velocity(i));
+        r[2] /= part(i).across;
+        u[2] *= part(i).across;
+        LumpedContact scaled = contact(i);
+        scaled.normal = first_axis;
+        return contact(i).diagonal * natural_map(scaled, Friction::cone, r, u).squaredNorm();
+    }
     if (law == nullptr)
         return contact(i).diagonal * natural_map(contact(i), friction_, impulse, velocity(i)).squaredNorm();
     const Columns3& frame = part(i).frame;

@@ -51,6 +51,7 @@ public:
     Real inner(Index i, const Vec4& a, const Vec4& b) const { return a.dot(times(part(i).mobility, b)); }
     Vec4 project(Index i, const Vec4& impulse) const {
         if (joint(i) != nullptr) return impulse;  // joint impulses have no friction law and are not projected
+        if (part(i).across != 1) return project_in_frame(i, impulse);
         return project_friction(impulse, contact(i).normal, contact(i).friction, friction_);
     }
     void assemble(Eigen::MatrixXd& matrix) const;
@@ -144,6 +145,8 @@ private:
     bool is_rigid(const BodyEquations::Unknown& unknown) const;
     bool deforms(const BodyEquations::Unknown& unknown) const;
 
+    /// project() for a contact whose friction depends on the direction.
+    Vec4 project_in_frame(Index i, const Vec4& impulse) const;
     /// Impulse of contact i from its law while all other impulses are fixed. It is exact for the friction cone; for the
     /// pyramid the step is damped.
     Vec4 answer(Index i, const Vec4& impulse, const Vec4& u);

@@ -13,6 +13,7 @@ namespace skerry {
 struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
     std::span<const Index> joint;  // rows of JointBlockTable
     std::span<const Index> rigid;  // rows of RigidBodyTable
+    bool has_axes = false;         // true if the friction of a contact depends on the direction
 
     // Functions of the life cycle that replace those of LoadedRegion.
     bool moves_node(const RegionStage& stage, std::size_t n) const {
@@ -21,9 +22,11 @@ struct BodyRegion : LoadedRegion<ThroughGroups, BodyMemory> {
         return memory.node[n] != no_index &&
                stage.inputs.implicit.row(memory.node[n], stage.inputs.rigid.nodes) == no_index;
     }
-    /// Joints require method ags, because only sweeps support them.
+    /// Joints require method ags, because only sweeps support them. Friction that depends on the direction also allows
+    /// the Newton steps of `automatic`.
     SolverMethod method(const SolverSettings& settings) const {
-        return joint.empty() ? settings.method : SolverMethod::ags;
+        const bool any = joint.empty() && (!has_axes || settings.method == SolverMethod::automatic);
+        return any ? settings.method : SolverMethod::ags;
     }
     void take_joint_impulses(const RegionStage& stage) const;
     /// Corrects the joint rows so that the joints hold at the end of the step. Solves again if the correction exceeds

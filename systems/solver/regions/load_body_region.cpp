@@ -96,7 +96,10 @@ private:
                 if (body != no_index) add_term(part, body, node, weight, i);
                 return body != no_index && stage_.inputs.implicit.row(node, rigid) == no_index;
             });
-        find_mobility(contact, part);
+        const std::span<const FrictionAxis> axes = stage_.inputs.friction_axis;
+        const FrictionAxis axis = axes.empty() ? FrictionAxis{} : axes[static_cast<std::size_t>(region_.row[i])];
+        region_.has_axes |= axis.across != 1;
+        find_mobility(contact, part, axis);
     }
 
     void load_joint_at(std::size_t k) {
@@ -132,7 +135,7 @@ private:
         term.arm += weight * padded(acts_at - rigid.center[static_cast<std::size_t>(body)]);
     }
 
-    void find_mobility(LumpedContact& contact, RigidPart& part) const {
+    void find_mobility(LumpedContact& contact, RigidPart& part, const FrictionAxis& axis) const {
         const bool moves_nodes = contact.node_count > 0;
         Mat3 mobility = moves_nodes ? region_.walk.coupling(contact, contact) : Mat3(Mat3::Zero());
         for (Index k = 0; k < part.term_count; ++k) {
@@ -145,15 +148,18 @@ private:
         const Mat3 rigid = rigid_coupling(part, part);
         mobility += rigid;
         const Vec3 normal = contact.normal.head<3>();
-        const TangentFrame tangents = tangent_frame(normal);
+        part.across = axis.across;
+        const TangentFrame tangents =
+            axis.across == 1 ? tangent_frame(normal) : TangentFrame{axis.direction, normal.cross(axis.direction)};
         part.frame = {contact.normal, padded(tangents.first), padded(tangents.second)};
         part.mobility = columns_of(mobility);
         part.along_normal = normal.dot(mobility * normal);
         if (moves_nodes && part.term_count > 0 && stage_.inputs.implicit.any())
             part.along_normal = normal.dot((region_.walk.undeformed_coupling(contact, contact) + rigid) * normal);
         part.steepest = part.term_count > 0 ? mobility.norm() : mobility(0, 0);
-        if (part.term_count > 0) {
-            const Mat3 frame = matrix_of(part.frame);
+        if (part.term_count > 0 || part.across != 1) {
+            Mat3 frame = matrix_of(part.frame);
+            frame.col(2) *= part.across;
             part.block = prepare_block(frame.transpose() * mobility * frame);
         }
         contact.diagonal = mobility.trace() / 3;

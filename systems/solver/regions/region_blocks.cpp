@@ -1,5 +1,7 @@
 #include "systems/solver/regions/region_blocks.h"
 
+#include <algorithm>
+
 namespace skerry {
 namespace {
 
@@ -32,7 +34,8 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
     memory.rows = memory.contact_rows = regions.contacts.item.size();
     memory.region_clusters.clear();
     memory.region_rigid.clear();
-    if (!inputs.clustered() && !inputs.rigid.any()) return end;
+    memory.region_has_axes.clear();
+    if (!inputs.clustered() && !inputs.rigid.any() && inputs.friction_axis.empty()) return end;
     memory.region_clusters.offset.push_back(0);
     memory.region_rigid.offset.push_back(0);
     if (!inputs.joints.empty()) memory.joint_base.resize(regions.size());
@@ -65,7 +68,11 @@ std::size_t find_region_blocks(const RegionInputs& inputs, const RegionTable& re
         }
         memory.region_clusters.offset.push_back(static_cast<Index>(memory.region_clusters.item.size()));
         memory.region_rigid.offset.push_back(static_cast<Index>(memory.region_rigid.item.size()));
-        if (touches_cluster(memory, number) || touches_rigid(memory, number))
+        if (!inputs.friction_axis.empty())
+            memory.region_has_axes.push_back(std::ranges::any_of(regions.contacts[r], [&](Index contact) {
+                return inputs.friction_axis[static_cast<std::size_t>(contact)].across != 1;
+            }));
+        if (touches_cluster(memory, number) || needs_blocks(memory, number))
             end += room_of_region(inputs, memory, regions.contacts[r].size(), number);
     }
     return end;

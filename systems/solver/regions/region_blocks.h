@@ -16,6 +16,12 @@ inline bool touches_cluster(const RegionMemory& memory, Index number) {
 inline bool touches_rigid(const RegionMemory& memory, Index number) {
     return memory.region_rigid.size() > 0 && !memory.region_rigid[static_cast<std::size_t>(number)].empty();
 }
+/// True if a region needs the operator with 3x3 blocks (BodyOperator): it touches rigid or implicit bodies, or the
+/// friction of a contact depends on the direction.
+inline bool needs_blocks(const RegionMemory& memory, Index number) {
+    return touches_rigid(memory, number) ||
+           (!memory.region_has_axes.empty() && memory.region_has_axes[static_cast<std::size_t>(number)] != 0);
+}
 
 /// Upper bound of the node rows of a region that touches clusters or rigid bodies.
 std::size_t room_of_region(const RegionInputs& inputs, const RegionMemory& memory, std::size_t contacts, Index number);

@@ -17,6 +17,7 @@ from .reports import (
     StepReport,
     WorldReport,
 )
+from .surface import SurfaceSet
 from .tie import Tie, TieState
 from .world import World
 
@@ -37,6 +38,7 @@ __all__ = [
     "StartOverlap",
     "StepLimitReport",
     "StepReport",
+    "SurfaceSet",
     "Tie",
     "TieState",
     "World",

@@ -177,6 +177,7 @@ class Building:
         position: VectorLike = (0.0, 0.0, 0.0),
         rotation: RotationLike = (0.0, 0.0, 0.0),
         motion: Motion | None = None,
+        material: MaterialHandle | None = None,
         friction: float | None = None,
         static_friction: float | None = None,
         dynamic_friction: float | None = None,
@@ -189,11 +190,11 @@ class Building:
         """Adds a collider and returns it.
 
         shape: a Plane, Sphere, Box, Capsule, Cylinder, Bucket or SurfaceMesh. position, rotation: pose (3,) [m, rad].
-        motion: velocities, or keys, which are poses at absolute times. friction, static_friction, dynamic_friction: a
-        contact uses the geometric mean of this value and that of the body, or that of the body if not given.
-        restitution: a contact uses the larger value. contact_distance: thickness of the contact shell of a SurfaceMesh
-        [m]. collision_group, collision_mask: see Collider.set_collision_groups(). name: unique in the world, default
-        "collider N".
+        motion: velocities, or keys, which are poses at absolute times. material: see Collider.material. friction,
+        static_friction, dynamic_friction: a contact uses the geometric mean of this value and that of the body, or that
+        of the material or the body if not given. restitution: a contact uses the larger value. contact_distance:
+        thickness of the contact shell of a SurfaceMesh [m]. collision_group, collision_mask: see
+        Collider.set_collision_groups(). name: unique in the world, default "collider N".
 
         SceneError: a value is out of range, or a collider has this name. BufferError: arrays of views() are in use."""
         name = self._new_name(name, "collider", self.colliders)
@@ -211,7 +212,9 @@ class Building:
             collision_mask=whole(collision_mask, "collision_mask"),
             name=name,
         )
+        of_surface = None if material is None else self._own(material, "material", MaterialHandle)
         handle = self._core.add_collider(checked(shape, "shape", *_SHAPES), given)
+        self._core.set_material_of_collider(handle, of_surface)
         return Collider(self._self, handle, name)
 
     def add_joint(

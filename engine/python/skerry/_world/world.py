@@ -22,12 +22,13 @@ from .._recorder import WorldOutput
 from .._results import WorldResults
 from .._settings import Backend, Settings
 from .body import Body
-from .building import Arguments, Building
+from .building import Arguments
 from .changes import SettingsChanges
 from .collider import Collider
 from .objects import WorldObject
 from .page import world_table
 from .reports import Energy, StepReport, WorldReport, step_report, world_report
+from .surface import SurfaceRules
 
 if hasattr(os, "register_at_fork"):
     # A fork copies no threads, so that worlds would wait for them for ever.
@@ -50,7 +51,7 @@ _MOST_CALLS = 2**53
 """Number of calls of advance() in a run up to which a number of type float counts them exactly."""
 
 
-class World(Building, WorldResults, WorldOutput):
+class World(SurfaceRules, WorldResults, WorldOutput):
     """A simulation of deformable and rigid bodies in frictional contact. All units are SI units.
 
     World() has the default settings, World(settings) the given ones; keywords change single settings:

@@ -4,6 +4,7 @@
 #include "systems/collision/find_candidates.h"
 #include "systems/collision/find_contacts.h"
 #include "systems/collision/find_crossings.h"
+#include "systems/contact/apply_surface_sets.h"
 #include "systems/contact/keep_resting_contacts.h"
 #include "systems/contact/match_warm_start.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 auto collision_inputs(const Model& m) {
     return inputs<CollisionInputs>(m.bodies, m.colliders, m.surface, m.materials, m.bvh, m.bvh_leaves, m.nodes,
-                                   m.disabled_pairs);
+                                   m.disabled_pairs, m.material_pairs);
 }
 
 void list_search(WorldState& w, TaskGraph& g) {
@@ -24,6 +25,9 @@ void list_search(WorldState& w, TaskGraph& g) {
             write(m.bvh.box), make(w.cache.search), make(w.cache.pairs));
     g.stage("collision/find_contacts", kernels().find_contacts, collision_inputs(m), value(p.collision), value(p.h),
             make(w.cache.pairs), make(w.cache.crossings), make(c));
+    g.stage("contact/apply_surface_sets", apply_surface_sets, collision_inputs(m), read(m.surface_sets),
+            read(m.set_of_feature), make(c),
+            only_if([](const Column<std::uint32_t>& slot) { return !slot.empty(); }, value(m.surface_sets.slot)));
     const auto if_warm = only_if([](WarmStart start) { return start == WarmStart::on; }, value(p.solver.warm_start));
     g.stage("contact/match_warm_start", match_warm_start, read(c.key), read(c.normal), read(w.cache.warm_start),
             read(w.cache.resting), value(p.kick), write(c.impulse), if_warm);

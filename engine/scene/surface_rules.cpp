@@ -1,0 +1,78 @@
+// Keys of friction by pair of materials and by place in a scene file.
+#include "engine/scene/scene_rules.h"
+
+namespace skerry {
+
+namespace {
+
+/// Adds the keys of friction and restitution. `friction` and `restitution`: documentation of these two keys.
+template <class Entry>
+void add_surface_keys(Rule<Entry>& rule, const KeyDoc& friction, const KeyDoc& restitution) {
+    rule.key("friction", &Entry::friction, friction)
+        .key("static_friction", &Entry::static_friction,
+             {.meaning = "friction coefficient of sticking contacts", .limits = at_least(0)})
+        .key("dynamic_friction", &Entry::dynamic_friction,
+             {.meaning = "friction coefficient of sliding contacts", .limits = at_least(0)})
+        .key("restitution", &Entry::restitution, restitution)
+        .together({"static_friction", "dynamic_friction"})
+        .at_most_one({"friction", "static_friction"})
+        .at_most_one({"mu", "static_friction"})
+        .check([](const Place& place, const Entry& entry) {
+            if (entry.static_friction && *entry.dynamic_friction > *entry.static_friction)
+                place.key("dynamic_friction")
+                    .refuse(Json(*entry.dynamic_friction).dump(),
+                            "at most the value of \"static_friction\", " + Json(*entry.static_friction).dump());
+        });
+}
+
+}  // namespace
+
+template <>
+const Rule<SurfaceEntry>& rule_of<SurfaceEntry>() {
+    using Entry = SurfaceEntry;
+    static const auto rule = [] {
+        auto made = Rule<Entry>("surface",
+                                "A part of the surface of a body with its own friction and restitution. They take "
+                                "precedence over \"pairs\". A set of faces also contains their edges and nodes; nodes "
+                                "also contain the edges and faces between them.");
+        made.key("set", &Entry::set, part_set_doc)
+            .key("box", &Entry::box, part_box_doc)
+            .key("nodes", &Entry::nodes, part_nodes_doc)
+            .exactly_one({"set", "box", "nodes"});
+        add_surface_keys(
+            made, {.meaning = "friction coefficient; default: that of the body", .alias = "mu", .limits = at_least(0)},
+            {.meaning = "coefficient of restitution; default: that of the body", .limits = within(0, 1)});
+        made.key("friction_across", &Entry::friction_across,
+                 {.meaning = "friction coefficient of sliding contacts across \"direction\". The friction then applies "
+                             "along it; default: the same in all directions",
+                  .limits = above(0)})
+            .key("direction", &Entry::direction,
+                 {.meaning = "direction in the mesh's own frame, which the faces carry along"})
+            .together({"friction_across", "direction"});
+        return made;
+    }();
+    return rule;
+}
+
+template <>
+const Rule<PairEntry>& rule_of<PairEntry>() {
+    using Entry = PairEntry;
+    static const auto rule = [] {
+        auto made = Rule<Entry>("pair",
+                                "Surface properties of contacts between two materials. They take precedence over the "
+                                "properties of materials, bodies and colliders.");
+        made.key("materials", &Entry::materials,
+                 {.meaning = "names of the two materials, in any order. A collider has a material if it names one",
+                  .required = true});
+        add_surface_keys(made,
+                         {.meaning = "friction coefficient; default: the geometric mean of both surfaces",
+                          .alias = "mu",
+                          .limits = at_least(0)},
+                         {.meaning = "coefficient of restitution; default: the larger value of both surfaces",
+                          .limits = within(0, 1)});
+        return made;
+    }();
+    return rule;
+}
+
+}  // namespace skerry
