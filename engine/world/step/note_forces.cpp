@@ -33,19 +33,26 @@ void add_links(AnyTable table, BodyLinks& links) {
 
 void note_forces(Model& model) {
     const bool was_forced = model.forced;
-    model.forced = false;
-    model.force_rate.clear();
+    model.forced = model.force_rate_moves = false;
     for (const ForceElement* element : force_elements) {
         if (!element->any(model)) continue;
         model.forced = true;
-        if (!element->add_rate) continue;
-        model.force_rate.resize(model.bodies.slot.size());
-        element->add_rate(model, model.force_rate);
+        model.force_rate_moves |= element->rate_moves;
     }
+    note_force_rates(model);
     // If the last force element was removed, the next step must still account for the work of its last forces.
     if (was_forced && !model.forced)
         model.forced =
             std::ranges::any_of(model.nodes.applied_before, [](const Vec3& force) { return force != Vec3::Zero(); });
+}
+
+void note_force_rates(Model& model) {
+    model.force_rate.clear();
+    for (const ForceElement* element : force_elements) {
+        if (!element->any(model) || !element->add_rate) continue;
+        model.force_rate.resize(model.bodies.slot.size());
+        element->add_rate(model, model.force_rate);
+    }
 }
 
 void note_changed_seams(Model& model) {
