@@ -3,6 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "components/anchor.h"
 #include "components/collider_table.h"
 #include "components/contact_table.h"
 #include "components/material_table.h"
@@ -72,6 +73,12 @@ std::span<const Member> MembersOf<MotionScript>::list() {
 std::span<const Member> MembersOf<Stencil>::list() {
     using S = Stencil;
     static const std::array list{Member{"node", &S::node}, Member{"weight", &S::weight}};
+    return list;
+}
+
+std::span<const Member> MembersOf<AnchorRow>::list() {
+    using S = AnchorRow;
+    static const std::array list{Member{"node", &S::node}, Member{"weight", &S::weight}, Member{"point", &S::point}};
     return list;
 }
 

@@ -145,13 +145,15 @@ void add_attachment(Hash& hash, Model& model, std::size_t a) {
     add_script(hash, table.script[a], table.keyframe);
 }
 
-/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies are hashed, not their rows.
+/// Hashes a row that joins bodies, such as a joint. The slots of the joined bodies and colliders are hashed, not their
+/// rows.
 void add_joining_row(Hash& hash, const Model& model, AnyTable table, std::size_t row) {
     add_row_state(hash, table, row);
     for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
-        const auto* const bodies = reinterpret_cast<const Index*>(table.column(info).read());
-        hash.add(slot_of(model.bodies.slot, bodies[row]));
+        if (info.role != ColumnRole::body && info.role != ColumnRole::collider) continue;
+        const std::span<const std::uint32_t> slot =
+            info.role == ColumnRole::body ? model.bodies.slot.span() : model.colliders.slot.span();
+        hash.add(slot_of(slot, reinterpret_cast<const Index*>(table.column(info).read())[row]));
     }
 }
 

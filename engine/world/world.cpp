@@ -392,7 +392,7 @@ void World::remove(BodyHandle body) {
         model.attachment_map.forget(model.attachment_map.handle_of_slot(slot));
     }
     enable_pairs_of(body, model.disabled_pairs);
-    erase_rows_joining(static_cast<std::size_t>(row), model);
+    erase_rows_joining(ColumnRole::body, row, model);
     model.body_map.forget(body);
     OpenEdits& edits = state_->edits;
     edits.places.add_body(model, static_cast<std::size_t>(row));
@@ -406,6 +406,7 @@ void World::remove(ColliderHandle collider) {
     state_->record.forces.forget_collider(collider.slot);
     forget_held(state_->record.held, collider.slot, true);
     enable_pairs_of(collider, state_->model.disabled_pairs);
+    erase_rows_joining(ColumnRole::collider, row, state_->model);
     OpenEdits& edits = state_->edits;
     edits.places.add_collider(state_->model, static_cast<std::size_t>(row), time());
     mark(row, edits.colliders_gone);

@@ -233,7 +233,8 @@ void erase_scripted_rows(std::span<const Range> gone, AttachmentTable& table) {
 void erase_gone(const RowMoves& moves, Model& model) {
     if (!moves.gone.bodies.empty()) erase_attachments(moves, model);
     if (!moves.gone.bodies.empty()) erase_bodies(moves, model);
-    if (!moves.gone.bodies.empty()) renumber_joining_rows(moves.body_now, model);
+    if (!moves.gone.bodies.empty()) renumber_joining_rows(ColumnRole::body, moves.body_now, model);
+    if (!moves.colliders_gone.empty()) renumber_joining_rows(ColumnRole::collider, moves.collider_now, model);
     if (!moves.colliders_gone.empty() || !moves.gone.bodies.empty()) erase_colliders(moves, model);
 }
 

@@ -7,28 +7,29 @@ namespace skerry {
 
 namespace {
 
-/// Calls visit(row, body) for each body that a row of a joining table names. `body` is a reference to the entry of the
-/// column, which is a row of BodyTable. The entry no_index stands for the world and is not visited.
-void for_each_joined_body(AnyTable table, auto&& visit) {
+/// Calls visit(row, joined) for each body or collider that a row of a joining table names. `role`: `body` or
+/// `collider`. `joined` is a reference to the entry of the column, which is a row of BodyTable or ColliderTable. The
+/// entry no_index stands for the world and is not visited.
+void for_each_joined(AnyTable table, ColumnRole role, auto&& visit) {
     for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
+        if (info.role != role) continue;
         const AnyColumn column = table.column(info);
-        auto* const bodies = reinterpret_cast<Index*>(column.write());
+        auto* const joined = reinterpret_cast<Index*>(column.write());
         for (std::size_t row = 0; row < column.size(); ++row)
-            if (bodies[row] != no_index) visit(row, bodies[row]);
+            if (joined[row] != no_index) visit(row, joined[row]);
     }
 }
 
 }  // namespace
 
-void erase_rows_joining(std::size_t body, Model& model) {
+void erase_rows_joining(ColumnRole role, Index object, Model& model) {
     model.for_each_joining([&](const char*, auto& table, auto& map) {
         std::vector<bool> gone(table.slot.size(), false);
-        for_each_joined_body(table, [&](std::size_t row, Index joined) {
-            if (joined == static_cast<Index>(body)) gone[row] = true;
+        for_each_joined(table, role, [&](std::size_t row, Index joined) {
+            if (joined == object) gone[row] = true;
         });
-        for_each_joined_body(table, [&](std::size_t row, Index joined) {
-            if (gone[row]) model.wake(static_cast<std::size_t>(joined));
+        for_each_joined(table, ColumnRole::body, [&](std::size_t row, Index body) {
+            if (gone[row]) model.wake(static_cast<std::size_t>(body));
         });
         erase_joining_rows(gone, table, map);
     });
@@ -37,14 +38,16 @@ void erase_rows_joining(std::size_t body, Model& model) {
 bool has_rows_joining(std::size_t body, Model& model) {
     bool found = false;
     model.for_each_joining([&](const char*, auto& table, auto&) {
-        for_each_joined_body(table, [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
+        for_each_joined(table, ColumnRole::body,
+                        [&](std::size_t, Index joined) { found |= joined == static_cast<Index>(body); });
     });
     return found;
 }
 
-void renumber_joining_rows(std::span<const Index> body_now, Model& model) {
+void renumber_joining_rows(ColumnRole role, std::span<const Index> row_now, Model& model) {
     model.for_each_joining([&](const char*, auto& table, auto&) {
-        for_each_joined_body(table, [&](std::size_t, Index& body) { body = body_now[static_cast<std::size_t>(body)]; });
+        for_each_joined(table, role,
+                        [&](std::size_t, Index& joined) { joined = row_now[static_cast<std::size_t>(joined)]; });
     });
 }
 

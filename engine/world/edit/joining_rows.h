@@ -29,15 +29,16 @@ void erase_joining_rows(const std::vector<bool>& gone, Table& table, HandleMap<H
     map.rows_moved(row_now);
 }
 
-/// Removes all rows that join the given body to others, for example its joints. Must be called before the body is
-/// removed. Wakes all bodies of the removed rows.
-void erase_rows_joining(std::size_t body, Model& model);
+/// Removes all rows that join an object to others, for example the joints of a body. Must be called before the object is
+/// removed. Wakes all bodies of the removed rows. `role`: `body` or `collider`; `object`: row of BodyTable or
+/// ColliderTable.
+void erase_rows_joining(ColumnRole role, Index object, Model& model);
 
 /// True if a row, such as a joint, joins the body to another body or to the world.
 bool has_rows_joining(std::size_t body, Model& model);
 
-/// Renumbers the bodies in joining rows after other bodies were removed. `body_now`: new row of each body, by its old
-/// row in BodyTable.
-void renumber_joining_rows(std::span<const Index> body_now, Model& model);
+/// Renumbers the bodies or colliders in joining rows after other bodies or colliders were removed. `role`: `body` or
+/// `collider`; `row_now`: new row of each object, by its old row in BodyTable or ColliderTable.
+void renumber_joining_rows(ColumnRole role, std::span<const Index> row_now, Model& model);
 
 }  // namespace skerry

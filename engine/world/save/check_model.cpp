@@ -312,13 +312,15 @@ void check_rigid_bodies(const SavedFile& file, const RigidBodyTable& table) {
     }
 }
 
-/// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies.
-void check_joined_bodies(const SavedFile& file, const Model& model, const char* name, AnyTable table) {
+/// Checks that the rows of a table that joins bodies, such as the table of joints, name existing bodies and colliders.
+void check_joined_objects(const SavedFile& file, const Model& model, const char* name, AnyTable table) {
     for (const ColumnInfo& info : table.columns()) {
-        if (info.role != ColumnRole::body) continue;
+        if (info.role != ColumnRole::body && info.role != ColumnRole::collider) continue;
         const AnyColumn column = table.column(info);
         const std::span<const Index> rows(reinterpret_cast<const Index*>(column.read()), column.size());
-        expect_rows_of(file, std::string(name) + "/" + info.name, rows, model.bodies.slot.size(), true);
+        const std::size_t count =
+            info.role == ColumnRole::body ? model.bodies.slot.size() : model.colliders.slot.size();
+        expect_rows_of(file, std::string(name) + "/" + info.name, rows, count, true);
     }
 }
 
@@ -405,7 +407,7 @@ void check_model(const SavedFile& file, Model& model) {
     check_clusters(file, model);
     check_rigid_bodies(file, model.rigid_bodies);
     model.for_each_joining(
-        [&](const char* name, auto& table, auto&) { check_joined_bodies(file, model, name, table); });
+        [&](const char* name, auto& table, auto&) { check_joined_objects(file, model, name, table); });
     check_joints(file, model);
     check_implicit_nodes(file, model.implicit_nodes);
     check_watch(file, model);

@@ -1,0 +1,23 @@
+// Points on bodies and colliders, at which springs, cables and ties act.
+#pragma once
+
+#include <optional>
+
+#include "components/handle.h"
+#include "components/types.h"
+
+#pragma GCC visibility push(default)
+namespace skerry {
+
+/// A point that is fixed to a body, to a collider, or to the world if neither is given.
+///
+/// The point of a rigid body may be anywhere. The point of a deformable body must be inside the body, or at most one
+/// mean edge length of the body's surface outside. It then moves with the nearest tetrahedron.
+struct Anchor {
+    std::optional<BodyHandle> body{};          // at most one of `body` and `collider` may be given
+    std::optional<ColliderHandle> collider{};
+    Vec3 point = Vec3::Zero();  // position in the world at the time when the anchor is created [m]
+};
+
+}  // namespace skerry
+#pragma GCC visibility pop

@@ -1,0 +1,41 @@
+// Anchors: conversion between a point in the world and a point that is fixed to an object.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "components/anchor.h"
+#include "engine/world/world_state.h"
+#include "skerry/anchor.h"
+#include "systems/forces/anchors.h"
+
+namespace skerry {
+
+/// An anchor in the form in which tables store it.
+struct PlacedAnchor {
+    Index body = no_index, collider = no_index;  // rows of BodyTable and ColliderTable
+    AnchorRow point;
+
+    void store(AnchorColumns& columns, std::size_t row) const;
+};
+
+/// Fixes an anchor to its body or collider at the present time. Throws SceneError that names the field `field` of
+/// `object` if a handle is stale, the point is not finite, or the point is too far from a deformable body.
+PlacedAnchor place_anchor(WorldState& world, const Anchor& anchor, const std::string& object, const std::string& field);
+
+/// Returns an anchor as users give it: with handles, at its present position in the world.
+Anchor present_anchor(const WorldState& world, const AnchorColumns& columns, std::size_t row);
+
+/// Inputs of anchors between steps. They stay valid until the world changes. Velocities of colliders are mean velocities
+/// of the last step, because the velocities of nodes also are.
+class AnchorsBetweenSteps {
+public:
+    explicit AnchorsBetweenSteps(const WorldState& world);
+    AnchorInputs of(const AnchorColumns& columns) const;
+
+private:
+    const Model& model_;
+    Column<RigidMotion> motion_;  // of colliders
+};
+
+}  // namespace skerry

@@ -1,0 +1,76 @@
+// Position and velocity of anchors, and the distribution of forces at anchors to nodes.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+
+#include "components/anchor.h"
+#include "components/body_table.h"
+#include "components/collider_table.h"
+#include "components/node_table.h"
+#include "jobs/access.h"
+
+namespace skerry {
+
+/// Anchors with the columns that their positions depend on. They are valid for bodies of every kind, because the nodes
+/// of rigid and implicit bodies move with these bodies.
+struct AnchorInputs {
+    std::span<const Index> body, collider;  // AnchorColumns
+    std::span<const AnchorRow> point;
+    std::span<const Range> body_nodes;             // BodyTable
+    std::span<const Vec3> position, node_velocity;  // NodeTable [m, m/s]
+    std::span<const RigidMotion> motion;            // ColliderTable
+
+    static AnchorInputs bind(const Binder& binder, const AnchorColumns& anchor, const BodyTable& bodies,
+                             const NodeTable& nodes, const ColliderTable& colliders) {
+        return {.body = binder.read(anchor.body),
+                .collider = binder.read(anchor.collider),
+                .point = binder.read(anchor.point),
+                .body_nodes = binder.read(bodies.nodes),
+                .position = binder.read(nodes.position),
+                .node_velocity = binder.read(nodes.velocity),
+                .motion = binder.read(colliders.motion)};
+    }
+
+    /// Calls visit(node, weight) for each node of the body of an anchor that moves the anchor. `node` is a row of
+    /// NodeTable.
+    void for_each_node(std::size_t anchor, auto&& visit) const {
+        if (body[anchor] == no_index) return;
+        const Index first = body_nodes[static_cast<std::size_t>(body[anchor])].begin;
+        for (std::size_t a = 0; a < 4; ++a)
+            if (const Real weight = point[anchor].weight[a]; weight != 0)
+                visit(static_cast<std::size_t>(first + point[anchor].node[a]), weight);
+    }
+
+    /// Present position of an anchor [m].
+    Vec3 at(std::size_t anchor) const {
+        if (body[anchor] == no_index) {
+            if (collider[anchor] == no_index) return point[anchor].point;
+            const RigidMotion& of = motion[static_cast<std::size_t>(collider[anchor])];
+            return of.position + of.rotation * point[anchor].point;
+        }
+        Vec3 sum = Vec3::Zero();
+        for_each_node(anchor, [&](std::size_t node, Real weight) { sum += weight * position[node]; });
+        return sum;
+    }
+
+    /// Velocity of an anchor [m/s].
+    Vec3 velocity(std::size_t anchor) const {
+        if (body[anchor] == no_index) {
+            if (collider[anchor] == no_index) return Vec3::Zero();
+            const RigidMotion& of = motion[static_cast<std::size_t>(collider[anchor])];
+            return of.velocity + of.angular_velocity.cross(of.rotation * point[anchor].point);
+        }
+        Vec3 sum = Vec3::Zero();
+        for_each_node(anchor, [&](std::size_t node, Real weight) { sum += weight * node_velocity[node]; });
+        return sum;
+    }
+
+    /// Adds the force `force` at an anchor to the forces on nodes [N]. Force and moment of the nodal forces are those of
+    /// `force`. A force on a collider or on the world changes nothing.
+    void add_force(std::size_t anchor, const Vec3& force, std::span<Vec3> node_force) const {
+        for_each_node(anchor, [&](std::size_t node, Real weight) { node_force[node] += weight * force; });
+    }
+};
+
+}  // namespace skerry

@@ -1,0 +1,25 @@
+// Material points: points that move with a tetrahedron.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "components/types.h"
+
+namespace skerry {
+
+/// A point given by the corners of a tetrahedron and its barycentric coordinates, whose sum is 1.
+struct MaterialPoint {
+    std::array<Index, 4> node{};
+    std::array<Real, 4> weight{};
+};
+
+/// Returns the point of a tetrahedron at `place`, which may be outside the tetrahedron. `nodes`: node positions [m].
+MaterialPoint point_of_tetrahedron(std::span<const Vec3> nodes, const std::array<Index, 4>& corners, const Vec3& place);
+
+/// Returns the point of the first tetrahedron that contains `place`, or nothing if no tetrahedron contains it.
+std::optional<MaterialPoint> point_inside(std::span<const Vec3> nodes, std::span<const std::array<Index, 4>> tetrahedra,
+                                          const Vec3& place);
+
+}  // namespace skerry
